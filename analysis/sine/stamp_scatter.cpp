@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/base/statistics.hpp"
+#include "analysis/sine/alternating_samples.hpp"
 #include "analysis/sine/phasor_blocks.hpp"
 #include "analysis/sine/sine_values.hpp"
 
@@ -24,6 +25,9 @@ constexpr double step_part = 0.125;    // of the square of a step
 constexpr double heavy_tails = 6.0;    // kurtosis: normal ones that follow the slope have 4.5
 constexpr double far_from_rest = 10.0; // robust standard deviations: latencies have hardly any
 constexpr std::uint64_t min_far_off = 4;
+constexpr double far_off_part = 3e-3; // wherever they are: the sine lacks as large a part of itself
+constexpr double left_out = 4.0;      // robust standard deviations
+constexpr int refits = 6;
 // Of the squares, by cos^2 of the phase: 3/4 for values of other instants, 1/2 for any others.
 constexpr double on_slopes = 0.54;
 constexpr double at_end = 0.85;       // of the amplitude
@@ -140,13 +144,44 @@ std::uint64_t peak_jumps(const std::vector<Sample>& samples, double amplitude) {
   return 10 * at_peaks >= 9 * all ? at_peaks : 0;
 }
 
-std::uint64_t far_off(const std::vector<Sample>& samples) {
+double robust_sd(const std::vector<Sample>& samples) {
   std::vector<double> sizes;
   sizes.reserve(samples.size());
   for (const Sample& one : samples) {
     sizes.push_back(std::abs(one.whole));
   }
-  const double limit = far_from_rest * mad_to_sd * upper_median(sizes);
+  return mad_to_sd * upper_median(sizes);
+}
+
+// Gives the sine back what values far off it took from it: it is fitted again without these.
+void fit_to_the_rest(std::vector<Sample>& samples) {
+  for (int pass = 0; pass < refits; ++pass) {
+    const double limit = left_out * robust_sd(samples);
+    double ss = 0.0, sc = 0.0, cc = 0.0, es = 0.0, ec = 0.0;
+    for (const Sample& one : samples) {
+      if (std::abs(one.whole) <= limit) {
+        ss += one.sine * one.sine;
+        sc += one.sine * one.cosine;
+        cc += one.cosine * one.cosine;
+        es += one.whole * one.sine;
+        ec += one.whole * one.cosine;
+      }
+    }
+    const double determinant = ss * cc - sc * sc;
+    if (!(determinant > 0.1 * ss * cc)) {
+      return;
+    }
+    const double by_sine = (es * cc - ec * sc) / determinant;
+    const double by_cosine = (ec * ss - es * sc) / determinant;
+    for (Sample& one : samples) {
+      one.whole -= by_sine * one.sine + by_cosine * one.cosine;
+    }
+  }
+}
+
+std::uint64_t far_off(std::vector<Sample> samples) {
+  fit_to_the_rest(samples);
+  const double limit = far_from_rest * robust_sd(samples);
   double steep = 0.0, all = 0.0;
   std::uint64_t count = 0;
   for (const Sample& one : samples) {
@@ -156,7 +191,8 @@ std::uint64_t far_off(const std::vector<Sample>& samples) {
       steep += one.whole * one.whole * one.cosine * one.cosine;
     }
   }
-  return count >= min_far_off && steep > on_slopes * all ? count : 0;
+  const bool many = static_cast<double>(count) > far_off_part * static_cast<double>(samples.size());
+  return count >= min_far_off && (many || steep > on_slopes * all) ? count : 0;
 }
 
 } // namespace
@@ -203,6 +239,10 @@ StampScatter measure_stamp_scatter(const Frequency& frequency, const SineFit& fi
   if (n * fourth > heavy_tails * second * second) {
     scatter.peak_jumps = peak_jumps(samples, fit.amplitude());
     scatter.far_off = far_off(samples);
+  }
+  if (scatter.far_off == 0 &&
+      alternating_part(frequency, fit, origin_ns, stamps_ns, values) > 0.0) {
+    scatter.far_off = samples.size() / 2;
   }
   const double mean = m / n, spread = mm - m * mean;
   if (spread < min_variance * n) {

@@ -17,9 +17,11 @@
 //
 // Evenly spaced blocks of at most 8192 samples in all. `peak_jumps` are residuals above the
 // amplitude at the ends of the sine where there are hardly any elsewhere: samples that a converter
-// wrapped. `far_off` are residuals beyond ten robust standard deviations, at least four, that are
-// on the slopes: values of other instants. `batched_part` are intervals below a twentieth of the
-// mean. Nothing is found in fewer than 64 samples. Any thread.
+// wrapped. `far_off` are residuals beyond ten robust standard deviations of a sine through the
+// others, at least four that are on the slopes (values of other instants) or 0.3 % anywhere (wrong
+// values), or half of all where samples are in turn of two sensors (alternating_samples.hpp).
+// `batched_part` are intervals below a twentieth of the mean. Fewer than 64 samples: nothing. Any
+// thread.
 #pragma once
 
 #include <cstdint>

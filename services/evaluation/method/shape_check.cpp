@@ -43,8 +43,8 @@ void check_stamps(const analysis::ChannelFit& fit, double u_magnitude_rel, doubl
     }
   } else if (scatter.far_off > 0) {
     add_flag(ResultFlag::values_off_stamps, fit.channel,
-             fmt::format("{} of {} values are far beside the sine where it is steep",
-                         scatter.far_off, scatter.samples),
+             fmt::format("{} of {} values are beside the sine of the others", scatter.far_off,
+                         scatter.samples),
              result);
   }
   if (correction > u_magnitude_rel) {

@@ -7,7 +7,7 @@
 //   stamps_scatter     the amplitude was corrected by more than its u
 //   values_off_stamps  values are held so often that it moves the phase by a tenth of its u; a
 //                      fifth of the stamps follow the one before at once, as when a buffer is
-//                      read; or some values are far beside the sine where it is steep
+//                      read; or some values, or every second one, are beside the sine of the others
 //
 // Refused: bent by more than a hundredth, or shortened by scatter to less than nine tenths. Appends
 // to flags and, as signal_check.hpp, takes a refused value away. Plain functions, any thread.

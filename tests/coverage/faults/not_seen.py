@@ -60,7 +60,17 @@ class GravityAsUnit(Fault):
         return values / STANDARD_GRAVITY
 
 
+class LateRegister(Fault):
+    """A register that is polled at the stamps and written twenty times as often: values are held
+    for a twentieth of the sensor's period, and late by half of that."""
+
+    def sensor_lag_rad(self, step, times_s):
+        held_s = 1.0 / (20.0 * self.calibration.sensor_rate_hz)
+        return 2.0 * math.pi * step.frequency_hz * np.mod(times_s + 0.3 * held_s, held_s)
+
+
 CLASSES = {
+    "not seen: mean age of a register that is polled": bench(LITTLE_NOISE, fault=LateRegister),
     "not seen: a delay of 50 us": bench(LITTLE_NOISE, fault=LateCable),
     "not seen: ADC calibration of another channel": bench(LITTLE_NOISE, fault=OtherAdc),
     "not seen: 1 % of the drive in the reference": bench(LITTLE_NOISE, fault=CrossTalk),
@@ -80,5 +90,11 @@ EXPECTED = [
         NO_DATA_SHOW_IT,
     ),
     Row("not seen: values of the sample before", PHASE, COVERED_OR_FLAGGED, NO_DATA_SHOW_IT),
+    Row(
+        "not seen: mean age of a register that is polled",
+        PHASE,
+        COVERED_OR_FLAGGED,
+        NO_DATA_SHOW_IT,
+    ),
     Row("not seen: g taken for m/s^2", MAGNITUDE, COVERED_OR_FLAGGED, NO_DATA_SHOW_IT),
 ]

@@ -9,7 +9,7 @@ import functools
 import numpy as np
 
 from class_presets import SERIES, bench
-from expected_row import VALUE, Row
+from expected_row import MAGNITUDE, VALUE, Row
 from faults.fault import Fault
 
 FASTER = 16
@@ -108,10 +108,14 @@ def soft(**how):
     return functools.partial(SoftEnds, **how)
 
 
-# Below an eighth of the sensor's rate: above, its own filter takes the harmonics away.
+# Below an eighth of the sensor's rate.
 LOW = {"frequencies": ("12.5", "20", "31.5", "40", "63", "80"), "sensor_offset_rel": 0.0}
 LITTLE = {**LOW, "sensor_noise_rel": 0.001}
 SOME = {**LOW, "sensor_noise_rel": 0.008}
+
+# Where harmonics fold or a good sensor's filter would take them, bent peaks are hardly seen.
+HIGH = {"frequencies": ("90", "100.3", "128", "160", "200", "240")}
+HARDLY_SEEN = "O: above an eighth of the sensor's rate, on the page what-it-cannot-see.md"
 
 CLASSES = {
     "sensor cut at 0.995 A before its noise": bench(
@@ -152,6 +156,18 @@ CLASSES = {
         sensor_noise_rel=0.003,
         fault=functools.partial(SoftSeries, limit=0.9),
     ),
+    "above rate / 8, sensor cut at 0.99 A before its filter": bench(
+        SOME, HIGH, fault=soft(upper=0.99, lower=0.99, filtered=True)
+    ),
+    "above rate / 8, sensor cut at 0.97 A": bench(
+        LITTLE, HIGH, fault=soft(upper=0.97, lower=0.97)
+    ),
+    "above rate / 8, sensor cut at 0.9 A before its filter": bench(
+        SOME, HIGH, fault=soft(upper=0.9, lower=0.9, filtered=True)
+    ),
+    "above rate / 8, reference cut at 0.9 A": bench(
+        LITTLE, HIGH, fault=functools.partial(SoftReference, upper=0.9, lower=0.9)
+    ),
     # The opposite: nothing is cut.
     "clean, exciter with harmonics of 3, 2, 1 %": bench(harmonics_rel=(0.03, 0.02, 0.01)),
     "clean, sensor with harmonics of its own": bench(
@@ -182,6 +198,15 @@ EXPECTED = [
             "reference cut at 0.9 A",
             "sensor's codes overflow at 1.01 A",
             "series cut at 0.9 A before its noise",
+            "above rate / 8, sensor cut at 0.97 A",
+            "above rate / 8, sensor cut at 0.9 A before its filter",
+        )
+    ),
+    *(
+        Row(name, MAGNITUDE, "covered or flagged", HARDLY_SEEN)
+        for name in (
+            "above rate / 8, sensor cut at 0.99 A before its filter",
+            "above rate / 8, reference cut at 0.9 A",
         )
     ),
     *(Row(name, VALUE, "covered, no flag") for name in CLASSES if name.startswith("clean")),

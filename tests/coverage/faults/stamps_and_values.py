@@ -64,7 +64,7 @@ def misplaced(**how):
     return functools.partial(MisplacedValues, **how)
 
 
-# Above, a value of the next sample looks less and less like one far beside the sine.
+ABOVE_AN_EIGHTH = {"frequencies": ("90", "100.3", "128", "160", "200", "240")}
 BELOW_AN_EIGHTH = {"frequencies": ("12.5", "20", "31.5", "40", "63", "80")}
 AT_80_HZ = {"frequencies": ("31.5", "40", "63", "80", "100.3", "125")}
 
@@ -83,6 +83,12 @@ CLASSES = {
     "0.2 % of the values exchanged": bench(BELOW_AN_EIGHTH, fault=misplaced(exchanged=0.002)),
     "1 % of the values exchanged": bench(BELOW_AN_EIGHTH, fault=misplaced(exchanged=0.01)),
     "10 % of the values exchanged": bench(BELOW_AN_EIGHTH, fault=misplaced(exchanged=0.1)),
+    **{
+        f"above rate / 8, {100 * part:g} % of the values exchanged": bench(
+            ABOVE_AN_EIGHTH, fault=misplaced(exchanged=part)
+        )
+        for part in (0.002, 0.01, 0.1)
+    },
     "buffer of 4 read": bench(fault=misplaced(batch=4)),
     "buffer of 8 read": bench(fault=misplaced(batch=8)),
     # The opposite.
@@ -116,6 +122,9 @@ EXPECTED = [
             "0.2 % of the values exchanged",
             "1 % of the values exchanged",
             "10 % of the values exchanged",
+            "above rate / 8, 0.2 % of the values exchanged",
+            "above rate / 8, 1 % of the values exchanged",
+            "above rate / 8, 10 % of the values exchanged",
         )
     ),
     *(

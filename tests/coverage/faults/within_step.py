@@ -111,6 +111,19 @@ class Knock(Fault):
         return self._knocked(times_s, values) if self.where == "reference" else values
 
 
+class TwoKnocks(Knock):
+    """A second one, later in the same step."""
+
+    def __init__(self, calibration, rng, size_rel, where):
+        super().__init__(calibration, rng, size_rel, where)
+        self.places = rng.uniform(0.15, 0.4), rng.uniform(0.5, 0.85)
+
+    def _knocked(self, times_s, values):
+        for self.at in self.places:
+            values = super()._knocked(times_s, values)
+        return values
+
+
 def shaped_noise(size, power, rng):
     """Noise whose density is f^-power, of standard deviation 1."""
     spectrum = np.fft.rfft(rng.standard_normal(size))
@@ -182,6 +195,27 @@ KNOCKS = {
     for where in ("sensor", "reference")
     for size in (0.02, 0.5, 50.0)
 }
+TWO_KNOCKS = {
+    f"{where} knocked twice by {size:g} amplitudes": {"size_rel": size, "where": where}
+    for where in ("sensor", "reference")
+    for size in (0.02, 0.5, 50.0)
+}
+# The same of other methods; in the classes above the sensor's clock is another one.
+OF_METHODS = {
+    f"{method}: {name}": (kind, {**QUIET, "method": method}, options)
+    for method in ("analogue", "absolute-time")
+    for name, kind, options in (
+        ("gain changes by 0.005 %", Changing, {"gain_rel": 5e-5}),
+        ("gain changes by 2 %", Changing, {"gain_rel": 0.02}),
+        ("sensor 1 ms later", Changing, {"late_s": 1e-3}),
+        ("knocked twice by 0.5 amplitudes", TwoKnocks, {"size_rel": 0.5, "where": "sensor"}),
+    )
+} | {
+    f"absolute-time: clock slews by {by}": (
+        SlewingClock, {**QUIET, "method": "absolute-time"}, options
+    )
+    for by, options in (("10 us", {"by_s": 1e-5}), ("2 ms", {"by_s": 2e-3}))
+}
 NOISES = {
     "three periods, 1/f noise of 1 %": (SLOW, {"noise_rel": 0.01, "power": 1.0}),
     "three periods, 1/f noise of 0.03 %": (SLOW, {"noise_rel": 3e-4, "power": 1.0}),
@@ -195,6 +229,11 @@ CLASSES = {
     **{name: with_fault(Changing, QUIET, **options) for name, (options, _) in CHANGING.items()},
     **{name: with_fault(SlewingClock, QUIET, **options) for name, options in SLEWS.items()},
     **{name: with_fault(Knock, QUIET, **options) for name, options in KNOCKS.items()},
+    **{name: with_fault(TwoKnocks, QUIET, **options) for name, options in TWO_KNOCKS.items()},
+    **{
+        name: with_fault(kind, preset, **options)
+        for name, (kind, preset, options) in OF_METHODS.items()
+    },
     **{
         name: with_fault(ColouredNoise, preset, **options)
         for name, (preset, options) in NOISES.items()
@@ -203,5 +242,8 @@ CLASSES = {
 EXPECTED = [
     *(Row(name, VALUE, COVERED) for name in WANDERING),
     *(Row(name, VALUE, wanted) for name, (_, wanted) in CHANGING.items()),
-    *(Row(name, VALUE, COVERED_OR_FLAGGED) for name in (*SLEWS, *KNOCKS, *NOISES)),
+    *(
+        Row(name, VALUE, COVERED_OR_FLAGGED)
+        for name in (*SLEWS, *KNOCKS, *TWO_KNOCKS, *OF_METHODS, *NOISES)
+    ),
 ]

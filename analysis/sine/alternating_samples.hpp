@@ -1,0 +1,27 @@
+// Are the samples of a sine in turn of two sensors, or of two gains? Their difference is a sine of
+// alternating sign in the residuals, a line at half the rate less the signal's frequency:
+//
+//   d = 2/n sum (-1)^k e_k e^{-i phi_k} / A     k: number of the sample, by the stamps' intervals
+//
+// The fitted amplitude is the mean of both, and either is off by |d|. Certain: |d| beyond 1e-4,
+// 4.5 times what the residuals' noise gives, and twice the largest of four lines beside it, two and
+// four resolutions away. Not judged where less than six resolutions are between the line and
+// the signal or half the rate; beyond a twentieth only, where a harmonic of the signal or of the
+// mains folds there. The middle 8192 samples at most. Any thread.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "analysis/base/frequency.hpp"
+#include "analysis/sine/sine_fit.hpp"
+
+namespace dyncal::analysis {
+
+// |d|, 0: not certain. `fit` about `origin_ns`, of `values`.
+[[nodiscard]] double alternating_part(const Frequency& frequency, const SineFit& fit,
+                                      std::int64_t origin_ns,
+                                      std::span<const std::int64_t> stamps_ns,
+                                      std::span<const double> values);
+
+} // namespace dyncal::analysis
