@@ -130,7 +130,34 @@ def series(fault, *parts, **arguments):
     return bench(FEW_STEPS, LITTLE_NOISE, *parts, fault=functools.partial(fault, **arguments))
 
 
+class DriftingSeries(Fault):
+    """The offset drifts in every series, by another part of the amplitude in each."""
+
+    def __init__(self, calibration, rng, drift_rel):
+        super().__init__(calibration, rng)
+        self.drift_rel = drift_rel
+
+    def series(self, step, times_s, values):
+        size = self.drift_rel * step.amplitude * self.rng.standard_normal()
+        return values + size * np.linspace(-0.5, 0.5, values.size)
+
+
+TWO_PERIODS = {
+    **SERIES,
+    "frequencies": ("4.1", "4.2", "4.3", "4.4"),
+    "duration_s": 1.0,
+    "sensor_noise_rel": 1e-3,
+    "reference_noise_rel": 1e-4,
+}
+
 CLASSES = {
+    **{
+        f"series of two periods drift by {100 * drift_rel:g} %": bench(
+            TWO_PERIODS, fault=functools.partial(DriftingSeries, drift_rel=drift_rel)
+        )
+        for drift_rel in (0.002, 0.02, 0.2)
+    },
+    "series of two periods": bench(TWO_PERIODS),
     # Nothing is wrong.
     "clean, series of 5 shots": bench(SERIES, shots=5, frequencies=("20", "80", "210")),
     "clean, series with little noise": bench(FEW_STEPS, LITTLE_NOISE),
