@@ -242,15 +242,46 @@ CleanedFit clean(const Frequency& frequency, const Examination& examined, std::s
   return result;
 }
 
+// Rounds of fitting the frequency and what is beside it in turn. Of n steps, each is r times the
+// one before it, where r is the square of the correlation of the two: so r / (1 - r) of the last
+// step is still to go, and u of one that is fitted alone is to be divided by sqrt(1 - r). Few
+// periods beside a drift have an r of a half and more.
+class Rounds {
+public:
+  void step(double hz, double u_hz) {
+    const double before = last_hz_;
+    last_hz_ = hz;
+    u_hz_ = u_hz;
+    const bool tells = std::abs(before) > told_by * u_hz;
+    r_ = count_ > 0 && tells ? std::clamp(hz / before, 0.0, largest_r) : 0.0;
+    ++count_;
+  }
+
+  [[nodiscard]] bool enough() const {
+    const double left_hz = std::abs(last_hz_) * std::max(1.0, r_ / (1.0 - r_));
+    return left_hz < negligible * u_hz_ || count_ == most;
+  }
+
+  [[nodiscard]] double widening() const { return 1.0 / std::sqrt(1.0 - r_); }
+
+private:
+  static constexpr int most = 40;            // 0.9^40 = 0.01
+  static constexpr double largest_r = 0.99;  // u is ten times larger
+  static constexpr double negligible = 0.01; // of u
+  static constexpr double told_by = 1e-3;    // of u: smaller steps are of rounding and choices
+  int count_ = 0;
+  double last_hz_ = 0.0, u_hz_ = 0.0, r_ = 0.0;
+};
+
 // The frequency on the channels without what was taken out of them; `fit` and `undisturbed` are of
-// the same frequency.
+// the same frequency. Each round's disturbances are those at the frequency of the last.
 Expected<FrequencyFit> refine_frequency(FrequencyFit fit, std::vector<CleanedFit> undisturbed,
                                         double search_rel, std::int64_t phase_origin_ns,
                                         std::span<const std::int64_t> stamps_ns,
                                         std::span<const std::span<const double>> channels,
                                         std::span<const double> mains_hz) {
-  constexpr int max_rounds = 3; // each round's disturbances are those at the frequency of the last
-  for (int round = 1;; ++round) {
+  Rounds rounds;
+  while (true) {
     std::vector<std::span<const double>> cleaned(channels.begin(), channels.end());
     bool any = false;
     for (std::size_t j = 0; j < channels.size(); ++j) {
@@ -264,11 +295,15 @@ Expected<FrequencyFit> refine_frequency(FrequencyFit fit, std::vector<CleanedFit
     }
     auto refined =
         fit_sine_and_frequency(fit.frequency, search_rel, phase_origin_ns, stamps_ns, cleaned);
-    if (!refined || round == max_rounds ||
-        std::abs(refined->frequency.hz() - fit.frequency.hz()) < 0.01 * refined->u_frequency_hz) {
+    if (!refined) {
       return refined;
     }
+    rounds.step(refined->frequency.hz() - fit.frequency.hz(), refined->u_frequency_hz);
     fit = std::move(*refined);
+    if (rounds.enough()) {
+      fit.u_frequency_hz *= rounds.widening();
+      return fit;
+    }
     auto next =
         fit_sine_beside_disturbances(fit.frequency, phase_origin_ns, stamps_ns, channels, mains_hz);
     if (!next) {
