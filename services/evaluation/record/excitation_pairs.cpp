@@ -208,7 +208,31 @@ bool fits_into(std::span<const RecipeStep* const> plan, const std::vector<Joined
   return true;
 }
 
-std::optional<std::vector<JoinedExcitation>> decided(std::vector<Proposal> possible) {
+// One record may end before the other one begins: all that both show fits into the plan one after
+// the other.
+bool may_share_nothing(std::span<const RecipeStep* const> plan, const RecordedExcitations& first,
+                       const RecordedExcitations& second) {
+  std::vector<JoinedExcitation> of_first, of_second;
+  for (std::size_t i = 0; i < first.found.size(); ++i) {
+    of_first.push_back({.first = i});
+  }
+  for (std::size_t j = 0; j < second.found.size(); ++j) {
+    of_second.push_back({.second = j});
+  }
+  const auto one_after_the_other = [&](std::vector<JoinedExcitation> before,
+                                       const std::vector<JoinedExcitation>& after) {
+    before.insert(before.end(), after.begin(), after.end());
+    return fits_into(plan, before, first, second);
+  };
+  return one_after_the_other(of_first, of_second) || one_after_the_other(of_second, of_first);
+}
+
+struct Decision {
+  std::vector<JoinedExcitation> joined;
+  bool confirmed = false; // by phases, none of which contradicts
+};
+
+std::optional<Decision> decided(std::vector<Proposal> possible) {
   std::stable_sort(possible.begin(), possible.end(), [](const Proposal& a, const Proposal& b) {
     return std::tuple(a.contradictions, b.is_natural, b.confirmations) <
            std::tuple(b.contradictions, a.is_natural, a.confirmations);
@@ -217,7 +241,9 @@ std::optional<std::vector<JoinedExcitation>> decided(std::vector<Proposal> possi
   const bool is_decided = possible.size() == 1 ||
                           possible[1].contradictions > decisive_ratio * best.contradictions ||
                           (best.contradictions == 0 && best.is_natural);
-  return is_decided ? std::optional(best.joined) : std::nullopt;
+  return is_decided ? std::optional(
+                          Decision{best.joined, best.contradictions == 0 && best.confirmations > 0})
+                    : std::nullopt;
 }
 
 } // namespace
@@ -244,7 +270,10 @@ join_excitations(std::span<const RecipeStep* const> plan, const RecordedExcitati
     std::copy_if(proposals.begin(), proposals.end(), std::back_inserter(possible),
                  [&](const Proposal& one) { return one.pairs + 1 >= most->pairs; });
   }
-  return decided(std::move(possible));
+  auto best = decided(std::move(possible));
+  return best && (best->confirmed || !may_share_nothing(plan, first, second))
+             ? std::optional(std::move(best->joined))
+             : std::nullopt;
 }
 
 } // namespace dyncal::services

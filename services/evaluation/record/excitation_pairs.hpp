@@ -12,8 +12,9 @@
 //    they do not contradict it, it leaves nothing alone, and both records begin and end together.
 //
 // Nothing is taken where this does not decide: steps of one frequency, one level and one distance
-// whose phases go on alike, with the beginning or the end missing in one record. Plain function,
-// any thread.
+// whose phases go on alike, with the beginning or the end missing in one record; or where the plan
+// has room for all of one record before all of the other, and no phase confirms that they share a
+// step. Plain function, any thread.
 #pragma once
 
 #include <cstddef>

@@ -251,6 +251,22 @@ TEST_F(StepAlignment, ARunThatWasBrokenOffHasItsFirstSteps) {
   EXPECT_THAT(schedule_.problems[3], HasSubstr("the last that was there is step 3"));
 }
 
+// Their frequencies are the same, and so are the times between them; their phases are not.
+TEST_F(StepAlignment, ARecordThatEndsBeforeTheOtherBeginsHasNoStepOfIt) {
+  plan({40.0, 50.2, 125.0, 40.0, 50.2, 125.0});
+  align({3, 4, 5}, {0, 1, 2});
+  EXPECT_THAT(of_acs(), Each(-1));
+  EXPECT_THAT(of_dau(), Each(-1));
+  EXPECT_THAT(schedule_.problems, Each(HasSubstr("nothing tells")));
+}
+
+TEST_F(StepAlignment, ASweepOfTwoThatWasBrokenOffHasItsSteps) {
+  plan({40.0, 50.2, 125.0, 40.0, 50.2, 125.0});
+  align({3, 4, 5}, {3, 4, 5});
+  EXPECT_THAT(of_acs(), ElementsAre(0, 1, 2, -1, -1, -1));
+  EXPECT_THAT(of_dau(), ElementsAre(0, 1, 2, -1, -1, -1));
+}
+
 TEST_F(StepAlignment, AnExcitationThatOneRecordHasBeyondThePlanShiftsNothing) {
   plan({80.0, 80.0, 80.0, 80.0, 80.0});
   steps_.pop_back(); // the first that was excited was a trial
