@@ -23,6 +23,14 @@ std::string lower(std::string text) {
   return text;
 }
 
+// An instrument's address in one spelling.
+std::string one_spelling(const std::string& address) {
+  std::string one = lower(address);
+  const auto parsed = drivers::parse_address(one);
+  return parsed && parsed->host == "localhost" ? drivers::Address{"127.0.0.1", parsed->port}.text()
+                                               : one;
+}
+
 Claim claim_of(const BenchView& view, const SourceSettings& source, const char* key) {
   return {&view,
           {"sources", source.name, key},
@@ -80,7 +88,7 @@ void check_addresses(std::span<const BenchView> views, Findings& findings) {
     if (view.bench.generator.driver == GeneratorDriver::scpi && !generator.empty()) {
       const KeyPath key{"generator", "address"};
       check_address(view, key, generator, findings);
-      instruments.add(generator,
+      instruments.add(one_spelling(generator),
                       {&view, key, fmt::format("the generator of bench '{}'", view.bench.bench)},
                       findings);
     }
@@ -92,7 +100,7 @@ void check_addresses(std::span<const BenchView> views, Findings& findings) {
       check_address(view, {"sources", source.name, "address"}, address, findings);
       // An oscilloscope may have the generator built in.
       if (!address.empty() && !(source.is<OscilloscopeSourceSettings>() && address == generator)) {
-        instruments.add(address, claim_of(view, source, "address"), findings);
+        instruments.add(one_spelling(address), claim_of(view, source, "address"), findings);
       }
     }
   }

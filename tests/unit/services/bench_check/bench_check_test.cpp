@@ -230,6 +230,34 @@ TEST(BenchCheck, TwoBenchesOfOneName) {
       << all_of(errors);
 }
 
+// The keys of b.toml that are errors beside a.toml, where the generators have these addresses.
+std::vector<std::string> errors_of_two(const std::string& first, const std::string& second) {
+  std::string other = with(smartup_bench, "acc-1", "acc-2");
+  other = with(other, "192.0.2.11:5025", second);
+  other = with(other, "192.0.2.12", "198.51.100.12");
+  other = with(other, "0xbccb0100", "0xbccb0200");
+  const std::vector<BenchView> views{
+      look_at_bench_text(with(smartup_bench, "192.0.2.11:5025", first), "a.toml"),
+      look_at_bench_text(other, "b.toml")};
+  std::vector<std::string> keys;
+  for (const Finding& error : of(check_benches(views), Severity::error)) {
+    EXPECT_EQ(error.file, "b.toml");
+    keys.push_back(error.key);
+  }
+  return keys;
+}
+
+TEST(BenchCheck, TwoBenchesOfOneGeneratorHoweverItIsSpelt) {
+  using testing::ElementsAre;
+  EXPECT_THAT(errors_of_two("192.0.2.11:5025", "192.0.2.11:5025"),
+              ElementsAre("generator.address"));
+  EXPECT_THAT(errors_of_two("localhost:5025", "127.0.0.1:5025"), ElementsAre("generator.address"));
+  EXPECT_THAT(errors_of_two("Shaker.lab:5025", "shaker.LAB:5025"),
+              ElementsAre("generator.address"));
+  EXPECT_THAT(errors_of_two("localhost:5025", "127.0.0.1:5026"), ElementsAre());
+  EXPECT_THAT(errors_of_two("192.0.2.11:5025", "192.0.2.13:5025"), ElementsAre());
+}
+
 TEST(BenchCheck, TwoBenchesAtOnePort) {
   std::string other = with(smartup_bench, "acc-1", "acc-2");
   other = with(other, "192.0.2.11", "198.51.100.11");
