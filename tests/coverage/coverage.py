@@ -16,25 +16,16 @@ python3-numpy; says so and leaves with status 77 without it.
 
 import argparse
 import collections
-import json
 import multiprocessing
 import os
 import pathlib
 import shutil
-import subprocess
 import sys
 import tempfile
 import time
 import zlib
 
-for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
-    os.environ[name] = "1"
-try:
-    import numpy  # noqa: F401
-except ImportError as missing:
-    print(f"skipped: {missing}; install python3-numpy")
-    sys.exit(77)
-
+from analysed_folder import PROCESSES, analysed
 from bench_simulator import Calibration
 from expected_outcomes import EXPECTED
 from expected_row import MEAN
@@ -43,8 +34,6 @@ from judgement import CHANCE, Tally, claims_of, refusal
 
 SEED = 2021_07_09
 SHORT_DRAWS = 12
-PROCESSES = 2
-ANALYSE_TIMEOUT_S = 120
 
 
 def seed_of(seed, fault_class, draw):
@@ -52,18 +41,8 @@ def seed_of(seed, fault_class, draw):
 
 
 def evaluated(program, folder, truth):
-    run = subprocess.run(
-        [program, "analyse", folder / "bench.toml", "--json", folder / "result.json"],
-        capture_output=True,
-        text=True,
-        timeout=ANALYSE_TIMEOUT_S,
-        check=False,
-    )
-    if run.returncode not in (0, 1) or "runtime error:" in run.stderr or "Sanitizer" in run.stderr:
-        raise RuntimeError(f"dyncal analyse ended with {run.returncode}: {run.stderr}")
-    if not (folder / "result.json").exists():
-        return refusal(truth, run.stderr)
-    return claims_of(json.loads((folder / "result.json").read_text("utf-8")), truth)
+    result, complaint = analysed(program, folder)
+    return claims_of(result, truth) if result else refusal(truth, complaint)
 
 
 def claims_of_draw(work):

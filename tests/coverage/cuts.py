@@ -12,8 +12,10 @@ A result is of the step whose samples it used, by their stamps: never of two ste
   budget holds a bound of the hum, which is of the whole record.
 - Of steps that were cut at most 1 % are farther from it than
   3 sqrt(u_cut^2 - u_whole^2) + 0.1 u_cut (a finding when more are by the binomial bound), and none
-  than 5 / 3 of it. The first two u are those of the noise, which samples left out make larger; rows
-  that come and go with what a test of significance finds tell nothing of it.
+  than 5 sqrt(u_cut^2 - u_whole^2) + 0.1 u_cut. All u are those that are stated. What is evaluated
+  may also lie elsewhere in the step and be as long as before: then the difference of two means of
+  the same noise, of which some samples are in both, takes the place of the square root where it is
+  larger.
 - A step has no value when a record lacks it, and its problem names no sync cable.
 - It has the frequency and the level of its step, and its number; another number of the same
   frequency and level only where both records lack a step of these.
@@ -25,24 +27,18 @@ The seed is fixed unless --seed gives another. Needs python3-numpy; says so and 
 
 import argparse
 import dataclasses
-import json
 import math
 import multiprocessing
 import os
 import pathlib
 import shutil
-import subprocess
 import sys
 import tempfile
 import time
 
-for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
-    os.environ[name] = "1"
-try:
-    import numpy as np
-except ImportError as missing:
-    print(f"skipped: {missing}; install python3-numpy")
-    sys.exit(77)
+from analysed_folder import PROCESSES, analysed  # first: leaves where there is no numpy
+
+import numpy as np
 
 from bench_simulator import ACS_EPOCH_NS, DAU_EPOCH_NS, Calibration
 from class_presets import bench
@@ -50,9 +46,7 @@ from faults.missing_steps import LEVELS, missing
 from judgement import CHANCE, MISLEADING, too_few
 
 SEED = 2031_11_26
-PROCESSES = 2
 CUTS_A_RUN = 10
-ANALYSE_TIMEOUT_S = 120
 EQUAL = 1e-12
 EQUAL_WITH_HUM_U = 0.01
 MARGIN_S = 0.15  # beside a step, whose frames of the search a cut may touch
@@ -83,17 +77,11 @@ class Finding:
     what: str
 
 
-def analysed(program, folder):
-    run = subprocess.run(
-        [program, "analyse", folder / "bench.toml", "--json", folder / "result.json"],
-        capture_output=True,
-        text=True,
-        timeout=ANALYSE_TIMEOUT_S,
-        check=False,
-    )
-    if run.returncode not in (0, 1) or not (folder / "result.json").exists():
-        raise RuntimeError(f"dyncal analyse ended with {run.returncode}: {run.stderr}")
-    return json.loads((folder / "result.json").read_text("utf-8"))["points"]
+def points_of(program, folder):
+    result, complaint = analysed(program, folder)
+    if not result:
+        raise RuntimeError(f"dyncal analyse has no result: {complaint}")
+    return result["points"]
 
 
 class Run:
@@ -111,7 +99,7 @@ class Run:
         self.rows = {name: np.load(folder / f"{name}.npy") for name in self.epochs_ns}
         self.folder = folder
         self.program = program
-        self.whole = {self.step_of(point): point for point in analysed(program, folder)}
+        self.whole = {self.step_of(point): point for point in points_of(program, folder)}
 
     def step_of(self, point):
         """The place of the step that all its samples are of; nothing where it has none, a text
@@ -164,10 +152,35 @@ def left_of(step, intervals):
     return "cut" if touched else "whole"
 
 
-def noise2_of(point, quantity):
-    """Relative variance, or in rad^2."""
+SOURCES_OF_NOISE = {  # whose rows have which subject
+    "dau": ("the sensor", "the DAU sync"),
+    "acs": ("the reference", "the ACS sync"),
+}
+
+
+def span_ns(point, source):
+    of_source = [s for s in point["source_samples"] if s["source"] == source]
+    return of_source[0]["first_stamp_ns"], of_source[0]["last_stamp_ns"]
+
+
+def variance_of_change(point, whole, quantity, sources):
+    """Of the noise that samples left out, or others in their place, make of a value: relative, or
+    in rad^2. With u^2 = s^2 / n: u_cut^2 + u_whole^2 - 2 u_whole^2 n_both / n_cut."""
     column = "u_magnitude_rel" if quantity == "magnitude" else "u_phase_rad"
-    return sum(row[column] ** 2 for row in point["budget"] if row["kind"] == "noise of")
+    noise2 = [
+        {row["subject"]: row[column] ** 2 for row in one["budget"] if row["kind"] == "noise of"}
+        for one in (point, whole)
+    ]
+    variance = 0.0
+    for subject, cut2 in noise2[0].items():
+        usual = [name for name, subjects in SOURCES_OF_NOISE.items() if subject in subjects]
+        source = usual[0] if usual and usual[0] in sources else "acs"
+        begin, end = span_ns(point, source)
+        whole_begin, whole_end = span_ns(whole, source)
+        both = max(0, min(end, whole_end) - max(begin, whole_begin)) / (end - begin)
+        whole2 = noise2[1].get(subject, cut2)
+        variance += max(0.0, cut2 + whole2 - 2.0 * whole2 * both)
+    return variance
 
 
 class Judgement:
@@ -237,7 +250,6 @@ class Judgement:
         for quantity in ("magnitude", "phase_rad"):
             change = abs(point[quantity] - whole[quantity])
             u_cut, u_whole = point[f"u_{quantity}"], whole[f"u_{quantity}"]
-            scale = whole["magnitude"] if quantity == "magnitude" else 1.0
             if untouched:
                 allowed = EQUAL_WITH_HUM_U * u_whole if hum else EQUAL
                 if change > allowed:
@@ -246,13 +258,14 @@ class Judgement:
                         f"({change / u_whole:.3g} u)"
                     )
                 continue
-            more = noise2_of(point, quantity) - noise2_of(whole, quantity)
-            allowed = 3.0 * scale * math.sqrt(max(0.0, more)) + 0.1 * u_cut
-            self.of_cut_steps.append(change / allowed)
-            if change > 5.0 / 3.0 * allowed:
+            scale = whole["magnitude"] if quantity == "magnitude" else 1.0
+            noise = scale**2 * variance_of_change(point, whole, quantity, self.run.epochs_ns)
+            more = math.sqrt(max(u_cut**2 - u_whole**2, noise))
+            self.of_cut_steps.append(change / (3.0 * more + 0.1 * u_cut))
+            if change > 5.0 * more + 0.1 * u_cut:
                 self.findings.append(
                     f"step {place + 1} is cut, and its {quantity} moved by {change:.3g} "
-                    f"({change / allowed:.3g} of what is allowed)"
+                    f"({change / u_cut:.3g} u; u was {u_whole:.4g}, is {u_cut:.4g})"
                 )
 
 
@@ -272,7 +285,7 @@ def judged(work):
             for begin_s, end_s in cuts.get(name, []):
                 kept &= (times_s < begin_s) | (times_s > end_s)
             np.save(folder / f"{name}.npy", rows[kept])
-        judgement = Judgement(run, cuts, analysed(program, folder))
+        judgement = Judgement(run, cuts, points_of(program, folder))
         judgement.judge()
         text = f"cut {draw} ({kind}; {cuts})"
         judgements.append(
