@@ -319,7 +319,9 @@ EvaluationOutput RunEvaluator::take_output() {
 
 Evaluation RunEvaluator::settlement() {
   std::vector<StepResult> concerned = std::exchange(results_, {});
-  std::erase_if(concerned, [&](const StepResult& one) { return !line_bounds_.concerns(one); });
+  if (!method_->settle(concerned)) {
+    std::erase_if(concerned, [&](const StepResult& one) { return !line_bounds_.concerns(one); });
+  }
   if (count_) {
     count_->begin("settling", "results", concerned.size());
   }

@@ -10,7 +10,8 @@
 //
 // A result beside a mains line, or with a harmonic folded onto it, is provisional and flagged until
 // the end of the run, when all steps tell how large that line may be (line_bounds.hpp). Where they
-// show something else at its frequency, its u grows then, although it was not provisional.
+// show something else at its frequency, its u grows then, although it was not provisional. So does
+// u where the method finds what only all steps together show (Method::settle).
 //
 // A step may be excited again after the planned ones, as announced: it is searched behind all that
 // was found, and its results take the place of those before. Where steps are announced at all, the

@@ -14,6 +14,10 @@ Expected<void> Method::check_time_scales(const RunRecords& /*records*/) const {
 
 void Method::add(const std::string& /*source*/, TriggeredRecord /*record*/) {}
 
+bool Method::settle(std::span<StepResult> /*results*/) const {
+  return false;
+}
+
 bool Method::is_complete(std::size_t /*step*/, const RunRecords& /*records*/) const {
   return true;
 }

@@ -12,6 +12,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -56,6 +57,10 @@ public:
   // Evaluations leave no trace here, so that a step can be evaluated while its end is only
   // expected, and once more if it comes otherwise.
   [[nodiscard]] virtual bool can_run_ahead() const { return true; }
+
+  // At the end of a run: what all steps together tell of the results of each. Returns whether it
+  // changed them.
+  [[nodiscard]] virtual bool settle(std::span<StepResult> results) const;
 
   // The source whose stamps tell of the sensor's sample clock; empty where there are none.
   [[nodiscard]] virtual std::optional<std::string> clock_source() const { return std::nullopt; }

@@ -19,16 +19,25 @@
 namespace dyncal::services {
 namespace {
 
+constexpr double any_phase = std::numbers::pi / std::numbers::sqrt3; // nothing is known of it
+
 SeriesStepOutput without_result(const SeriesStepInput& input, const std::string& problem) {
-  return {results_without_value(input.task.step(), input.task.recipe->dut(), problem), std::nullopt,
-          input.start_so_far};
+  return {results_without_value(input.task.step(), input.task.recipe->dut(), problem),
+          std::nullopt,
+          input.start_so_far,
+          {}};
 }
+
+struct JudgedStart {
+  analysis::StartLatency latency;
+  analysis::StartEvidence evidence;
+};
 
 // When each shot's series began, relative to their mean, from the phase of its H; without what
 // noise did to its trigger, be that corrected or not.
-analysis::StartLatency start_latency(const analysis::SeriesStampingResult& result,
-                                     const analysis::SeriesStampingInput& input,
-                                     analysis::StartKind start_so_far) {
+JudgedStart start_latency(const analysis::SeriesStampingResult& result,
+                          const analysis::SeriesStampingInput& input,
+                          analysis::StartKind start_so_far) {
   const double angular_hz = input.frequency.angular();
   const std::vector<analysis::Repetition>& shots = result.channels.front().shots;
   std::vector<std::complex<double>> directions;
@@ -45,8 +54,11 @@ analysis::StartLatency start_latency(const analysis::SeriesStampingResult& resul
   for (const std::complex<double>& direction : directions) {
     offsets_s.push_back(std::arg(direction * std::conj(mean)) / angular_hz);
   }
-  return analysis::judge_start_latency(offsets_s, std::sqrt(u2_s2), 1.0 / result.rate.real_rate_hz,
-                                       start_so_far);
+  const double u_s = std::sqrt(u2_s2);
+  const analysis::StartLatency start =
+      analysis::judge_start_latency(offsets_s, u_s, 1.0 / result.rate.real_rate_hz, start_so_far);
+  const double freedom = static_cast<double>(shots.size()) - 1.0;
+  return {start, {shots.size(), freedom * start.scatter_s * start.scatter_s, u_s}};
 }
 
 // The row of the shots, and what they have in common. A mean that hardly stands out of its noise
@@ -98,6 +110,7 @@ void add_corrections(const Recipe& recipe, analysis::SeriesStampingInput& input)
 struct EvaluatedSeries {
   analysis::SeriesStampingResult result;
   analysis::StartLatency start;
+  analysis::StartEvidence start_evidence;
 };
 
 // Evaluates, and decides how the series start.
@@ -107,19 +120,18 @@ analysis::Expected<EvaluatedSeries> evaluate_series(const analysis::SeriesStampi
   if (!evaluated) {
     return fail(evaluated.error());
   }
-  const analysis::StartLatency start = start_latency(*evaluated, input, start_so_far);
+  const JudgedStart start = start_latency(*evaluated, input, start_so_far);
   const double sample_s = 1.0 / evaluated->rate.real_rate_hz;
   if (const auto applied = analysis::apply_start(
-          start, sample_s, evaluated->sync_acs.frequency.angular(), *evaluated);
+          start.latency, sample_s, evaluated->sync_acs.frequency.angular(), *evaluated);
       !applied) {
     return fail(applied.error());
   }
-  return EvaluatedSeries{std::move(*evaluated), start};
+  return EvaluatedSeries{std::move(*evaluated), start.latency, start.evidence};
 }
 
 void add_value(const SeriesRoles& roles, const EvaluatedSeries& evaluated,
                const analysis::SeriesChannelResult& channel, StepResult& result) {
-  constexpr double any_phase = std::numbers::pi / std::numbers::sqrt3; // nothing is known of it
   double u_magnitude_rel = 0.0;
   double u_phase_rad = 0.0;
   result.valid = true;
@@ -275,7 +287,26 @@ SeriesStepOutput evaluate_series_step(const SeriesStepInput& step) {
   }
   add_flags(step, *evaluated, shots.size(), flags);
   return {results_of(step, acs, shots, *evaluated, flags), evaluated->result.rate,
-          evaluated->start.kind};
+          evaluated->start.kind, evaluated->start_evidence};
+}
+
+void add_shared_start(const analysis::SharedStartScatter& start, StepResult& result) {
+  constexpr double microseconds = 1e6;
+  const bool undecided =
+      std::any_of(result.flags.begin(), result.flags.end(),
+                  [](const Flag& flag) { return flag.kind == ResultFlag::start_undecided; });
+  if (undecided || !result.valid) {
+    return; // by itself: its row is there
+  }
+  const double w = 2.0 * std::numbers::pi * result.frequency_hz;
+  result.budget.push_back(
+      {.kind = analysis::ContributionKind::series_start, .u_phase_rad = w * start.u_latency_s});
+  result.u_phase_rad = std::min(any_phase, std::hypot(result.u_phase_rad, w * start.u_latency_s));
+  result.flags.push_back(flag_with_reason(
+      ResultFlag::start_undecided,
+      fmt::format("all steps together show that it scatters by {:.2g} us, which this one hides in "
+                  "its noise",
+                  microseconds * start.scatter_s)));
 }
 
 } // namespace dyncal::services

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "analysis/method/nominal_frequency.hpp"
+#include "analysis/method/shared_start_scatter.hpp"
 #include "analysis/method/start_latency.hpp"
 #include "services/evaluation/method/step_task.hpp"
 #include "services/evaluation/record/run_records.hpp"
@@ -38,8 +39,12 @@ struct SeriesStepOutput {
   std::vector<StepResult> results;
   std::optional<analysis::NominalFrequency> rate;             // of the sensor, by eq. (6)
   analysis::StartKind start = analysis::StartKind::undecided; // for the steps that follow
+  analysis::StartEvidence start_evidence{};                   // for all of them at the end
 };
 
 [[nodiscard]] SeriesStepOutput evaluate_series_step(const SeriesStepInput& step);
+
+// What all steps show of the start, where this one by itself took it for fixed: row and flag.
+void add_shared_start(const analysis::SharedStartScatter& start, StepResult& result);
 
 } // namespace dyncal::services

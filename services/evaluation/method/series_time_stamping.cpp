@@ -58,10 +58,29 @@ std::vector<StepResult> SeriesTimeStamping::evaluate(std::size_t step, const Run
     start_ = evaluated.start;
   }
   if (evaluated.rate) {
-    rates_.insert_or_assign(records.excitation().order().index(step), *evaluated.rate);
+    const std::size_t place = records.excitation().order().index(step);
+    rates_.insert_or_assign(place, *evaluated.rate);
+    starts_.insert_or_assign(place, evaluated.start_evidence);
   }
   shots_.forget_step(attempt);
   return std::move(evaluated.results);
+}
+
+bool SeriesTimeStamping::settle(std::span<StepResult> results) const {
+  if (start_ == analysis::StartKind::uniform) {
+    return false; // its scatter is known, and in u
+  }
+  std::vector<analysis::StartEvidence> steps;
+  for (const auto& [place, evidence] : starts_) {
+    steps.push_back(evidence);
+  }
+  const auto shared = analysis::shared_start_scatter(steps);
+  if (shared) {
+    for (StepResult& result : results) {
+      add_shared_start(*shared, result);
+    }
+  }
+  return shared.has_value();
 }
 
 std::vector<ClockReport> SeriesTimeStamping::clock_reports() const {

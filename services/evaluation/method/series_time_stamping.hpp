@@ -8,9 +8,11 @@
 
 #include <cstddef>
 #include <map>
+#include <span>
 #include <vector>
 
 #include "analysis/method/nominal_frequency.hpp"
+#include "analysis/method/shared_start_scatter.hpp"
 #include "analysis/method/start_latency.hpp"
 #include "services/evaluation/method/method.hpp"
 #include "services/evaluation/record/shot_record.hpp"
@@ -29,6 +31,8 @@ public:
   [[nodiscard]] bool is_complete(std::size_t step, const RunRecords& records) const override;
   [[nodiscard]] Evaluation evaluation(std::size_t step, const RunRecords& records) override;
   [[nodiscard]] bool can_run_ahead() const override { return false; } // rates, kind of start
+  // A start that scatters in all steps together is in u of each, with the flag that says so.
+  [[nodiscard]] bool settle(std::span<StepResult> results) const override;
   [[nodiscard]] std::vector<ClockReport> clock_reports() const override;
 
 private:
@@ -38,7 +42,8 @@ private:
   const SeriesRoles& roles_;
   ShotRecord shots_;
   analysis::StartKind start_ = analysis::StartKind::undecided; // as far as the steps so far tell
-  // Of the sensor, by step of the recipe.
+  // By step of the recipe.
+  std::map<std::size_t, analysis::StartEvidence> starts_;
   std::map<std::size_t, analysis::NominalFrequency> rates_;
 };
 

@@ -181,6 +181,7 @@ CLASSES = {
     "series, a sample lost in each": series(LostSample, part=1.0),
     # Its start.
     "series, start waits 0.1 us": series(LateStart, mean_s=1e-7),
+    "series, start waits 1 us": series(LateStart, mean_s=1e-6),
     "series, start waits 50 us": series(LateStart, mean_s=50e-6),
     "series, start waits 500 us": series(LateStart, mean_s=500e-6),
     "series, start within 1/5000 of a sample": series(LateStart, part_of_sample=0.0002),
