@@ -111,7 +111,12 @@ bool HistoryAnswers::answer(const httplib::Request& request, httplib::Response& 
             {"sensors", Json::array()},
             {"runs", Json::array()},
             {"en", Json::array()}};
-  const std::lock_guard lock(mutex_);
+  const std::unique_lock lock(mutex_, longest_wait);
+  if (!lock) {
+    json["problem"] = "the store is slow and is still answering others; ask again";
+    response.set_content(json_text(json), "application/json");
+    return true;
+  }
   auto store = Store::open_existing(place_);
   if (place_.empty() || !store) {
     json["problem"] = place_.empty() ? "there is no store (--store)" : store.error().message;
