@@ -12,6 +12,7 @@ namespace dyncal::services {
 namespace {
 
 constexpr std::chrono::seconds write_limit{10}; // longer than the lease of a reader that was killed
+constexpr std::chrono::seconds settled_limit{10};
 
 } // namespace
 
@@ -62,6 +63,11 @@ void RunPublisher::publish(const Recipe& recipe, const EvaluationOutput& output)
   }
   for (const StepResult& result : output.settled) { // again: not counted
     write(writers_.result, to_message(recipe, result));
+  }
+  // Topics have no order among each other, and nothing tells a reader of FINISHED that a result
+  // comes once more: so it is there before.
+  if (!output.settled.empty() && !writers_.result.wait_for_acknowledgments(settled_limit)) {
+    spdlog::warn("bench {}, run {}: not everybody has acknowledged the last results", bench_, run_);
   }
   for (const TransferFunction& function : output.transfer_functions) {
     write(writers_.transfer_function, to_message(recipe, function));

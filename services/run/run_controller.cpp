@@ -301,7 +301,7 @@ std::optional<Expected<void>> RunController::answer_of_analysis(Instant since) c
 }
 
 // Topics have no order among each other: FINISHED may come before results that were written before
-// it.
+// it; but not before those that come once more (run_publisher.cpp).
 bool RunController::everything_has_come() const {
   const auto& analysis = watch_->analysis();
   const auto& results = outcome_.results;

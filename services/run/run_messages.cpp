@@ -209,6 +209,7 @@ void RunMessages::take_sources(RunOutcome& outcome) {
 
 std::size_t RunMessages::take(RunOutcome& outcome) {
   take_sources(outcome);
+  take_status(outcome); // first: with FINISHED all results are there
   recipe_sha256_ = outcome.recipe_sha256;
   const std::size_t results = take_newest(
       published_.results, outcome.results, outcome.recipe, [](const auto& a, const auto& b) {
@@ -221,7 +222,6 @@ std::size_t RunMessages::take(RunOutcome& outcome) {
   const std::size_t reports =
       take_newest(published_.clock_reports, outcome.clock_reports, outcome.recipe,
                   [](const auto& a, const auto& b) { return a.source == b.source; });
-  take_status(outcome);
   return results + functions + reports;
 }
 
