@@ -50,7 +50,7 @@ void ExciterWatch::step_to(State state, Instant now) {
     is_from_record_ = false;
     break;
   case State::silent:
-    must_be_off_ = !is_from_record_;
+    must_be_off_ = !is_from_record_ || was_seen_on_;
     next_attempt_ = now;
     next_question_ = std::min(next_question_, now);
     break;
@@ -140,7 +140,9 @@ void ExciterWatch::answered(const Expected<OutputReading>& answer, Instant now) 
   failures_ = 0;
   may_be_on_.clear();
   if (state_ == State::driven) {
-    if (!is_from_record_ && answer->settings && answer->settings->frequency_hz > 0.0) {
+    if (is_from_record_) {
+      was_seen_on_ = answer->is_on.value_or(false) && is_of_run(*answer);
+    } else if (answer->settings && answer->settings->frequency_hz > 0.0) {
       note(*answer->settings);
     }
     return;

@@ -94,6 +94,7 @@ private:
   State state_ = State::idle;
   Instant heard_{};
   bool is_from_record_ = false; // not heard since the start
+  bool was_seen_on_ = false;    // since then, with what the record names
   bool must_be_off_ = false;    // and is not known to be
   bool has_switched_off_ = false;
   bool answers_in_run_ = true; // the generator, another connection than the conductor's

@@ -48,6 +48,11 @@ void RunWatch::set_state(wire::MeasurementState state, const std::string& messag
 }
 
 void RunWatch::look() {
+  look_without_hold();
+  messages_.repeat_announcement();
+}
+
+void RunWatch::look_without_hold() {
   if (messages_.take(outcome_) > 0 && new_results_) {
     new_results_(outcome_);
   }
@@ -61,7 +66,6 @@ void RunWatch::look() {
     }
   }
   commands_.take();
-  messages_.repeat_announcement();
   if (clock_.now() - measurement_published_ > alive_interval) {
     set_state(measurement_.state(), measurement_.message());
   }

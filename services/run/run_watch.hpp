@@ -66,7 +66,10 @@ public:
 
   // Takes what has come, and repeats the Measurement when it is due.
   void look();
-  // The same after a short wait for messages; shows `phase`.
+  // The same while the generator lets wait for an answer: nobody has hold of it then, and its guard
+  // must not hear that somebody does.
+  void look_without_hold();
+  // As look(), after a short wait for messages; shows `phase`.
   void follow(const std::string& phase);
 
   [[nodiscard]] const std::optional<wire::ServiceStatus>& analysis() const {

@@ -1,0 +1,70 @@
+"""A generator with a fault, in front of the virtual bench's: passes SCPI lines on and back.
+
+    sound           as it is
+    ignores-off     takes :OUTPut1 OFF without an error, and stays as it is
+    late            answers 0.6 s late
+    mute            takes everything and answers nothing
+
+begin() says from when on.
+"""
+
+import socket
+import threading
+import time
+
+FAULTS = ("sound", "ignores-off", "late", "mute")
+LATE_S = 0.6
+
+
+class GeneratorProxy:
+    """`call` runs a function where the instruments are, `enter` puts a thread there."""
+
+    def __init__(self, place, call, enter):
+        self.place = place
+        self.enter = enter
+        self.fault = "sound"
+        self.listener = call(lambda: socket.create_server((place[0], 0)))
+        self.port = self.listener.getsockname()[1]
+        self.start(self.accept)
+
+    def start(self, function, *arguments):
+        threading.Thread(target=function, args=arguments, daemon=True).start()
+
+    def begin(self, fault):
+        self.fault = fault
+
+    def accept(self):
+        self.enter()
+        while True:
+            try:
+                client, _ = self.listener.accept()
+                instrument = socket.create_connection(self.place, 10.0)
+            except OSError:
+                return
+            instrument.settimeout(None)
+            self.start(self.forward, client, instrument)
+            self.start(self.answer, instrument, client)
+
+    def forward(self, client, instrument):
+        try:
+            for line in client.makefile("rb"):
+                if self.fault == "ignores-off" and line.strip().upper().endswith(b" OFF"):
+                    line = b"*CLS\n"
+                instrument.sendall(line)
+        except OSError:
+            pass
+        instrument.close()
+
+    def answer(self, instrument, client):
+        try:
+            for line in instrument.makefile("rb"):
+                if self.fault == "late":
+                    time.sleep(LATE_S)  # what this fault is
+                if self.fault != "mute":
+                    client.sendall(line)
+        except OSError:
+            pass
+        client.close()
+
+    def close(self):
+        self.listener.close()
