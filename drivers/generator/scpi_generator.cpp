@@ -1,5 +1,6 @@
 #include "drivers/generator/scpi_generator.hpp"
 
+#include <array>
 #include <charconv>
 #include <utility>
 
@@ -14,6 +15,15 @@ using std::chrono::milliseconds;
 constexpr milliseconds answer_limit{8000};
 constexpr milliseconds connect_limit{4000}; // and for each answer meanwhile; it is tried again
 constexpr milliseconds delivery_limit{2000};
+constexpr double question_interval_s = 1.0;
+
+// What another program may have left: burst, sweep, modulations, offset, phase and polarity, in the
+// words of the DG4000, the DG1000Z and the 33500.
+constexpr std::array resets{
+    ":SOURce1:BURSt:STATe OFF",  ":SOURce1:SWEep:STATe OFF", ":SOURce1:MOD:STATe OFF",
+    ":SOURce1:AM:STATe OFF",     ":SOURce1:FM:STATe OFF",    ":SOURce1:PM:STATe OFF",
+    ":SOURce1:VOLTage:OFFSet 0", ":SOURce1:PHASe 0",         ":OUTPut1:POLarity NORMal",
+};
 
 } // namespace
 
@@ -61,6 +71,11 @@ Expected<void> ScpiGenerator::reconnect() {
       return done;
     }
   }
+  for (const char* reset : resets) {
+    if (auto done = connection->command(reset); !done && connection->lost()) {
+      return done; // what is refused is nothing that this instrument has
+    }
+  }
   connection->set_answer_limit(answer_limit);
   connection_.emplace(std::move(*connection));
   return confirm_off();
@@ -77,6 +92,19 @@ Expected<void> ScpiGenerator::confirm_off() {
   }
   if (on->value_or(false)) {
     return fail(still_on(address_));
+  }
+  return {};
+}
+
+Expected<void> ScpiGenerator::confirm_on() {
+  const auto on = output_is_on();
+  if (!on) {
+    return fail(on.error());
+  }
+  if (!on->value_or(true)) {
+    return fail(ErrorCode::refused, "generator " + address_ +
+                                        " answers that its output is off, which was switched on: "
+                                        "by its guard, or at its front panel?");
   }
   return {};
 }
@@ -113,6 +141,7 @@ Expected<void> ScpiGenerator::set_amplitude_v(double amplitude_v) {
 }
 
 Expected<void> ScpiGenerator::set_output(bool on) {
+  is_on_ = on;
   if (on) {
     return command(":OUTPut1 ON");
   }
@@ -157,7 +186,12 @@ Expected<double> ScpiGenerator::clock_now_s() {
 
 Expected<double> ScpiGenerator::wait_until_s(double time_s, std::stop_token stop) {
   if (!has_bench_clock_) {
-    return host_clock_.wait_until_s(time_s, stop);
+    const double now_s = host_clock_.wait_until_s(time_s, stop);
+    if (is_on_ && now_s - asked_s_ >= question_interval_s) {
+      asked_s_ = now_s;
+      return confirm_on().map([&] { return host_clock_.now_s(); });
+    }
+    return now_s;
   }
   for (;;) {
     // The virtual bench answers :BENCh:WAIT? when the time has come, at the latest after half a

@@ -7,9 +7,15 @@
 // are lost (4 s while connecting); after that the connection is given up, and the next call
 // connects anew, which switches the output off.
 //
+// What another program may have left (burst, sweep, modulation, offset, phase, polarity) is
+// switched off while connecting, with the output off; a reset that the instrument refuses is passed
+// over.
+//
 // No command arrives later than 2 s after it was sent: an ON that the network held would otherwise
 // switch on after the run, with nobody there. OFF is believed when :OUTPut1? confirms it: a front
 // panel that is locked, another dialect or a relay leave the output on without an error (refused).
+// An output that was switched on is asked every second of a wait whether it still is: an instrument
+// that is mute or was switched off is noticed in the step (timeout, refused).
 //
 // The virtual bench also understands :BENCh:TIME? and :BENCh:WAIT?; with every other instrument,
 // bench time is the host's monotonic clock. One thread.
@@ -54,6 +60,7 @@ private:
   bool go_on_waiting();
   Expected<void> reconnect();
   Expected<void> confirm_off();
+  Expected<void> confirm_on();
   Expected<void> command(const std::string& text);
   Expected<std::string> query(const std::string& text);
   Expected<double> query_bench_time(const std::string& text);
@@ -65,6 +72,8 @@ private:
   bool asks_time_ = false; // now
   std::string identity_;
   bool has_bench_clock_ = false;
+  bool is_on_ = false;   // as set last
+  double asked_s_ = 0.0; // host clock: whether it still is
   HostClock host_clock_;
 };
 

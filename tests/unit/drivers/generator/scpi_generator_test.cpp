@@ -84,13 +84,20 @@ TEST(ScpiGenerator, SetsTheInstrumentUpAndSwitchesItsOutputOffAtTheEnd) {
   }
   EXPECT_THAT(instrument.commands(),
               ElementsAre(":OUTPut1 OFF", ":OUTPut1:LOAD INFinity", ":SOURce1:FUNCtion SINusoid",
-                          ":SOURce1:VOLTage:UNIT VPP", ":SOURce1:FREQuency 199.87",
+                          ":SOURce1:VOLTage:UNIT VPP", ":SOURce1:BURSt:STATe OFF",
+                          ":SOURce1:SWEep:STATe OFF", ":SOURce1:MOD:STATe OFF",
+                          ":SOURce1:AM:STATe OFF", ":SOURce1:FM:STATe OFF", ":SOURce1:PM:STATe OFF",
+                          ":SOURce1:VOLTage:OFFSet 0", ":SOURce1:PHASe 0",
+                          ":OUTPut1:POLarity NORMal", ":SOURce1:FREQuency 199.87",
                           ":SOURce1:VOLTage 0.5", ":OUTPut1 ON", ":OUTPut1 OFF"));
 }
 
 TEST(ScpiGenerator, PassesTheInstrumentsErrorOnWordForWord) {
-  FakeGenerator instrument({"0,\"No error\"", "+0,\"No error\"", "0,\"No error\"", "0,\"No error\"",
-                            "-222,\"Data out of range\""});
+  std::vector<std::string> errors(13, "0,\"No error\"");
+  errors[1] = "+0,\"No error\"";
+  errors[5] = "-113,\"Undefined header\""; // a reset of a state that it does not have
+  errors.emplace_back("-222,\"Data out of range\"");
+  FakeGenerator instrument(errors);
   auto generator = ScpiGenerator::connect(instrument.address());
   ASSERT_TRUE(generator) << generator.error().message;
   const auto refused = (*generator)->set_frequency("1e12");
@@ -110,6 +117,22 @@ TEST(ScpiGenerator, TakesTheHostsClockWhereTheInstrumentHasNone) {
   const auto end_s = (*generator)->wait_until_s(*begin_s + 0.05, {});
   ASSERT_TRUE(end_s);
   EXPECT_GE(*end_s, *begin_s + 0.05);
+}
+
+TEST(ScpiGenerator, NoticesInAStepThatItsOutputWasSwitchedOff) {
+  FakeGenerator instrument;
+  auto generator = ScpiGenerator::connect(instrument.address());
+  ASSERT_TRUE(generator) << generator.error().message;
+  ASSERT_TRUE((*generator)->set_output(true));
+  const auto wait = [&] {
+    return (*generator)->wait_until_s(1.05 + *(*generator)->clock_now_s(), {});
+  };
+  ASSERT_TRUE(wait());
+  instrument.always_answer_output("OFF");
+  const auto held = wait();
+  ASSERT_FALSE(held);
+  EXPECT_EQ(held.error().code, ErrorCode::refused);
+  EXPECT_THAT(held.error().message, HasSubstr("answers that its output is off"));
 }
 
 TEST(ScpiGenerator, TakesTheClockOfAVirtualBench) {
