@@ -60,7 +60,8 @@ void set_transport(const std::string& address, const std::shared_ptr<TransportSt
   auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
   udp->sendBufferSize = wanted_receive_buffer_bytes;
   udp->receiveBufferSize = wanted_receive_buffer_bytes;
-  // It also caps what can be received, and Cyclone DDS repairs with packets of up to 1456 bytes.
+  // Of what is sent. A screened transport receives longer ones, too; without the screen it also
+  // caps what can be received, and Cyclone DDS repairs with packets of up to 1456 bytes.
   udp->maxMessageSize = max_udp_payload_bytes;
   udp->maxInitialPeersRange = participants_per_host;
   // With the loopback interface in this list Fast DDS sends nothing at all; the locators keep to

@@ -63,6 +63,9 @@ std::size_t hash_of(const rtps::SenderResource* below, const rtps::Locator_t& lo
 // Those of discovery come alone or with a few of their kind. One that is missed costs a repeat.
 constexpr std::uint32_t max_acknack_bytes = 256;
 
+// Of UDP over IPv4.
+constexpr std::uint32_t max_datagram_bytes = 65'507;
+
 class ScreenedTransport : public vendor::ChainingTransport {
 public:
   ScreenedTransport(const vendor::ChainingTransportDescriptor& descriptor,
@@ -73,6 +76,10 @@ public:
     return low_level_transport_->get_configuration();
   }
   void shutdown() override { low_level_transport_->shutdown(); }
+  // What others send may be longer than what we send, which the transport below limits:
+  // participants of Cyclone DDS without our profile announce themselves in longer datagrams, and
+  // one that is cut off at its end is not as it should be.
+  [[nodiscard]] std::uint32_t max_recv_buffer_size() const override { return max_datagram_bytes; }
 
   bool send(rtps::SenderResource* below, const rtps::octet* bytes, std::uint32_t count,
             vendor::LocatorsIterator* destinations_begin,
