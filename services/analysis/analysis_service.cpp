@@ -13,6 +13,10 @@ namespace {
 constexpr const char* all_benches = "*";
 constexpr std::chrono::milliseconds max_wait{100};
 
+std::string in_brackets(const std::string& service) {
+  return service.empty() ? "" : " (" + service + ")";
+}
+
 } // namespace
 
 AnalysisService::AnalysisService(bus::Participant participant, AnalysisIdentity identity,
@@ -136,18 +140,18 @@ void AnalysisService::take_sources(SourceReaders& readers, const Wanted& wanted)
     return wanted(bench, source) ? benches_.heard(bench, source, now) : nullptr;
   };
   readers.description.take([&](const wire::SourceDescription& description) {
-    KnownSource* source = known(description);
-    if (source == nullptr) {
-      return;
+    if (KnownSource* source = known(description)) {
+      source->take(description);
     }
-    if (source->description && source->description->session() != description.session()) {
-      source->before = std::move(source->description);
-    }
-    source->description = description;
   });
   readers.status.take([&](const wire::SourceStatus& status) {
     if (KnownSource* source = known(status)) {
-      source->status = status;
+      if (const auto left = source->take(status)) {
+        spdlog::warn("bench {}, source {}: the service{} that described itself as this source has "
+                     "gone; the one{} before it goes on, by its own description",
+                     status.bench().to_string(), status.source().to_string(),
+                     in_brackets(service_of(left)), in_brackets(service_of(source->description)));
+      }
       if (comes_first) {
         watch_for_twins(*source);
       }
@@ -161,7 +165,7 @@ void AnalysisService::watch_for_twins(KnownSource& source) {
   source.twins.add(source.status->session());
   if (!known && source.twins.twins()) {
     spdlog::warn(two_send_as(source.status->bench().to_string(),
-                             source.status->source().to_string(), service_of(source.before),
+                             source.status->source().to_string(), service_of(source.before()),
                              service_of(source.description)));
   }
 }

@@ -43,7 +43,7 @@ Expected<void> SourceStreams::take_descriptions(const KnownSources& known, Insta
     const auto source = known.find(name);
     if (source != known.end()) {
       stream.service = service_of(source->second.description);
-      stream.service_before = service_of(source->second.before);
+      stream.service_before = service_of(source->second.before());
     }
     if (source == known.end() || !source->second.description ||
         *source->second.description ==

@@ -53,7 +53,7 @@ protected:
     sources_["acs"].description = first;
     describe(dau_);
     work();
-    sources_["acs"].before = first;
+    sources_["acs"].earlier = {first};
     sources_["acs"].description = second;
     work();
     for (int turn = 0; turn < 3; ++turn) {
