@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 #include <spdlog/spdlog.h>
 
+#include "services/contract/run_identity.hpp"
 #include "services/evaluation/recipe/recipe_message.hpp"
 
 namespace dyncal::services {
@@ -88,7 +89,11 @@ void RunSession::prepare(const wire::Measurement& measurement, SourceStreams::Be
 }
 
 void RunSession::update(const wire::Measurement& measurement) {
+  if (!is_of_this_run(measurement)) {
+    return;
+  }
   last_heard_of_run_ = clock_.now();
+  conductor_ = measurement.conductor();
   if (measurement.state() == measurement_.state()) {
     return;
   }
@@ -104,6 +109,24 @@ void RunSession::update(const wire::Measurement& measurement) {
     evaluator_->finish_now(); // a source is lost: nothing more will come, or nobody waits for it
   }
   last_progress_ = clock_.now();
+}
+
+// A name of an older program may come again. Who resumes a run begins with RUNNING, and has its
+// recipe.
+bool RunSession::is_of_this_run(const wire::Measurement& measurement) {
+  const bool other_conductor =
+      measurement.state() == wire::MEASUREMENT_PLANNED && measurement.conductor() != conductor_;
+  const bool other_recipe = measurement.recipe_sha256() != measurement_.recipe_sha256();
+  if (!other_conductor && !other_recipe) {
+    return true;
+  }
+  if (!std::exchange(other_run_said_, true)) {
+    spdlog::warn("bench {}, run {}: {} announces another run of this name{}; it is not taken for "
+                 "the one of {}: give it another name",
+                 bench_, run_, measurement.conductor(), other_recipe ? ", of another recipe" : "",
+                 conductor_);
+  }
+  return false;
 }
 
 void RunSession::announce(const wire::Excitation& excitation) {
@@ -224,13 +247,13 @@ void RunSession::report_work(Instant now) {
 void RunSession::wait_for_bench(RunSession& before, Instant now) {
   arms_since_ = now;
   if (status_.message.empty()) {
-    status_.message = fmt::format("waiting for run '{}' of this bench to end", before.run_);
+    status_.message = fmt::format("waiting for run '{}' of this bench to end",
+                                  RunIdentity::parse(before.run_).name);
     publisher_.publish(status_);
   }
   if (!before.excitation_over() && before.last_heard_of_run_ > created_) {
-    refuse(fmt::format("bench '{}' is in use by run '{}'{}; wait for its end, or end it there",
-                       bench_, before.run_,
-                       before.conductor_.empty() ? "" : " of " + before.conductor_));
+    refuse(fmt::format("bench '{}' is in use by {}; wait for its end, or end it there", bench_,
+                       called_of(before.run_, before.conductor_)));
   } else if (now - created_ > bench_limit) {
     before.give_way_to(run_);
   }
@@ -241,7 +264,7 @@ void RunSession::give_way_to(const std::string& next) {
   if (died && status_.health == wire::HEALTH_OK) {
     report(wire::HEALTH_FAILED,
            fmt::format("nothing was heard of this run for {} s; its bench was given to run '{}'",
-                       bench_limit.count(), next));
+                       bench_limit.count(), RunIdentity::parse(next).name));
   }
   if (died) {
     evaluator_->stop_checks(); // nobody waits for them, and the bench is wanted

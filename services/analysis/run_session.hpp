@@ -101,6 +101,7 @@ private:
   RunSession(const AnalysisContext& context, const wire::Measurement& measurement,
              std::shared_ptr<SourceRequests> requests, RunPublisher publisher);
   void prepare(const wire::Measurement& measurement, SourceStreams::Begin begin);
+  [[nodiscard]] bool is_of_this_run(const wire::Measurement& measurement);
   void note_own_absence(Instant now);
   void take_samples(const KnownSources& sources, Instant now);
   void catch_up(Instant now);
@@ -146,7 +147,8 @@ private:
   // What was announced while samples were still to be caught up with.
   std::deque<StepAnnouncement> announced_;
   std::optional<bool> excitation_ended_; // true: aborted
-  bool taking_over_ = false;             // what was measured before is not evaluated yet
+  bool other_run_said_ = false;
+  bool taking_over_ = false; // what was measured before is not evaluated yet
   Instant created_;
   Instant arms_since_; // since when it has the bench to itself
   Instant starting_;   // when a source had yet to describe itself, the last time

@@ -5,8 +5,7 @@
 #include <fmt/core.h>
 
 #include "services/bench/named_files.hpp"
-#include "services/command/run_command.hpp"
-#include "services/contract/time_name.hpp"
+#include "services/contract/run_identity.hpp"
 #include "services/store/store.hpp"
 
 namespace dyncal::services {
@@ -20,9 +19,7 @@ Expected<std::unique_ptr<RunFolder>> folder_of(const std::filesystem::path& root
       return begun;
     }
   }
-  const std::string now = run_from_time();
-  const std::string name = is_time_name(setup.run) ? setup.run : run_folder_name(setup.run, now);
-  return RunFolder::create(root, bench, name);
+  return RunFolder::create(root, bench, safe_name(setup.run));
 }
 
 Expected<std::unique_ptr<recording::Recorder>> start_recorder(const RunFolder& folder,

@@ -9,11 +9,14 @@
 #include "services/bench/adc_file.hpp"
 #include "services/bench_check/checks.hpp"
 #include "services/command/progress_line.hpp"
+#include "services/contract/run_identity.hpp"
 #include "services/contract/time_name.hpp"
+#include "services/contract/topics.hpp"
 #include "services/program/bench_program.hpp"
 #include "services/report/show_outcome.hpp"
 #include "services/run/bench_queue.hpp"
 #include "services/run/run_plan.hpp"
+#include "services/run_folder/run_folder.hpp"
 
 namespace dyncal::services {
 
@@ -29,14 +32,6 @@ Expected<std::vector<analysis::AdcCalibrationPoint>> read_adc_calibration(const 
 }
 
 namespace {
-
-// A run that was refused is known by its name: the next attempt needs another.
-std::string name_of_run(const RunCommand& command, int turn) {
-  if (command.run.empty()) {
-    return run_from_time();
-  }
-  return turn == 1 ? command.run : fmt::format("{}-{}", command.run, turn);
-}
 
 // All that the attempts at a run have in common.
 struct Conduct {
@@ -60,11 +55,12 @@ struct ConductedRun {
   std::unique_ptr<KeptRun> kept;
 };
 
-Expected<ConductedRun> conduct(const Conduct& run, const std::string& name) {
+// `text`: of its RunIdentity.
+Expected<ConductedRun> conduct(const Conduct& run, const std::string& text) {
   const bool resumes = !run.command.resume.empty();
   auto kept = KeptRun::open(
       run.command.keep, run.bench,
-      {.run = name,
+      {.run = text,
        .is_resumed = resumes,
        .adc_file = adc_file_of(run.bench),
        .dds = run.network.dds,
@@ -78,7 +74,7 @@ Expected<ConductedRun> conduct(const Conduct& run, const std::string& name) {
     (*kept)->note(progress);
     run.show(progress);
   };
-  RunController controller(run.participant, run.bench, name, show);
+  RunController controller(run.participant, run.bench, text, show);
   controller.set_keeping((*kept)->keeping());
   auto outcome =
       resumes ? controller.resume(run.adc, run.stop) : controller.conduct(run.adc, run.stop);
@@ -88,6 +84,12 @@ Expected<ConductedRun> conduct(const Conduct& run, const std::string& name) {
   }
   outcome->adc_file = adc_file_of(run.bench);
   return ConductedRun{std::move(*outcome), std::move(*kept)};
+}
+
+// Every attempt is a run of its own.
+Expected<ConductedRun> conduct_new(const Conduct& run) {
+  const auto identity = RunIdentity::begin(run.command.run, utc_now_ns());
+  return identity ? conduct(run, identity->text()) : fail(identity.error());
 }
 
 // Waits for the end of other runs; again when one of several that waited was quicker.
@@ -102,16 +104,36 @@ Expected<ConductedRun> conduct_in_turn(const Conduct& run) {
       show_notice(run.show, phase);
     }
   };
-  for (int turn = 1;; ++turn) {
+  while (true) {
     if (const auto free = queue->wait_until_free(show_phase, run.stop); !free) {
       return fail(free.error());
     }
-    auto conducted = conduct(run, name_of_run(run.command, turn));
+    auto conducted = conduct_new(run);
     const bool refused = !conducted && conducted.error().code == ErrorCode::no_source;
     if (!refused || run.stop.stop_requested() || !queue->taken_by()) {
       return conducted;
     }
   }
+}
+
+// The newest run of that name: by its folder, else by what analyses hold. As typed: there is none.
+std::string newest_run_called(const Conduct& run, bus::Reader<wire::ServiceStatus>& statuses) {
+  const std::string& typed = run.command.resume;
+  if (run.command.keep.folder) {
+    const auto folder = find_run_folder(*run.command.keep.folder, run.bench.bench, typed);
+    const RunIdentity kept = RunIdentity::parse(folder.filename().string());
+    if (!kept.conductor.empty()) {
+      return kept.text();
+    }
+  }
+  RunIdentity newest{typed, "", ""};
+  statuses.take([&](const wire::ServiceStatus& status) {
+    const RunIdentity held = RunIdentity::parse(status.run().to_string());
+    if (held.is_called(typed) && held.start >= newest.start) {
+      newest = held;
+    }
+  });
+  return newest.text();
 }
 
 // Nobody else may conduct it: a run that lives is heard within a few seconds.
@@ -120,12 +142,17 @@ Expected<ConductedRun> resume_run(const Conduct& run) {
   if (!queue) {
     return fail(queue.error());
   }
+  auto statuses = run.participant.reader(bus::topics::service_status, run.bench.bench,
+                                         std::make_shared<bus::WakeUp>());
+  if (!statuses) {
+    return fail(statuses.error());
+  }
   if (const auto other = queue->listen(run.stop)) {
     return fail(ErrorCode::no_source,
                 fmt::format("bench '{}' is in use by {}; wait for its end, or end it there",
                             run.bench.bench, *other));
   }
-  return conduct(run, run.command.resume);
+  return conduct(run, newest_run_called(run, *statuses));
 }
 
 Expected<ConductedRun> conduct_as_asked(const Conduct& run) {
@@ -135,7 +162,7 @@ Expected<ConductedRun> conduct_as_asked(const Conduct& run) {
   if (run.command.wait) {
     return conduct_in_turn(run);
   }
-  return conduct(run, name_of_run(run.command, 1));
+  return conduct_new(run);
 }
 
 // The folder first, which is what is left if the rest fails; the database last, which may let wait.
@@ -172,6 +199,9 @@ Expected<void> check_bench(const BenchFile& bench) {
 } // namespace
 
 Expected<RunOutcome> conduct_run(const RunCommand& command, const std::stop_token& stop) {
+  if (const auto named = RunIdentity::begin(command.run, utc_now_ns()); !named) {
+    return fail(named.error());
+  }
   const auto bench = read_bench_file(command.bench_file);
   if (!bench) {
     return fail(bench.error());

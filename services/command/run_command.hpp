@@ -18,11 +18,11 @@ namespace dyncal::services {
 
 struct RunCommand {
   std::filesystem::path bench_file;
-  std::string run; // empty: made from the time
+  std::string run; // its name; empty: the time
   std::optional<std::filesystem::path> json;
   FigureFiles figures; // folder
   bool wait = false;   // for the end of another run of the bench
-  std::string resume;  // the run to go on with; empty: a new one
+  std::string resume;  // the run to go on with, the newest of that name; empty: a new one
   KeepOptions keep;
   NetworkOptions network;
 };

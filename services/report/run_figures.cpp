@@ -5,6 +5,7 @@
 
 #include <fmt/core.h>
 
+#include "services/contract/run_identity.hpp"
 #include "services/report/figures/deviation.hpp"
 #include "services/report/figures/sample_clock.hpp"
 #include "services/report/result_table.hpp"
@@ -19,7 +20,7 @@ std::string file_name(const std::string& what, std::string of) {
 }
 
 std::string run_line(const RunOutcome& outcome) {
-  return fmt::format("bench {}, run {}", outcome.bench, outcome.run);
+  return fmt::format("bench {}, run {}", outcome.bench, RunIdentity::parse(outcome.run).name);
 }
 
 } // namespace

@@ -10,6 +10,7 @@
 
 #include <fmt/core.h>
 
+#include "services/contract/run_identity.hpp"
 #include "services/contract/unit.hpp"
 #include "services/report/expanded_uncertainty.hpp"
 #include "services/report/flag_legend.hpp"
@@ -50,7 +51,8 @@ figures::TransferFunctionData common_data(const RunOutcome& outcome,
                                           const TransferFunction& function) {
   figures::TransferFunctionData data;
   data.title = function.channel;
-  data.subtitle = fmt::format("bench {}, run {}", outcome.bench, outcome.run);
+  data.subtitle =
+      fmt::format("bench {}, run {}", outcome.bench, RunIdentity::parse(outcome.run).name);
   data.unit = short_form(function.unit);
   for (const StepResult* result : valid_results(outcome, function.channel)) {
     data.repetitions.push_back(repetition_of(*result));

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "services/contract/run_identity.hpp"
 #include "services/contract/topics.hpp"
 
 namespace dyncal::services {
@@ -39,7 +40,7 @@ std::optional<std::string> BenchQueue::taken_by() {
     return std::nullopt;
   }
   const auto& [name, run] = *runs_.begin();
-  return fmt::format("run '{}'{}", name, run.conductor.empty() ? "" : " of " + run.conductor);
+  return called_of(name, run.conductor);
 }
 
 std::optional<std::string> BenchQueue::listen(const std::stop_token& stop) {

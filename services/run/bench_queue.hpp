@@ -31,7 +31,8 @@ public:
   [[nodiscard]] static Expected<BenchQueue> open(bus::Participant& participant, bus::Clock& clock,
                                                  const std::string& bench);
 
-  // "run 'R1' of lab-pc:1234"; nothing when no run is known to have the bench.
+  // "run 'R1' of lab-pc:1234, since 2026-11-22 10:15:30 UTC"; nothing when no run is known to have
+  // the bench.
   [[nodiscard]] std::optional<std::string> taken_by();
 
   // The same after `listening_time`, or as soon as one is heard.

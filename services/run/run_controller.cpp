@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "services/bus/host_network.hpp"
+#include "services/contract/run_identity.hpp"
 #include "services/evaluation/recipe/recipe_message.hpp"
 #include "services/evaluation/result/adc_file_message.hpp"
 #include "services/run/run_plan.hpp"
@@ -134,6 +135,10 @@ Expected<RunOutcome> RunController::collect_of_ended_run(const std::stop_token& 
   return std::move(outcome_);
 }
 
+std::string RunController::name() const {
+  return RunIdentity::parse(run_).name;
+}
+
 bool RunController::has_ended_at_analysis() const {
   return watch_->analysis()->arm() == wire::ARM_FINISHED;
 }
@@ -148,13 +153,13 @@ std::string RunController::lack_of_ended_run() const {
              ? ""
              : fmt::format("run '{}' had ended at the analysis service {} before {} of "
                            "its {} steps; begin a new run for those",
-                           run_, watch_->analysis()->service().c_str(), lacking, steps.size());
+                           name(), watch_->analysis()->service().c_str(), lacking, steps.size());
 }
 
 Error RunController::other_bench_file() const {
   return {ErrorCode::bad_file, fmt::format("run '{}' was made with another bench file; resume it "
                                            "with that one, or begin a new run",
-                                           run_)};
+                                           name())};
 }
 
 wire::MeasurementState RunController::final_state(bool excited) const {
@@ -258,19 +263,19 @@ Expected<void> RunController::wait_until_known(const std::stop_token& stop) {
     if (analysis && has_ended_at_analysis()) {
       watch_->notice(fmt::format("run '{}' has ended at the analysis service {}; its results are "
                                  "collected",
-                                 run_, analysis->service().c_str()));
+                                 name(), analysis->service().c_str()));
       return {};
     }
     if (analysis && watch_->outlook().kind == Kind::well &&
         outcome_.results.size() >= analysis->results_published()) {
-      watch_->notice(fmt::format("run '{}' is resumed, with {} results so far", run_,
+      watch_->notice(fmt::format("run '{}' is resumed, with {} results so far", name(),
                                  outcome_.results.size()));
       return {};
     }
     if (clock_.now() - attended > (analysis ? analysis_limit : armed_limit)) {
       return fail(ErrorCode::no_analysis,
                   fmt::format("no analysis service holds run '{}' of bench '{}'; begin a new run",
-                              run_, bench_.bench));
+                              name(), bench_.bench));
     }
   }
   return fail(ErrorCode::interrupted,

@@ -82,6 +82,7 @@ private:
   [[nodiscard]] std::string silence_of_analysis() const;
   Expected<void> wait_for_results(const std::stop_token& stop);
   void abort(const std::string& reason);
+  [[nodiscard]] std::string name() const; // of the run, for people
   [[nodiscard]] bool has_ended_at_analysis() const;
   // What an analysis that has ended the run does not give; empty where it gives all.
   [[nodiscard]] std::string lack_of_ended_run() const;

@@ -169,7 +169,10 @@ std::size_t RunMessages::take_newest(bus::Reader<Message>& reader, std::vector<R
     if (message.run().to_string() != run_) {
       return;
     }
-    other_recipe_ = other_recipe_ || is_of_other_recipe(message, recipe_sha256_);
+    if (is_of_other_recipe(message, recipe_sha256_)) {
+      other_recipe_ = true;
+      return;
+    }
     Result result = from_message(message);
     if (planned && !is_planned(result, *planned)) {
       ++unplanned_;

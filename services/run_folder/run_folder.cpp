@@ -8,22 +8,27 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <cstring>
+#include <optional>
 #include <string_view>
 #include <utility>
 
 #include <fmt/core.h>
 
 #include "services/bench/named_files.hpp"
+#include "services/contract/run_identity.hpp"
+#include "services/contract/time_name.hpp"
 #include "services/report/run_figures.hpp"
+#include "services/report/stored_result.hpp"
 #include "services/run_folder/folder_copy.hpp"
 
 namespace dyncal::services {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::uintmax_t max_bench_bytes = 16U << 20U; // of the copy, which was a bench file once
 using drivers::FileDescriptor;
 
 Error cannot_make(const fs::path& folder, const std::string& reason) {
@@ -81,20 +86,35 @@ Expected<void> fill(const fs::path& unfinished, const BenchFile& bench) {
       .and_then([&] { return copy_bench(bench, unfinished); });
 }
 
-// Runs may be named with what a file system does not take.
-std::string plain(std::string run) {
-  std::replace_if(
-      run.begin(), run.end(),
-      [](unsigned char c) { return std::isalnum(c) == 0 && c != '-' && c != '_' && c != '.'; },
-      '_');
-  return run;
+// Folders of programs before 0.3 are RUN itself, or TIME-RUN.
+std::optional<RunIdentity> run_of_folder(const std::string& folder, const std::string& typed) {
+  const RunIdentity run = RunIdentity::parse(folder);
+  if (run.is_called(typed)) {
+    return run;
+  }
+  constexpr std::size_t time_size = std::string_view("20261122T101530.125Z").size();
+  if (run.conductor.empty() && folder.size() > time_size &&
+      is_time_name(folder.substr(0, time_size)) &&
+      folder.substr(time_size) == "-" + safe_name(typed)) {
+    return RunIdentity{typed, folder.substr(0, time_size), ""};
+  }
+  return folder == safe_name(typed) ? std::optional(run) : std::nullopt;
 }
 
-// A name is RUN itself, or TIME-RUN.
-bool is_of_run(const std::string& folder, const std::string& run) {
-  constexpr std::size_t time_size = std::string_view("20261122T101530.125Z").size();
-  return folder == run ||
-         (folder.size() == time_size + 1 + run.size() && folder.ends_with("-" + run));
+// Of a run that is resumed: results by two bench files would stand side by side.
+Expected<void> check_same_bench(const fs::path& folder, const BenchFile& bench) {
+  const auto begun_with = read_whole_file(folder / copied_bench_file, max_bench_bytes);
+  if (!begun_with) {
+    return fail(begun_with.error());
+  }
+  if (*begun_with == bench.text) {
+    return {};
+  }
+  return fail(ErrorCode::bad_file,
+              fmt::format("{}: the run was begun with another bench file than {}; resume it with "
+                          "its own, {}, or begin a new run",
+                          folder.string(), bench.path.string(),
+                          (folder / copied_bench_file).string()));
 }
 
 } // namespace
@@ -136,6 +156,9 @@ Expected<std::unique_ptr<RunFolder>> RunFolder::reopen(const std::filesystem::pa
   const fs::path newest = find_run_folder(root, bench.bench, run);
   if (newest.empty()) {
     return std::unique_ptr<RunFolder>();
+  }
+  if (auto same = check_same_bench(newest, bench); !same) {
+    return fail(same.error());
   }
   auto lock = lock_folder(newest);
   if (!lock) {
@@ -183,18 +206,17 @@ void RunFolder::discard() {
 std::filesystem::path find_run_folder(const std::filesystem::path& root, const std::string& bench,
                                       const std::string& run) {
   std::error_code unknown;
-  fs::path newest;
+  std::pair<std::string, fs::path> newest; // by when it began
   const fs::path folders = fs::absolute(root / bench).lexically_normal();
   for (const auto& entry : fs::directory_iterator(folders, unknown)) {
-    if (entry.is_directory(unknown) && is_of_run(entry.path().filename().string(), plain(run))) {
-      newest = std::max(newest, entry.path());
+    const auto found = entry.is_directory(unknown)
+                           ? run_of_folder(entry.path().filename().string(), run)
+                           : std::nullopt;
+    if (found) {
+      newest = std::max(newest, std::pair(found->start, entry.path()));
     }
   }
-  return newest;
-}
-
-std::string run_folder_name(const std::string& run, const std::string& time_text) {
-  return run.empty() || run == time_text ? time_text : fmt::format("{}-{}", time_text, plain(run));
+  return newest.second;
 }
 
 bool is_in_use(const std::filesystem::path& run_folder) {

@@ -29,7 +29,7 @@ public:
   [[nodiscard]] static Expected<std::unique_ptr<RunFolder>>
   create(const std::filesystem::path& root, const BenchFile& bench, const std::string& name);
   // The folder of a run that is resumed: the newest of `bench` that is of `run`; nothing when there
-  // is none.
+  // is none. Fails (bad_file) too where the run was begun with another bench file.
   [[nodiscard]] static Expected<std::unique_ptr<RunFolder>>
   reopen(const std::filesystem::path& root, const BenchFile& bench, const std::string& run);
 
@@ -61,11 +61,8 @@ private:
   std::unique_ptr<ResultKeeper> results_;
 };
 
-// "20261122T101530.125Z" of a run that is named by its time, "20261122T101530.125Z-NAME" of others.
-// `time_text`: now, as runs are named by it.
-[[nodiscard]] std::string run_folder_name(const std::string& run, const std::string& time_text);
-
-// The newest folder of that run of the bench; empty: there is none.
+// The newest folder of the bench whose run is called so (services/contract/run_identity.hpp);
+// empty: there is none.
 [[nodiscard]] std::filesystem::path find_run_folder(const std::filesystem::path& root,
                                                     const std::string& bench,
                                                     const std::string& run);

@@ -7,7 +7,7 @@ by three of its last digit: a bench in real time never gives the same noise twic
 
 import re
 
-RUN = re.compile(r"\d{8}T\d{6}(\.\d+)?Z")
+RUN = re.compile(r"\d{8}T\d{6}(\.\d+)?Z(\.[0-9a-f]{8}\b)?")
 DECIMAL = r"[-+]?\d+\.\d+(?:e[-+]\d+)?"
 NUMBER = re.compile(rf"(?<![\w.]){DECIMAL}(?!\.?\w)")
 

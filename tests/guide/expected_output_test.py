@@ -34,9 +34,9 @@ class ExpectedOutput(unittest.TestCase):
         self.assertIsNotNone(first_difference("1.0169", "-1.0169"))
 
     def test_names_of_runs_may_differ(self):
-        shown = "runs/x/20261122T225758.290Z-first"
-        self.assertIsNone(first_difference(shown, "runs/x/20270101T000000.001Z-first"))
-        self.assertIsNotNone(first_difference(shown, "runs/x/20270101T000000.001Z-second"))
+        shown = "runs/x/first.20261122T225758.290Z.4f2a91c0"
+        self.assertIsNone(first_difference(shown, "runs/x/first.20270101T000000.001Z.4f2a91c0"))
+        self.assertIsNotNone(first_difference(shown, "runs/x/second.20270101T000000.001Z.4f2a91c0"))
     def test_a_page_is_brought_up_to_date(self):
         shown = "f |H| u\n...\n20 1.0169 0.0010\nmean 996.9 us, ... 0 lost\nas it was\n"
         printed = "f  |H|  u\n10  1.2 0.2\n20  1.0172  0.0009\nmean 997.1 us, sd 3, 0 lost\n"

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "services/bus/bus.hpp"
+#include "services/contract/run_identity.hpp"
 #include "services/contract/topics.hpp"
 #include "tests/system/live_bench.hpp"
 
@@ -71,7 +72,9 @@ public:
     reader_.take([this](const wire::CalibrationResult& result) { all_.push_back(result); });
     std::vector<wire::CalibrationResult> found;
     std::copy_if(all_.begin(), all_.end(), std::back_inserter(found),
-                 [&](const wire::CalibrationResult& result) { return result.run() == run; });
+                 [&](const wire::CalibrationResult& result) {
+                   return services::RunIdentity::parse(result.run().to_string()).name == run;
+                 });
     return found;
   }
 
@@ -122,6 +125,32 @@ TEST_P(OneRun, TheNextRunGetsTheBenchOfOneThatWasKilled) {
   watch.send(SIGTERM);
   expect_nothing_of_other_excitation(published.of_run("killed"));
   EXPECT_EQ(published.of_run("next").size(), 9U);
+}
+
+// What a person does after a run that was killed: the same command once more, at once.
+TEST_P(OneRun, TheSameNameAgainIsAnotherRun) {
+  const auto folder = fresh_folder("same_name_" + GetParam());
+  LiveBench bench(folder, three_steps(GetParam()));
+  PublishedResults published(GetParam());
+  ProgramRun& killed = bench.start({"run", bench.bench_file(), "--run", "R1"});
+  ASSERT_TRUE(killed.wait_for_error_text("step 3 of 3", patience)) << killed.errors();
+  killed.send(SIGKILL);
+  EXPECT_TRUE(killed.wait(patience));
+  const auto of_killed = published.of_run("R1");
+  ASSERT_GE(of_killed.size(), 3U);
+  ProgramRun& again =
+      bench.start({"run", bench.bench_file(), "--run", "R1", "--json", folder / "again.json"});
+  ASSERT_EQ(again.wait(patience), 0) << again.errors();
+  const auto result = read_json(folder / "again.json");
+  EXPECT_TRUE(result["run"].get<std::string>().starts_with("R1."));
+  EXPECT_NE(result["run"], of_killed.front().run().to_string());
+  ASSERT_EQ(result["points"].size(), 9U);
+  for (const auto& point : result["points"]) {
+    EXPECT_TRUE(point["valid"].get<bool>()) << point["problem"];
+    for (const wire::CalibrationResult& old : of_killed) {
+      EXPECT_NE(point["data_sha256"], old.data_sha256()) << "a value of the killed run";
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Vendors, OneRun, testing::Values("cyclonedds", "fastdds"));

@@ -47,7 +47,6 @@ Recorded record_run(const std::string& name, const std::string& dds, const std::
   run.folder = fresh_folder(name);
   run.bench = played(recorded_bench(run.folder, "files", "3"));
   run.live = run.folder / "live.json";
-  run.recording = run.folder / "recordings/files/R1.mcap";
   Laboratory laboratory(run.folder);
   ProgramRun& service = laboratory.start(
       "dyncal-recorder", {"--folder", run.folder / "recordings", "--runs-only"}, recorder);
@@ -56,7 +55,11 @@ Recorded record_run(const std::string& name, const std::string& dds, const std::
   ProgramRun& command =
       laboratory.start("dyncal", {"run", run.bench, "--run", "R1", "--json", run.live}, dds);
   EXPECT_EQ(command.wait(patience), 0) << command.output() << command.errors();
-  EXPECT_TRUE(service.wait_for_error_text("R1.mcap has", patience)) << service.errors();
+  EXPECT_TRUE(service.wait_for_error_text(".mcap has", patience)) << service.errors();
+  for (const auto& file : std::filesystem::directory_iterator(run.folder / "recordings/files")) {
+    run.recording =
+        file.path().filename().string().starts_with("R1.") ? file.path() : run.recording;
+  }
   return run;
 }
 

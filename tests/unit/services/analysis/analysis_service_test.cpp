@@ -214,6 +214,50 @@ TEST_F(AnalysisServiceTest, RefusesASecondRunOfABenchWhileTheFirstIsAlive) {
   EXPECT_EQ(newest_status_of("r1").health(), wire::HEALTH_OK);
 }
 
+TEST_F(AnalysisServiceTest, TakesNothingOfAnotherConductorOrRecipeForARunOfTheSameName) {
+  play_sources();
+  publish("r1", wire::MEASUREMENT_PLANNED);
+  serve_for(1s);
+  publish("r1", wire::MEASUREMENT_RUNNING);
+  serve_for(1s);
+  wire::Measurement other = measurement("r1", wire::MEASUREMENT_ABORTED);
+  other.recipe_sha256("other");
+  measurements_.write(other);
+  serve_for(1s);
+  EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_ARMED);
+  EXPECT_EQ(newest_status_of("r1").health(), wire::HEALTH_OK);
+  publish("r2", wire::MEASUREMENT_PLANNED);
+  for (int i = 0; i < 3; ++i) { // it does not keep the dead run alive either
+    other = measurement("r1", wire::MEASUREMENT_PLANNED);
+    other.conductor("other-pc:3");
+    serve_for(2s);
+    measurements_.write(other);
+  }
+  serve_for(1s);
+  EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_FINISHED);
+  EXPECT_EQ(newest_status_of("r2").arm(), wire::ARM_ARMED);
+}
+
+TEST_F(AnalysisServiceTest, GoesOnWithARunThatAnotherConductorResumes) {
+  play_sources();
+  publish("r1", wire::MEASUREMENT_PLANNED);
+  serve_for(1s);
+  publish("r1", wire::MEASUREMENT_RUNNING);
+  serve_for(1s);
+  wire::Measurement resumed = measurement("r1", wire::MEASUREMENT_RUNNING);
+  resumed.conductor("other-pc:3");
+  measurements_.write(resumed);
+  publish("r2", wire::MEASUREMENT_PLANNED);
+  serve_for(1s);
+  measurements_.write(resumed);
+  serve_for(1s);
+  EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_ARMED);
+  EXPECT_EQ(newest_status_of("r2").arm(), wire::ARM_REFUSED);
+  EXPECT_EQ(newest_status_of("r2").message(),
+            "bench 'synthetic' is in use by run 'r1' of other-pc:3; wait for its end, or end it "
+            "there");
+}
+
 TEST_F(AnalysisServiceTest, EndsARunThatHasDiedForTheNextOneOfItsBench) {
   play_sources();
   publish("r1", wire::MEASUREMENT_PLANNED);

@@ -185,11 +185,26 @@ TEST_F(Folder, EndsWithResultAndFigures) {
   EXPECT_TRUE(files.contains("figures/transfer-function-dau-acceleration_z.svg"));
 }
 
-TEST(RunFolderName, SortsByTimeAndCarriesTheRun) {
-  const std::string now = "20261122T101530.125Z";
-  EXPECT_EQ(run_folder_name("", now), now);
-  EXPECT_EQ(run_folder_name(now, now), now);
-  EXPECT_EQ(run_folder_name("mpu 7/z", now), "20261122T101530.125Z-mpu_7_z");
+TEST_F(Folder, IsNotOpenedAgainWithAnotherBenchFile) {
+  ASSERT_TRUE(create("monday.20261122T101531.125Z.00000001"));
+  bench_.text += "# corrected\n";
+  const auto again = RunFolder::reopen(root_, bench_, "monday");
+  ASSERT_FALSE(again);
+  EXPECT_EQ(again.error().code, ErrorCode::bad_file);
+  EXPECT_THAT(again.error().message, HasSubstr("begun with another bench file"));
+}
+
+TEST_F(Folder, OfANameThatCameAgainIsTheNewest) {
+  for (const char* name :
+       {"monday.20261122T101531.125Z.00000001", "monday.20261122T101532.125Z.00000000",
+        "20261122T101530.125Z-monday", "tuesday.20261122T101539.125Z.00000002"}) {
+    ASSERT_TRUE(create(name));
+  }
+  EXPECT_EQ(find_run_folder(root_, "bench-1", "monday").filename(),
+            "monday.20261122T101532.125Z.00000000");
+  EXPECT_EQ(find_run_folder(root_, "bench-1", "monday.20261122T101531.125Z.00000001").filename(),
+            "monday.20261122T101531.125Z.00000001");
+  EXPECT_TRUE(find_run_folder(root_, "bench-1", "mon").empty());
 }
 
 } // namespace
