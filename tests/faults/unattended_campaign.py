@@ -182,6 +182,7 @@ def healthy(arguments, number):
                 raise Failure(f"exit status {status}: {run.errors()[-300:]}")
             laboratory.expect_whole_result()
             laboratory.set_by_person(100)
+            laboratory.services["dyncal-guard"].wait_for_text("it is left on", 20.0)
             until_s = time.monotonic() + arguments.watch_s
             while time.monotonic() < until_s:
                 if not laboratory.output_is_on():
