@@ -9,8 +9,9 @@
 // bench goes.
 //
 // An instrument behind a bad link may let wait for seconds before a call returns; what is given to
-// call_while_waiting() is called about twice a second meanwhile, by drivers that can, and returns
-// false when nobody needs the bench time any more that is being asked for.
+// call_while_waiting() is called about twice a second meanwhile, by drivers that can, with what is
+// awaited, and returns false when nobody needs the bench time any more that is being asked for. An
+// answer that does not come is a sign that nobody has hold of the output; a bench time is none.
 //
 // Destruction switches the output off, or asks for it where only a person can. One thread.
 #pragma once
@@ -23,6 +24,8 @@
 #include "drivers/error.hpp"
 
 namespace dyncal::drivers::generator {
+
+enum class Awaited { answer, bench_time };
 
 class Generator {
 public:
@@ -37,7 +40,7 @@ public:
   // set it returns, otherwise when the operator has confirmed; waits up to `limit` for that.
   [[nodiscard]] virtual Expected<bool> wait_for_effect(std::chrono::milliseconds limit) = 0;
   [[nodiscard]] virtual Expected<double> clock_now_s() = 0;
-  virtual void call_while_waiting(const std::function<bool()>& /*callback*/) {}
+  virtual void call_while_waiting(const std::function<bool(Awaited)>& /*callback*/) {}
   // Returns the bench time when it has reached `time_s`, or earlier when a stop is requested.
   [[nodiscard]] virtual Expected<double> wait_until_s(double time_s, std::stop_token stop) = 0;
 };

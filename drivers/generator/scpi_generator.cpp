@@ -169,12 +169,13 @@ Expected<double> ScpiGenerator::query_bench_time(const std::string& text) {
   return time_s;
 }
 
-void ScpiGenerator::call_while_waiting(const std::function<bool()>& callback) {
+void ScpiGenerator::call_while_waiting(const std::function<bool(Awaited)>& callback) {
   while_waiting_ = callback;
 }
 
 bool ScpiGenerator::go_on_waiting() {
-  return !while_waiting_ || while_waiting_() || !asks_time_;
+  return !while_waiting_ || while_waiting_(asks_time_ ? Awaited::bench_time : Awaited::answer) ||
+         !asks_time_;
 }
 
 Expected<double> ScpiGenerator::clock_now_s() {

@@ -50,7 +50,7 @@ public:
   // Whether the instrument says that its output is on; nothing where its answer is neither.
   [[nodiscard]] Expected<std::optional<bool>> output_is_on();
   [[nodiscard]] Expected<bool> wait_for_effect(std::chrono::milliseconds) override { return true; }
-  void call_while_waiting(const std::function<bool()>& callback) override;
+  void call_while_waiting(const std::function<bool(Awaited)>& callback) override;
   [[nodiscard]] Expected<double> clock_now_s() override;
   [[nodiscard]] Expected<double> wait_until_s(double time_s, std::stop_token stop) override;
 
@@ -68,7 +68,7 @@ private:
   StopSignal never_raised_; // waits here end by their own limit
   std::string address_;
   std::optional<ScpiConnection> connection_;
-  std::function<bool()> while_waiting_;
+  std::function<bool(Awaited)> while_waiting_;
   bool asks_time_ = false; // now
   std::string identity_;
   bool has_bench_clock_ = false;

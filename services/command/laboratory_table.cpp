@@ -10,6 +10,7 @@
 
 #include "services/command/clock_offset_text.hpp"
 #include "services/command/harmless_text.hpp"
+#include "services/contract/run_identity.hpp"
 #include "services/contract/unit.hpp"
 #include "services/report/rounding.hpp"
 
@@ -53,7 +54,8 @@ std::string time_text(double seconds) {
 // "step 7 of 51, 40 Hz, steady, 38 s left, run r1"
 std::string run_text(const Run& run, Clock::Instant now) {
   if (run.is_over()) {
-    return fmt::format("{} results, run {}", run.results.size(), harmless(run.name));
+    return fmt::format("{} results, run {}", run.results.size(),
+                       harmless(RunIdentity::parse(run.name).name));
   }
   std::string text;
   if (run.now) {
@@ -67,7 +69,7 @@ std::string run_text(const Run& run, Clock::Instant now) {
   if (const auto left_s = run.time_left_s(now)) {
     text += fmt::format("{} left, ", time_text(*left_s));
   }
-  return text + fmt::format("run {}", harmless(run.name));
+  return text + fmt::format("run {}", harmless(RunIdentity::parse(run.name).name));
 }
 
 Line bench_line(const Bench& bench, Clock::Instant now) {

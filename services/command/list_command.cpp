@@ -8,6 +8,7 @@
 
 #include "services/command/harmless_text.hpp"
 #include "services/command/watched_laboratory.hpp"
+#include "services/contract/run_identity.hpp"
 #include "services/json_text.hpp"
 #include "services/live/laboratory_json.hpp"
 
@@ -32,8 +33,9 @@ std::string source_text(const live::Source& source) {
 }
 
 std::string run_text(const live::Run& run) {
-  return fmt::format("  run {}  {}  {} results{}", harmless(run.name), to_string(run.state()),
-                     run.results.size(), run.message.empty() ? "" : "  " + harmless(run.message));
+  return fmt::format("  run {}  {}  {} results{}", harmless(RunIdentity::parse(run.name).name),
+                     to_string(run.state()), run.results.size(),
+                     run.message.empty() ? "" : "  " + harmless(run.message));
 }
 
 void print_text(const live::Laboratory& laboratory) {

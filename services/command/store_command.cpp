@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "services/command/work_progress.hpp"
+#include "services/contract/run_identity.hpp"
 #include "services/json_text.hpp"
 #include "services/program/program.hpp"
 
@@ -66,9 +67,9 @@ void print_table(const std::vector<StoredRun>& runs) {
              "steps", "sources");
   for (const StoredRun& run : runs) {
     fmt::print("{:<20} {:<16} {:<26} {:<12} {:>9}  {}\n",
-               run.began_utc.empty() ? "-" : run.began_utc.substr(0, 19) + "Z", run.bench, run.run,
-               run.state, fmt::format("{}/{}", run.measured_steps, run.planned_steps),
-               sensors_text(run));
+               run.began_utc.empty() ? "-" : run.began_utc.substr(0, 19) + "Z", run.bench,
+               RunIdentity::parse(run.run).name, run.state,
+               fmt::format("{}/{}", run.measured_steps, run.planned_steps), sensors_text(run));
   }
 }
 

@@ -54,8 +54,13 @@ Expected<std::unique_ptr<StepExcitation>> StepExcitation::open(const RunEnvironm
     return fail(connection.error());
   }
   excitation->connection_.emplace(std::move(*connection));
-  excitation->generator().call_while_waiting([self = excitation.get()] {
-    self->hooks_.look();
+  using drivers::generator::Awaited;
+  excitation->generator().call_while_waiting([self = excitation.get()](Awaited awaited) {
+    if (awaited == Awaited::bench_time) {
+      self->hooks_.hold();
+    } else {
+      self->hooks_.look();
+    }
     return !self->stop_.stop_requested();
   });
   if (bench.method.kind == EvaluationMethod::series_timestamping) {

@@ -51,6 +51,8 @@ struct StepHooks {
   AskOperator ask;
   // Called while the generator lets wait for an answer.
   std::function<void()> look;
+  // Called while the virtual bench lets wait for its time.
+  std::function<void()> hold;
   // Called at least every second of bench time; fails when the step cannot go on.
   std::function<Expected<void>()> keep_alive;
 };

@@ -46,6 +46,7 @@ Expected<std::unique_ptr<StepSequence>> StepSequence::open(const RunEnvironment&
        .show = [&watch](const std::string& phase) { watch.show(phase); },
        .ask = [&watch](const std::string& request) { watch.ask(request); },
        .look = [&watch] { watch.look_without_hold(); },
+       .hold = [&watch] { watch.look(); },
        .keep_alive = [self = sequence.get()] { return self->keep_alive(); }});
   if (!excitation) {
     return fail(excitation.error());

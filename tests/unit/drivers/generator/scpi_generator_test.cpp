@@ -220,7 +220,7 @@ TEST(ScpiGenerator, CallsWhileAnAnswerLetsWaitAndReadsItToItsEnd) {
   auto generator = ScpiGenerator::connect(slow.address());
   ASSERT_TRUE(generator) << generator.error().message;
   int calls = 0;
-  (*generator)->call_while_waiting([&] {
+  (*generator)->call_while_waiting([&](Awaited) {
     if (++calls == 1) {
       called.set_value();
     }
@@ -245,7 +245,10 @@ TEST(ScpiGenerator, GivesATimeUpThatNobodyNeedsAnyMore) {
   auto generator = ScpiGenerator::connect(silent.address());
   ASSERT_TRUE(generator) << generator.error().message;
   int calls = 0;
-  (*generator)->call_while_waiting([&] { return ++calls < 2; });
+  (*generator)->call_while_waiting([&](Awaited awaited) {
+    EXPECT_EQ(awaited, Awaited::bench_time);
+    return ++calls < 2;
+  });
   EXPECT_EQ((*generator)->clock_now_s().error().code, ErrorCode::timeout);
   EXPECT_EQ(calls, 2);
 }

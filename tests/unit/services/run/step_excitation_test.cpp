@@ -67,6 +67,7 @@ protected:
          .show = [this](const std::string& phase) { phases_.push_back(phase); },
          .ask = [](const std::string&) {},
          .look = [] {},
+         .hold = [] {},
          .keep_alive = [this] { return keep_alive_(); }});
   }
   // One step, from connecting to the end of the object.
