@@ -240,9 +240,8 @@ StampScatter measure_stamp_scatter(const Frequency& frequency, const SineFit& fi
     scatter.peak_jumps = peak_jumps(samples, fit.amplitude());
     scatter.far_off = far_off(samples);
   }
-  if (scatter.far_off == 0 &&
-      alternating_part(frequency, fit, origin_ns, stamps_ns, values) > 0.0) {
-    scatter.far_off = samples.size() / 2;
+  if (scatter.far_off == 0) {
+    scatter.alternating_part = alternating_part(frequency, fit, origin_ns, stamps_ns, values);
   }
   const double mean = m / n, spread = mm - m * mean;
   if (spread < min_variance * n) {

@@ -1,14 +1,13 @@
 // What is wrong with a bench is seen by whoever reads the result of a live run: the value is
 // covered by its uncertainty, carries a flag, or is refused with the reason.
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <regex>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/system/live_bench.hpp"
+#include "tests/system/truth_deviation.hpp"
 
 namespace dyncal::tests {
 namespace {
@@ -45,22 +44,6 @@ LiveBenchSettings settings_of(const std::filesystem::path& folder,
   return settings;
 }
 
-// Largest deviation of magnitude and phase in standard uncertainties.
-double deviation(const nlohmann::json& point, const nlohmann::json& truth) {
-  for (const auto& expected : truth["transfer_function"]) {
-    if (expected["channel"] == axis && expected["frequency_hz"] == point["frequency_hz"]) {
-      const double magnitude =
-          point["magnitude"].get<double>() - expected["magnitude"].get<double>();
-      const double phase =
-          std::remainder(point["phase_rad"].get<double>() - expected["phase_rad"].get<double>(),
-                         2.0 * std::numbers::pi);
-      return std::max(std::abs(magnitude) / point["u_magnitude"].get<double>(),
-                      std::abs(phase) / point["u_phase_rad"].get<double>());
-    }
-  }
-  return std::numeric_limits<double>::infinity();
-}
-
 void expect_seen(const Case& fault, const nlohmann::json& point, const nlohmann::json& truth) {
   ASSERT_EQ(point["valid"].get<bool>(), fault.seen != Case::Seen::refused) << point;
   if (fault.seen == Case::Seen::refused) {
@@ -74,7 +57,7 @@ void expect_seen(const Case& fault, const nlohmann::json& point, const nlohmann:
     EXPECT_EQ(point["flags"], nlohmann::json::array()) << point;
   }
   if (fault.is_covered) {
-    EXPECT_LE(deviation(point, truth), 4.0) << point;
+    EXPECT_LE(deviation_of_point(point, truth, axis), 4.0) << point;
   }
 }
 
@@ -191,7 +174,7 @@ TEST_P(HumAtAStep, IsCoveredOrSeen) {
     }
     ++points;
     if (point["valid"].get<bool>() && point["flags"].empty()) {
-      EXPECT_LE(deviation(point, truth), 4.0) << point;
+      EXPECT_LE(deviation_of_point(point, truth, axis), 4.0) << point;
     }
   }
   EXPECT_EQ(points, 2U);

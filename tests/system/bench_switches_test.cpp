@@ -2,13 +2,12 @@
 // live: what is flagged in the result is named in the table of `dyncal run` and on the page, and
 // what is not flagged is covered by its uncertainty.
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/system/live_bench.hpp"
+#include "tests/system/truth_deviation.hpp"
 #include "tests/system/web_visitor.hpp"
 
 namespace dyncal::tests {
@@ -40,22 +39,6 @@ LiveBenchSettings settings_of(const std::filesystem::path& folder, const Switch&
     settings.bench_arguments.insert(settings.bench_arguments.end(), {"--fault", fault});
   }
   return settings;
-}
-
-// Of magnitude and phase, the larger, in standard uncertainties.
-double deviation(const json& point, const json& truth) {
-  for (const json& expected : truth["transfer_function"]) {
-    if (expected["channel"] == axis && expected["frequency_hz"] == point["frequency_hz"]) {
-      const double magnitude =
-          point["magnitude"].get<double>() - expected["magnitude"].get<double>();
-      const double phase =
-          std::remainder(point["phase_rad"].get<double>() - expected["phase_rad"].get<double>(),
-                         2.0 * std::numbers::pi);
-      return std::max(std::abs(magnitude) / point["u_magnitude"].get<double>(),
-                      std::abs(phase) / point["u_phase_rad"].get<double>());
-    }
-  }
-  return std::numeric_limits<double>::infinity();
 }
 
 std::vector<json> points_of_axis(const json& points) {
@@ -123,7 +106,7 @@ TEST_P(BenchSwitch, IsSeenInTheTableAndOnThePageOrIsCovered) {
       EXPECT_EQ(shown[i]["problem"], points[i]["problem"]);
     } else if (names.empty()) {
       EXPECT_TRUE(points[i]["valid"].get<bool>()) << points[i]["problem"];
-      EXPECT_LE(deviation(points[i], truth), max_deviation) << points[i];
+      EXPECT_LE(deviation_of_point(points[i], truth, axis), max_deviation) << points[i];
     }
     if (*which.flag == '\0' && *which.refusal == '\0') {
       EXPECT_TRUE(names.empty()) << points[i]["flags"];

@@ -46,6 +46,13 @@ void check_stamps(const analysis::ChannelFit& fit, double u_magnitude_rel, doubl
              fmt::format("{} of {} values are beside the sine of the others", scatter.far_off,
                          scatter.samples),
              result);
+  } else if (scatter.alternating_part > 0.0) {
+    add_flag(
+        ResultFlag::values_off_stamps, fit.channel,
+        fmt::format("every second value is of a sine that differs by {}: of another sensor, or "
+                    "another gain",
+                    percent(2.0 * scatter.alternating_part)),
+        result);
   }
   if (correction > u_magnitude_rel) {
     add_flag(ResultFlag::stamps_scatter, fit.channel,

@@ -1,10 +1,5 @@
 #include "services/store/database.hpp"
 
-#include <arpa/inet.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-#include <unistd.h>
-
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -14,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "services/store/migrations.hpp"
+#include "tests/unit/services/store/silent_server.hpp"
 #include "tests/unit/services/store/store_places.hpp"
 
 namespace dyncal::services {
@@ -144,17 +140,9 @@ TEST(OpenPostgres, SaysWhatIsWrongWithoutAServer) {
   EXPECT_THAT(database.error().message, testing::Not(HasSubstr("secret")));
 }
 
-// It takes connections, and says nothing.
 TEST(OpenPostgres, DoesNotWaitForGoodForAConnection) {
-  const int listening = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof address;
-  ASSERT_EQ(bind(listening, reinterpret_cast<const sockaddr*>(&address), size), 0);
-  ASSERT_EQ(listen(listening, 4), 0);
-  ASSERT_EQ(getsockname(listening, reinterpret_cast<sockaddr*>(&address), &size), 0);
-  const int port = ntohs(address.sin_port);
+  const SilentServer server;
+  const int port = server.port();
   for (const std::string& place :
        {fmt::format("postgresql://lab:a?b@127.0.0.1:{}/dyncal", port),
         fmt::format("host=127.0.0.1 port={} dbname=dyncal user=lab", port),
@@ -163,13 +151,11 @@ TEST(OpenPostgres, DoesNotWaitForGoodForAConnection) {
     const auto database = open_postgres(place);
     ASSERT_FALSE(database);
     if (database.error().code == ErrorCode::bad_argument) {
-      close(listening);
       GTEST_SKIP() << database.error().message;
     }
     EXPECT_THAT(database.error().message, HasSubstr("timeout expired"));
     EXPECT_LE(std::chrono::steady_clock::now() - begun, std::chrono::seconds(10)) << place;
   }
-  close(listening);
 }
 
 TEST(OpenSqlite, RefusesWhatIsNotADatabase) {

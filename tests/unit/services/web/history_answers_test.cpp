@@ -1,10 +1,5 @@
 #include "services/web/history_answers.hpp"
 
-#include <arpa/inet.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-#include <unistd.h>
-
 #include <chrono>
 #include <future>
 #include <vector>
@@ -14,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/temporary_folder.hpp"
+#include "tests/unit/services/store/silent_server.hpp"
 
 namespace dyncal::services::web {
 namespace {
@@ -48,20 +44,10 @@ std::vector<Answer> ask_at_once(HistoryAnswers& answers, int visitors) {
   return got;
 }
 
-// A server that takes connections and says nothing.
 TEST(HistoryAnswers, AServerThatHangsHoldsOneVisitor) {
-  const int listening = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof address;
-  ASSERT_EQ(bind(listening, reinterpret_cast<const sockaddr*>(&address), size), 0);
-  ASSERT_EQ(listen(listening, 64), 0);
-  ASSERT_EQ(getsockname(listening, reinterpret_cast<sockaddr*>(&address), &size), 0);
-  HistoryAnswers answers(
-      fmt::format("postgresql://lab@127.0.0.1:{}/dyncal", ntohs(address.sin_port)));
+  const SilentServer server;
+  HistoryAnswers answers(fmt::format("postgresql://lab@127.0.0.1:{}/dyncal", server.port()));
   const auto got = ask_at_once(answers, 40);
-  close(listening);
   if (got.front().text.find("has no PostgreSQL") != std::string::npos) {
     GTEST_SKIP() << got.front().text;
   }

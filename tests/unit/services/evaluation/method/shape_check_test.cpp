@@ -120,5 +120,14 @@ TEST(ShapeCheck, HeldValuesAndReadBuffersAreSaid) {
   EXPECT_THAT(kinds(of_read), testing::ElementsAre(ResultFlag::values_off_stamps));
 }
 
+TEST(ShapeCheck, ValuesInTurnOfTwoSensorsAreSaidWithTheirDifference) {
+  analysis::ChannelFit alternating = channel("dau/z", 0.0);
+  alternating.scatter.alternating_part = 0.025;
+  StepResult of_two = result(1e-3);
+  check_shape(channel("acs/ref", 0.0), alternating, of_two);
+  ASSERT_THAT(kinds(of_two), testing::ElementsAre(ResultFlag::values_off_stamps));
+  EXPECT_THAT(of_two.flags[0].sentence, HasSubstr("a sine that differs by 5 %"));
+}
+
 } // namespace
 } // namespace dyncal::services
