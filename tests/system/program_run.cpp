@@ -102,7 +102,9 @@ void ProgramRun::check_result() const {
     return;
   }
   if (!exit || exit->status != 0) {
-    throw std::runtime_error("the result does not agree with its schema: " + read(output));
+    throw std::runtime_error("the result does not agree with its schema, or the check ended with " +
+                             (exit ? std::to_string(exit->status) : "nothing in a minute") + ": " +
+                             read(output));
   }
 }
 

@@ -129,11 +129,18 @@ TEST_F(WebActions, ConductARun) {
   EXPECT_GE(of_first_step, 3U);
 
   const fs::path kept = folder_ / "runs" / "live" / run;
-  std::size_t compared = 0;
-  const json listed = visitor_->ask_until(address + "/run", [](const json& answer) {
-    return std::any_of(answer["files"].begin(), answer["files"].end(),
-                       [](const json& file) { return file["name"] == "result.json"; });
+  // Written as results come: what is compared is what stands when the run has ended.
+  const auto is_whole = [this](const json& file) {
+    if (file["name"] != "result.json") {
+      return false;
+    }
+    const json result = visitor_->ask(file["href"]);
+    return result.is_object() && !result["ended_utc"].is_null();
+  };
+  const json listed = visitor_->ask_until(address + "/run", [&](const json& answer) {
+    return std::any_of(answer["files"].begin(), answer["files"].end(), is_whole);
   });
+  std::size_t compared = 0;
   for (const json& file : listed["files"]) {
     const auto name = file["name"].get<std::string>();
     EXPECT_FALSE(name.ends_with(".part")) << name;
@@ -149,8 +156,9 @@ TEST_F(WebActions, ConductARun) {
   const json sensors = visitor_->ask_until(
       "/api/history?sensor=", [](const json& history) { return history["sensors"].size() >= 1; });
   ASSERT_GE(sensors["sensors"].size(), 1U) << sensors;
-  const json history = visitor_->ask("/api/history?sensor=" +
-                                     httplib::detail::encode_query_param(sensors["sensors"][0]));
+  const json history = visitor_->ask_until(
+      "/api/history?sensor=" + httplib::detail::encode_query_param(sensors["sensors"][0]),
+      [](const json& answer) { return answer["runs"].size() >= 3; });
   ASSERT_EQ(history["runs"].size(), 3U) << "one for every channel with a result: " << history;
   for (const json& calibration : history["runs"]) {
     EXPECT_EQ(calibration["run"], run);
