@@ -59,6 +59,14 @@ Expected<void> SourceStreams::take_descriptions(const KnownSources& known, Insta
 
 Expected<void> SourceStreams::describe(const std::string& name, Stream& stream,
                                        const wire::SourceDescription& description, Instant now) {
+  if (stream.description && has_answered(stream)) { // from then on its samples are the run's
+    std::string other =
+        device_difference(name, from_message(*stream.description), from_message(description));
+    if (!other.empty()) {
+      stream.unfit = {description, std::move(other), true};
+      return {};
+    }
+  }
   const bool same_session = stream.description &&
                             stream.description->session() == description.session() &&
                             !is_triggered(stream);
@@ -69,7 +77,7 @@ Expected<void> SourceStreams::describe(const std::string& name, Stream& stream,
   }
   if (stream.description || begin_ == Begin::behind) {
     if (std::string why = why_unfit(name, description); !why.empty()) {
-      stream.unfit = {description, std::move(why)};
+      stream.unfit = {description, std::move(why), false};
       return {};
     }
   } else if (auto accepted = evaluator_.describe(name, from_message(description)); !accepted) {
@@ -102,10 +110,12 @@ bool SourceStreams::is_unfit(const Stream& stream, std::uint64_t session) {
   return stream.unfit && stream.unfit->description.session() == session;
 }
 
-// Samples of a session that was never described as anything else mean nothing to the run.
+// Samples of a session that was never described as anything else, or of another instrument, mean
+// nothing to the run.
 void SourceStreams::replace_unfit(Stream& stream) {
   const auto unfit = std::exchange(stream.unfit, std::nullopt);
-  if (unfit && unfit->description.session() != stream.description->session()) {
+  if (unfit &&
+      (unfit->is_other_device || unfit->description.session() != stream.description->session())) {
     stream.waiting.leave_out_session(unfit->description.session());
   }
 }
@@ -269,8 +279,8 @@ std::string SourceStreams::what_is_gone() const {
     if (stream.follower &&
         std::visit([](const auto& one) { return one.lacks_beginning(); }, *stream.follower)) {
       return fmt::format("source '{}' of bench '{}' no longer has what it sent at the beginning of "
-                         "the run, or the run had not begun yet, so it cannot be taken over; what "
-                         "was measured before is kept: measure the rest in another run",
+                         "the run, or nothing was measured, so it cannot be taken over: begin a "
+                         "new run; what was measured before is kept",
                          name, bench_);
     }
   }

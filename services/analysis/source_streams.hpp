@@ -8,8 +8,8 @@
 // those of answers to requests when the first is due. A source that has restarted is waited with
 // for up to `session_limit` where the evaluator still needs what it sent before. One that describes
 // itself in the middle of a run as something the run cannot go by (other channels, another bench
-// file) counts as lost until it describes itself otherwise. Samples wait meanwhile
-// (waiting_blocks.hpp). Belongs to the run's one thread.
+// file, another instrument) counts as lost until it describes itself otherwise. Samples wait
+// meanwhile (waiting_blocks.hpp). Belongs to the run's one thread.
 #pragma once
 
 #include <chrono>
@@ -103,6 +103,7 @@ private:
   struct UnfitDescription {
     wire::SourceDescription description;
     std::string why;
+    bool is_other_device = false; // whose samples are never the run's
   };
   struct Stream {
     std::optional<wire::SourceDescription> description; // as the evaluator knows it

@@ -1,6 +1,9 @@
 #include "services/contract/source_description.hpp"
 
+#include <fmt/core.h>
+
 #include "idl/dyncal.h"
+#include "services/printable_text.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -22,6 +25,17 @@ drivers::StampInstant stamp_instant(wire::StampInstant instant) {
   }
 }
 
+bool differs(const std::string& first, const std::string& now) {
+  return !first.empty() && !now.empty() && first != now;
+}
+
+std::string device_text(const drivers::SourceDescription& description) {
+  const std::string device = description.device.empty() ? "a device" : description.device;
+  return printable(description.serial.empty()
+                       ? device
+                       : fmt::format("{}, serial number {}", device, description.serial));
+}
+
 } // namespace
 
 drivers::SourceDescription from_message(const wire::SourceDescription& message) {
@@ -41,6 +55,16 @@ drivers::SourceDescription from_message(const wire::SourceDescription& message) 
   description.tick_s = message.tick_s();
   description.stamp_uncertainty_s = message.stamp_uncertainty_s();
   return description;
+}
+
+std::string device_difference(const std::string& source, const drivers::SourceDescription& first,
+                              const drivers::SourceDescription& now) {
+  if (!differs(first.device, now.device) && !differs(first.serial, now.serial)) {
+    return "";
+  }
+  return fmt::format("source '{}' is another instrument than the run began with: now {}, then {}; "
+                     "put that one back, or begin a new run",
+                     source, device_text(now), device_text(first));
 }
 
 } // namespace dyncal::services

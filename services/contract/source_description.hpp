@@ -1,7 +1,10 @@
-// The description of a source as drivers give it, read from the contract's message.
+// The description of a source as drivers give it, read from the contract's message, and whether
+// another instrument has taken its place.
 //
 // The other way is services/source/messages.hpp, where a source is published. Any thread.
 #pragma once
+
+#include <string>
 
 #include "drivers/sample_block.hpp"
 
@@ -12,5 +15,11 @@ class SourceDescription;
 namespace dyncal::services {
 
 [[nodiscard]] drivers::SourceDescription from_message(const wire::SourceDescription& message);
+
+// One sentence that names both where device or serial number differ, as far as both are known;
+// empty: nothing tells them apart. `first`: what the run began with.
+[[nodiscard]] std::string device_difference(const std::string& source,
+                                            const drivers::SourceDescription& first,
+                                            const drivers::SourceDescription& now);
 
 } // namespace dyncal::services

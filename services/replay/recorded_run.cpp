@@ -126,6 +126,7 @@ private:
     std::map<RecordedPosition, RecordedPlace>::const_iterator next{};
     bool answered = false;
     std::optional<std::uint64_t> described{}; // session
+    drivers::SourceDescription first{};       // what the run began with
     std::deque<wire::SampleBlock> waiting{};
     std::uint64_t waiting_since = 0;
     bool is_unfit =
@@ -214,8 +215,12 @@ private:
                                                      ? *source.recorded.newest
                                                      : of_session->second;
     const auto& settings = evaluator_.recipe().source_settings;
+    if (is_first) {
+      source.first = from_message(description);
+    }
     source.is_unfit =
-        !is_first && settings_difference(description.settings(), settings, name).has_value();
+        !is_first && (settings_difference(description.settings(), settings, name).has_value() ||
+                      !device_difference(name, source.first, from_message(description)).empty());
     if (source.is_unfit) {
       return;
     }
@@ -371,6 +376,7 @@ Expected<RecordedRunOutcome> evaluate_recording(recording::RecordingReader& read
                           .clock_end = index->clock_end,
                           .count = wish.count,
                           .behind = behind});
+  const std::stop_callback end_checks(stop, [&evaluator] { evaluator.stop_checks(); });
   Evaluating evaluating(reader, *index, evaluator, result.outcome);
   const auto walked =
       reader.scan({.message =

@@ -45,7 +45,7 @@ REFUSALS = (
     "no analysis service answers for bench",
     "does not answer in its sample stream",
     "is not on the network",
-    "or the run had not begun yet, so it cannot be taken over",
+    "or nothing was measured, so it cannot be taken over",
 )
 
 

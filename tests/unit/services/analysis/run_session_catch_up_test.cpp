@@ -212,6 +212,64 @@ TEST_F(RunSessionCatchUp, TakesNothingOfASourceThatComesBackWithAnotherBenchFile
   EXPECT_FALSE(published_.results()[0].valid()); // its samples were those of another sensor
 }
 
+// Another sensor has been mounted; then the one that the run began with is put back.
+TEST_F(RunSessionCatchUp, TakesNothingOfAnotherInstrument) {
+  wire::SourceDescription before = dau_.description();
+  before.serial("1");
+  dau_.restart(before);
+  arm_and_run();
+  excite(wire::EXCITATION_SETTLING);
+  acs_.send(endless(synthetic_.acs_blocks()));
+  for (const bool same_session : {false, true}) {
+    wire::SourceDescription other = before;
+    other.serial("2");
+    if (same_session) {
+      other.session(dau_.description().session());
+      sources_[dau_.name()].description = other;
+    } else {
+      dau_.restart(other);
+      describe(dau_);
+    }
+    run_for(1s, {&acs_, &dau_});
+    dau_.send(endless(synthetic_.dau_blocks()));
+    run_for(1s, {&acs_, &dau_});
+    EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_WAITING);
+    EXPECT_THAT(published_.newest_status().message(),
+                testing::HasSubstr("is another instrument than the run began with: now "));
+    dau_.restart(before);
+    describe(dau_);
+    run_for(1s, {&acs_, &dau_});
+    EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_OK);
+  }
+  excite(wire::EXCITATION_DONE);
+  set_state(wire::MEASUREMENT_DONE);
+  for (int i = 0; i < 200 && !session_->finished(); ++i) {
+    pass(100ms);
+    acs_.send_nothing();
+    dau_.send_nothing();
+  }
+  ASSERT_EQ(published_.results().size(), 1U);
+  EXPECT_FALSE(published_.results()[0].valid()); // its samples were those of another sensor
+}
+
+// A description that is completed, or comes again from a service that was restarted, is no other.
+TEST_F(RunSessionCatchUp, GoesOnWithAnInstrumentThatDescribesItselfAgain) {
+  wire::SourceDescription whole = dau_.description();
+  whole.device("MPU-9250");
+  whole.serial("1");
+  dau_.restart(whole);
+  arm_and_run();
+  for (const char* device : {"", "MPU-9250"}) {
+    wire::SourceDescription again = whole;
+    again.device(device);
+    again.firmware("2");
+    dau_.restart(again);
+    describe(dau_);
+    run_for(1s, {&acs_, &dau_});
+    EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_OK);
+  }
+}
+
 TEST_F(RunSessionCatchUp, GivesTheSameResultOfARunThatBeganBeforeIt) {
   const auto expected = UndisturbedRun().results();
   arm_and_run();
