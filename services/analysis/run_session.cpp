@@ -131,6 +131,7 @@ bool RunSession::is_of_this_run(const wire::Measurement& measurement) {
 
 void RunSession::announce(const wire::Excitation& excitation) {
   excited_by_steps_ = true;
+  last_heard_of_run_ = clock_.now();
   if (evaluator_) {
     evaluator_->expect_announcements();
     announced_.push_back(from_message(excitation));
@@ -254,7 +255,9 @@ void RunSession::wait_for_bench(RunSession& before, Instant now) {
   if (!before.excitation_over() && before.last_heard_of_run_ > created_) {
     refuse(fmt::format("bench '{}' is in use by {}; wait for its end, or end it there", bench_,
                        called_of(before.run_, before.conductor_)));
-  } else if (now - created_ > bench_limit) {
+  } else if (now - created_ > listening_time &&
+             now - (before.excitation_over() ? created_ : before.last_heard_of_run_) >
+                 bench_limit) {
     before.give_way_to(run_);
   }
 }

@@ -24,9 +24,10 @@
 // again.
 //
 // One bench, one run: what one run excites, another would take for its own. A run that finds
-// another of its bench before it waits for the end of that one for `bench_limit`, and is refused as
-// soon as that one shows that it lives. A run of which nothing was heard for so long has died, and
-// is ended.
+// another of its bench before it waits for the end of that one, and is refused as soon as that one
+// shows that it lives, by its Measurement (every 2 s) or Excitation. A run of which nothing was
+// heard for `bench_limit`, and for `listening_time` since the next one came, has died, and is
+// ended.
 //
 // Belongs to the service's one thread. Its results stay readable for late joiners until it is
 // destroyed; services/analysis/README.md describes the states.
@@ -61,7 +62,8 @@ public:
   static constexpr std::chrono::seconds arm_limit{10};
   static constexpr std::chrono::seconds notice_after{2};
   static constexpr std::chrono::seconds present_limit{15};
-  static constexpr std::chrono::seconds bench_limit{5};
+  static constexpr std::chrono::seconds bench_limit{4};
+  static constexpr std::chrono::milliseconds listening_time{2500};
   static constexpr std::chrono::seconds silence_limit{5};
   static constexpr std::chrono::seconds patience{120};
   static constexpr std::chrono::seconds quiet_limit{8};

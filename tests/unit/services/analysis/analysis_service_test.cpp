@@ -265,16 +265,51 @@ TEST_F(AnalysisServiceTest, EndsARunThatHasDiedForTheNextOneOfItsBench) {
   publish("r1", wire::MEASUREMENT_RUNNING);
   serve_for(1s);
   publish("r2", wire::MEASUREMENT_PLANNED);
-  serve_for(RunSession::bench_limit);
+  serve_for(RunSession::bench_limit - 1s); // it was heard a second before
   EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_ARMED);
   EXPECT_EQ(newest_status_of("r2").arm(), wire::ARM_WAITING);
-  serve_for(1s);
+  serve_for(500ms);
   EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_FINISHED);
   EXPECT_EQ(newest_status_of("r1").health(), wire::HEALTH_FAILED);
   EXPECT_EQ(newest_status_of("r1").message(),
-            "nothing was heard of this run for 5 s; its bench was given to run 'r2'");
+            "nothing was heard of this run for 4 s; its bench was given to run 'r2'");
   EXPECT_EQ(newest_status_of("r2").arm(), wire::ARM_ARMED);
   EXPECT_EQ(newest_status_of("r2").message(), "");
+}
+
+// Its last word may be older than that where the link was down: the next one listens for a while.
+TEST_F(AnalysisServiceTest, ListensForARunBeforeItGivesItsBenchAway) {
+  play_sources();
+  publish("r1", wire::MEASUREMENT_PLANNED);
+  serve_for(1s);
+  publish("r1", wire::MEASUREMENT_RUNNING);
+  serve_for(10s);
+  publish("r2", wire::MEASUREMENT_PLANNED);
+  serve_for(2s);
+  EXPECT_EQ(newest_status_of("r2").arm(), wire::ARM_WAITING);
+  publish("r1", wire::MEASUREMENT_RUNNING);
+  serve_for(1s);
+  EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_ARMED);
+  EXPECT_EQ(newest_status_of("r2").arm(), wire::ARM_REFUSED);
+}
+
+TEST_F(AnalysisServiceTest, RefusesASecondRunAsSoonAsTheFirstAnnouncesItsExcitation) {
+  play_sources();
+  publish("r1", wire::MEASUREMENT_PLANNED);
+  serve_for(1s);
+  publish("r1", wire::MEASUREMENT_RUNNING);
+  serve_for(1s);
+  publish("r2", wire::MEASUREMENT_PLANNED);
+  serve_for(100ms);
+  wire::Excitation excitation; // as every 0.5 s while it drives
+  excitation.bench(tests::played_bench);
+  excitation.run("r1");
+  excitation.step(1);
+  excitation.attempt(1);
+  excitation.state(wire::EXCITATION_SETTLING);
+  runner_.writer(bus::topics::excitation, tests::played_bench)->write(excitation);
+  serve_for(100ms);
+  EXPECT_EQ(newest_status_of("r2").arm(), wire::ARM_REFUSED);
 }
 
 TEST_F(AnalysisServiceTest, LetsARunThatIsOverFinishBeforeTheNextOneOfItsBench) {
