@@ -9,9 +9,11 @@
 
 #include "services/bus/host_network.hpp"
 #include "services/contract/run_identity.hpp"
+#include "services/evaluation/outcome_agreement.hpp"
 #include "services/evaluation/recipe/recipe_message.hpp"
 #include "services/evaluation/result/adc_file_message.hpp"
 #include "services/run/run_plan.hpp"
+#include "services/version.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -76,6 +78,12 @@ RunController::resume(const std::vector<analysis::AdcCalibrationPoint>& adc_cali
   if (const auto opened = open(adc_calibration); !opened) {
     return fail(opened.error());
   }
+  if (keeping_.begun) {
+    if (auto same = check_same_recipe(*keeping_.begun, name(), outcome_.recipe_sha256); !same) {
+      return fail(same.error());
+    }
+    outcome_.sources = keeping_.begun->sources;
+  }
   watch_->set_state(wire::MEASUREMENT_RUNNING);
   if (const auto known = wait_until_known(stop); !known) {
     return fail(known.error()); // and not aborted: what the analysis holds of it is left as it is
@@ -104,7 +112,9 @@ Expected<RunOutcome> RunController::excite_and_collect(const std::stop_token& st
     watch_->set_state(state, message); // files go on RUNNING until the analysis has seen their end
   }
   const Expected<void> collected = wait_for_results(stop);
-  if (!collected && outcome_.problem.empty()) {
+  if (collected) {
+    leave_out_foreign_means(); // all points are there
+  } else if (outcome_.problem.empty()) {
     outcome_.problem = collected.error().message;
   }
   if (sequence_ && sequence_->output_may_be_on()) {
@@ -124,7 +134,10 @@ Expected<RunOutcome> RunController::collect_of_ended_run(const std::stop_token& 
   outcome_.began_utc_ns = clock_.utc_now_ns();
   const Expected<void> collected = wait_for_results(stop);
   if (watch_->has_other_recipe()) {
-    return fail(other_bench_file());
+    return fail(other_bench_file(name()));
+  }
+  if (collected) {
+    leave_out_foreign_means();
   }
   outcome_.problem = collected ? lack_of_ended_run() : collected.error().message;
   outcome_.interrupted = stop.stop_requested();
@@ -156,10 +169,34 @@ std::string RunController::lack_of_ended_run() const {
                            name(), watch_->analysis()->service().c_str(), lacking, steps.size());
 }
 
-Error RunController::other_bench_file() const {
-  return {ErrorCode::bad_file, fmt::format("run '{}' was made with another bench file; resume it "
-                                           "with that one, or begin a new run",
-                                           name())};
+Expected<void> RunController::check_same_instruments() const {
+  const std::string other = watch_->other_instrument();
+  return other.empty() ? Expected<void>{}
+                       : fail(ErrorCode::no_source,
+                              fmt::format("run '{}' is not resumed: {}", name(), other));
+}
+
+// An analysis that takes a run over cannot know whether anything was measured; its folder does.
+Error RunController::refusal_of_run() const {
+  const Error refusal = watch_->outlook().reason;
+  const bool has_results =
+      !outcome_.results.empty() || !keeping_.begun || keeping_.begun->has_results;
+  return has_results ? refusal
+                     : Error{refusal.code, fmt::format("run '{}' ended before its first result: "
+                                                       "nothing was measured; begin a new run",
+                                                       name())};
+}
+
+// Another version of the analysis may take means otherwise.
+void RunController::leave_out_foreign_means() {
+  if (outcome_.analysis_software != software_version()) {
+    return;
+  }
+  for (const std::string& difference : replace_foreign_means(outcome_)) {
+    watch_->notice(fmt::format("a mean came that is not that of its points, and is left out ({}): "
+                               "does another program publish as the analysis of this run?",
+                               difference));
+  }
 }
 
 wire::MeasurementState RunController::final_state(bool excited) const {
@@ -231,9 +268,12 @@ std::string RunController::silence_of_analysis() const {
 // Sources describe themselves when they are found, which may be after the analysis has armed.
 Expected<void> RunController::check_before_first_step(const std::stop_token& stop) {
   const Instant began = clock_.now();
-  while (keeping_.check && outcome_.sources.size() < outcome_.recipe->sources().size() &&
+  while (keeping_.check && watch_->described() < outcome_.recipe->sources().size() &&
          clock_.now() - began < description_limit && !stop.stop_requested()) {
     watch_->follow("waiting for the descriptions of the sources");
+  }
+  if (const auto same = check_same_instruments(); !same) {
+    return same;
   }
   for (const RunSource& source : outcome_.sources) {
     if (const auto other = other_rate(bench_, source)) {
@@ -254,32 +294,46 @@ Expected<void> RunController::wait_until_known(const std::stop_token& stop) {
     if (watch_->signs_of_work() != std::exchange(signs_before, watch_->signs_of_work())) {
       attended = clock_.now();
     }
-    if (watch_->has_other_recipe()) {
-      return fail(other_bench_file());
-    }
-    if (analysis && analysis->arm() == wire::ARM_REFUSED) {
-      return fail(watch_->outlook().reason);
-    }
-    if (analysis && has_ended_at_analysis()) {
-      watch_->notice(fmt::format("run '{}' has ended at the analysis service {}; its results are "
-                                 "collected",
-                                 name(), analysis->service().c_str()));
-      return {};
-    }
-    if (analysis && watch_->outlook().kind == Kind::well &&
-        outcome_.results.size() >= analysis->results_published()) {
-      watch_->notice(fmt::format("run '{}' is resumed, with {} results so far", name(),
-                                 outcome_.results.size()));
-      return {};
-    }
-    if (clock_.now() - attended > (analysis ? analysis_limit : armed_limit)) {
-      return fail(ErrorCode::no_analysis,
-                  fmt::format("no analysis service holds run '{}' of bench '{}'; begin a new run",
-                              name(), bench_.bench));
+    if (const auto answer = answer_about_run(attended)) {
+      return *answer;
     }
   }
   return fail(ErrorCode::interrupted,
               "interrupted before the run was resumed; nothing was excited");
+}
+
+std::optional<Expected<void>> RunController::answer_about_run(Instant attended) const {
+  const auto& analysis = watch_->analysis();
+  if (watch_->has_other_recipe()) {
+    return fail(other_bench_file(name()));
+  }
+  if (analysis && analysis->arm() == wire::ARM_REFUSED) {
+    return fail(refusal_of_run());
+  }
+  if (analysis && has_ended_at_analysis()) {
+    watch_->notice(fmt::format("run '{}' has ended at the analysis service {}; its results are "
+                               "collected",
+                               name(), analysis->service().c_str()));
+    return Expected<void>{};
+  }
+  if (auto same = check_same_instruments(); analysis && !same) {
+    return same;
+  }
+  const RunOutlook outlook = watch_->outlook();
+  if (analysis && outlook.kind == Kind::well &&
+      outcome_.results.size() >= analysis->results_published()) {
+    watch_->notice(fmt::format("run '{}' is resumed, with {} results so far", name(),
+                               outcome_.results.size()));
+    return Expected<void>{};
+  }
+  if (clock_.now() - attended <= (analysis ? analysis_limit : armed_limit)) {
+    return std::nullopt;
+  }
+  return analysis && outlook.kind == Kind::waits
+             ? fail(outlook.reason)
+             : fail(ErrorCode::no_analysis,
+                    fmt::format("no analysis service holds run '{}' of bench '{}'; begin a new run",
+                                name(), bench_.bench));
 }
 
 std::optional<Expected<void>> RunController::answer_of_analysis(Instant since) const {

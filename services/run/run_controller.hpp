@@ -22,19 +22,21 @@
 #include "analysis/instrument/adc_calibration.hpp"
 #include "services/bench/bench_file.hpp"
 #include "services/evaluation/result/run_outcome.hpp"
+#include "services/run/begun_run.hpp"
 #include "services/run/run_watch.hpp"
 #include "services/run/step_sequence.hpp"
 
 namespace dyncal::services {
 
-// How results are kept while the run goes on. Both may be empty; both are called by the thread that
-// conducts the run and must not make it wait.
+// How results are kept while the run goes on. All may be empty; the functions are called by the
+// thread that conducts the run and must not make it wait.
 struct RunKeeping {
   // When the run is armed and its sources are known: whether there is room for it. What it fails
   // with is why nothing is excited.
   std::function<Expected<void>(const RunOutcome& planned)> check;
   // With all there is, as soon as results have come.
   std::function<void(const RunOutcome& so_far)> keep;
+  std::optional<BegunRun> begun{}; // where the run is resumed
 };
 
 class RunController {
@@ -61,8 +63,9 @@ public:
   // Goes on with the run of this name, whose conductor has died: steps that have their results are
   // not excited again. A run that has ended at the analysis is not gone on with: what it gave is
   // collected, and the steps that it lacks are the outcome's problem. Fails too where no analysis
-  // holds the run any more (no_analysis), where it was made with another bench file (bad_file), and
-  // for recorded files (bad_argument). REQUIRES: nobody else conducts it.
+  // holds the run any more (no_analysis), where it was made with another bench file, or with a file
+  // that this one names and that has changed (bad_file), where a source is another instrument now
+  // (no_source), and for recorded files (bad_argument). REQUIRES: nobody else conducts it.
   [[nodiscard]] Expected<RunOutcome>
   resume(const std::vector<analysis::AdcCalibrationPoint>& adc_calibration,
          const std::stop_token& stop);
@@ -77,6 +80,11 @@ private:
   Expected<RunOutcome> collect_of_ended_run(const std::stop_token& stop);
   Expected<void> wait_until_armed(const std::stop_token& stop);
   Expected<void> wait_until_known(const std::stop_token& stop);
+  [[nodiscard]] Expected<void> check_same_instruments() const;
+  // Nothing while the analysis may still tell what it holds of the run.
+  [[nodiscard]] std::optional<Expected<void>> answer_about_run(Instant attended) const;
+  [[nodiscard]] Error refusal_of_run() const;
+  void leave_out_foreign_means();
   // Nothing while the analysis may still answer.
   [[nodiscard]] std::optional<Expected<void>> answer_of_analysis(Instant since) const;
   [[nodiscard]] std::string silence_of_analysis() const;
@@ -86,7 +94,6 @@ private:
   [[nodiscard]] bool has_ended_at_analysis() const;
   // What an analysis that has ended the run does not give; empty where it gives all.
   [[nodiscard]] std::string lack_of_ended_run() const;
-  [[nodiscard]] Error other_bench_file() const;
   [[nodiscard]] bool everything_has_come() const;
   [[nodiscard]] bool plays_files() const;
   [[nodiscard]] wire::MeasurementState final_state(bool excited) const;

@@ -70,11 +70,14 @@ void RunMessages::collect_again() {
 }
 
 void RunMessages::publish(const wire::Measurement& measurement) {
+  was_planned_here_ = was_planned_here_ || measurement.state() == wire::MEASUREMENT_PLANNED;
+  has_begun_ = has_begun_ || measurement.state() == wire::MEASUREMENT_RUNNING;
   endpoints_.measurement.write(measurement);
 }
 
 void RunMessages::announce(const wire::PlannedStep& step, std::uint32_t attempt,
                            wire::ExcitationState state, bool output_may_be_on) {
+  attempts_[step.step()] = std::max(attempts_[step.step()], attempt);
   if (step.step() != excitation_.step() || attempt != excitation_.attempt()) {
     excitation_.window_begin_utc_ns(0);
     if (attempt > 1) {
@@ -174,7 +177,7 @@ std::size_t RunMessages::take_newest(bus::Reader<Message>& reader, std::vector<R
       return;
     }
     Result result = from_message(message);
-    if (planned && !is_planned(result, *planned)) {
+    if (planned && (!is_planned(result, *planned) || !was_excited(result, all))) {
       ++unplanned_;
       return;
     }
@@ -190,6 +193,40 @@ std::size_t RunMessages::take_newest(bus::Reader<Message>& reader, std::vector<R
   return taken;
 }
 
+// Recorded files announce no steps. A result that is not valid may be of a step that was never
+// begun: it says why. An attempt of the conductor before may have no result yet.
+bool RunMessages::was_excited(const StepResult& result,
+                              const std::vector<StepResult>& known) const {
+  const auto announced = attempts_.find(result.step);
+  std::uint32_t made = announced == attempts_.end() ? 0 : announced->second;
+  if (was_planned_here_) {
+    return result.attempt <= std::max(made, 1U) && (made > 0 || attempts_.empty() || !result.valid);
+  }
+  for (const StepResult& one : known) {
+    made = one.step == result.step ? std::max(made, one.attempt) : made;
+  }
+  return attempts_.empty() || result.attempt <= made + 1;
+}
+
+void RunMessages::take_source(RunSource source, std::vector<RunSource>& sources) {
+  described_.insert(source.source);
+  const auto known = std::find_if(sources.begin(), sources.end(), [&](const RunSource& other) {
+    return other.source == source.source;
+  });
+  if (known == sources.end()) {
+    sources.push_back(std::move(source));
+    return;
+  }
+  std::string other =
+      has_begun_ ? device_difference(source.source, known->description, source.description) : "";
+  if (other.empty()) {
+    other_instruments_.erase(source.source);
+    *known = std::move(source);
+  } else {
+    other_instruments_.insert_or_assign(source.source, std::move(other));
+  }
+}
+
 void RunMessages::take_sources(RunOutcome& outcome) {
   const std::vector<std::string> of_run =
       outcome.recipe ? outcome.recipe->sources() : std::vector<std::string>{};
@@ -199,14 +236,7 @@ void RunMessages::take_sources(RunOutcome& outcome) {
     if (std::find(of_run.begin(), of_run.end(), source.source) == of_run.end()) {
       return;
     }
-    const auto known =
-        std::find_if(outcome.sources.begin(), outcome.sources.end(),
-                     [&](const RunSource& other) { return other.source == source.source; });
-    if (known == outcome.sources.end()) {
-      outcome.sources.push_back(std::move(source));
-    } else {
-      *known = std::move(source);
-    }
+    take_source(std::move(source), outcome.sources);
   });
 }
 

@@ -5,15 +5,18 @@
 // its step (an analysis that was restarted publishes them all again); messages of other runs on the
 // bench are left out, and results of them not even asked for: an analysis keeps those of some runs,
 // and a slow link would be full of them when a run begins. So are results of steps, channels and
-// sources that the recipe does not have, which are counted: what is kept is no more than was
-// planned. Belongs to one thread.
+// sources that the recipe does not have, and of attempts at a step that were never made, which are
+// counted: what is kept is no more than was planned and excited. A source that becomes another
+// instrument in the run leaves the description as the run began with it. Belongs to one thread.
 #pragma once
 
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -58,7 +61,14 @@ public:
   // something new of its work.
   [[nodiscard]] std::size_t signs_of_work() const { return signs_of_work_; }
   [[nodiscard]] bool has_other_recipe() const { return other_recipe_; }
-  // Results of this run that it did not plan.
+  // Sources of the recipe that have described themselves.
+  [[nodiscard]] std::size_t described() const { return described_.size(); }
+  // One sentence about a source that is another instrument now than the run began with; empty:
+  // none is.
+  [[nodiscard]] std::string other_instrument() const {
+    return other_instruments_.empty() ? "" : other_instruments_.begin()->second;
+  }
+  // Results of this run that it did not plan or excite.
   [[nodiscard]] std::size_t unplanned() const { return unplanned_; }
   // The newest status of the analysis service that evaluates this run; nothing before the first. It
   // is the one that is armed, until it has been silent for attention_limit; then whichever reports.
@@ -100,6 +110,14 @@ private:
                                               const std::shared_ptr<bus::WakeUp>& wake_up);
   void take_sources(RunOutcome& outcome);
   void take_status(RunOutcome& outcome);
+  void take_source(RunSource source, std::vector<RunSource>& sources);
+  [[nodiscard]] bool was_excited(const StepResult& result,
+                                 const std::vector<StepResult>& known) const;
+  template <class Result> // of a whole run
+  [[nodiscard]] static bool was_excited(const Result& /*result*/,
+                                        const std::vector<Result>& /*known*/) {
+    return true;
+  }
   [[nodiscard]] bool follows(const wire::ServiceStatus& status) const;
   template <class Message, class Result, class SameKey>
   std::size_t take_newest(bus::Reader<Message>& reader, std::vector<Result>& all,
@@ -121,7 +139,12 @@ private:
   std::string recipe_sha256_;
   bool other_recipe_ = false; // in a result of this run
   std::size_t unplanned_ = 0;
-  wire::Excitation excitation_; // as announced last
+  bool was_planned_here_ = false; // else the run is resumed, and another made attempts before
+  bool has_begun_ = false;        // RUNNING
+  std::set<std::string> described_;
+  std::map<std::string, std::string> other_instruments_; // sentences by source
+  std::map<std::uint32_t, std::uint32_t> attempts_;      // announced, by step
+  wire::Excitation excitation_;                          // as announced last
   bus::Clock::Instant announced_{};
 };
 

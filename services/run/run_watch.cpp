@@ -57,7 +57,8 @@ void RunWatch::look_without_hold() {
     new_results_(outcome_);
   }
   if (messages_.unplanned() > 0 && !std::exchange(unplanned_said_, true)) {
-    notice("results of this run came that it did not plan; they are left out: does another program "
+    notice("results of this run came that it did not plan or excite; they are left out: does "
+           "another program "
            "publish as the analysis of this run?");
   }
   if (measurement_.state() == wire::MEASUREMENT_RUNNING) {
@@ -80,10 +81,21 @@ void RunWatch::follow(const std::string& phase) {
 RunOutlook RunWatch::outlook() const {
   const RunOutlook outlook =
       run_outlook(messages_.analysis(), clock_.now() - messages_.analysis_heard(), commands_);
+  if (outlook.kind != RunOutlook::Kind::well) {
+    return outlook;
+  }
+  if (messages_.has_other_recipe()) {
+    return {RunOutlook::Kind::over,
+            {ErrorCode::bad_file, "the analysis evaluates this run by another bench file than it "
+                                  "is conducted by; begin a new run"}};
+  }
+  if (std::string other = messages_.other_instrument(); !other.empty()) {
+    return {RunOutlook::Kind::waits, {ErrorCode::no_source, std::move(other)}};
+  }
   std::string deafness = messages_.deafness_of_guard();
-  return outlook.kind == RunOutlook::Kind::well && !deafness.empty()
-             ? RunOutlook{RunOutlook::Kind::waits, {ErrorCode::device, std::move(deafness)}}
-             : outlook;
+  return deafness.empty()
+             ? outlook
+             : RunOutlook{RunOutlook::Kind::waits, {ErrorCode::device, std::move(deafness)}};
 }
 
 void RunWatch::show_step(std::size_t place, std::uint32_t attempt) {

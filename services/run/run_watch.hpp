@@ -77,6 +77,8 @@ public:
   }
   [[nodiscard]] Instant analysis_heard() const { return messages_.analysis_heard(); }
   [[nodiscard]] std::size_t signs_of_work() const { return messages_.signs_of_work(); }
+  [[nodiscard]] std::size_t described() const { return messages_.described(); }
+  [[nodiscard]] std::string other_instrument() const { return messages_.other_instrument(); }
   // A result of this run names another bench file.
   [[nodiscard]] bool has_other_recipe() const { return messages_.has_other_recipe(); }
   [[nodiscard]] RunOutlook outlook() const;
