@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "services/command/keep_options.hpp"
 #include "services/laboratory/contact_table.hpp"
 
 namespace dyncal::services {
@@ -11,7 +12,8 @@ void add_report(CLI::App& app, ReportCommand& report) {
   CLI::App* command = app.add_subcommand(
       "report", "make a report of a stored run, HTML and PDF: values with U and k, figures, "
                 "budgets, flags, conditions, signature block");
-  command->add_option("RUN", report.run, "run folder, or a result file (JSON)")->required();
+  take_run(
+      *command->add_option("RUN", report.run, "run folder, or a result file (JSON)")->required());
   command->add_option("--lab", report.laboratory, "laboratory file: letterhead, persons, texts");
   command->add_option("--sensor", report.sensor, "sensor file: what was calibrated, and for whom");
   command->add_option("--channel", report.channels,
@@ -25,7 +27,8 @@ void add_report(CLI::App& app, ReportCommand& report) {
 void add_certify(CLI::App& app, CertifyCommand& certify) {
   CLI::App* command = app.add_subcommand(
       "certify", "make a digital calibration certificate (DCC 3.3.0) of a stored run");
-  command->add_option("RUN", certify.run, "run folder, or a result file (JSON)")->required();
+  take_run(
+      *command->add_option("RUN", certify.run, "run folder, or a result file (JSON)")->required());
   command
       ->add_option("--lab", certify.laboratory,
                    "laboratory file: who issues it, customer, reference, conditions")
@@ -65,8 +68,8 @@ void add_verify(CLI::App& app, VerifyCommand& verify) {
   CLI::App* command = app.add_subcommand(
       "verify", "check a digital calibration certificate: schema, signature, signer, numbers");
   command->add_option("FILE", verify.certificate, "certificate (DCC, XML)")->required();
-  command->add_option("--run", verify.run,
-                      "run folder or result file that its numbers should be those of");
+  take_run(*command->add_option("--run", verify.run,
+                                "run folder or result file that its numbers should be those of"));
   command->add_option("--trust", verify.trusted,
                       "X.509 certificates, PEM, of the laboratory or its CA, one or more");
   command->add_option("--schema", verify.schema,

@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "services/run_folder/run_folder.hpp"
+
 namespace dyncal::services {
 namespace {
 
@@ -47,6 +49,10 @@ void add_history(CLI::App& app, HistoryCommand& history) {
 
 } // namespace
 
+void take_run(CLI::Option& option) {
+  option.transform([](const std::string& typed) { return run_path(typed).string(); });
+}
+
 void add_keep_options(CLI::App& command, KeepOptions& keep) {
   command
       .add_option("--folder", keep.folder,
@@ -63,8 +69,9 @@ void add_store(CLI::App& app, StoreCommands& commands) {
   store->require_subcommand(1);
   CLI::App* add = store->add_subcommand(
       "add", "add results to the store; one that is there already does no harm");
-  add->add_option("RESULT", commands.add.results, "result file (JSON) or run folder, repeatable")
-      ->required();
+  take_run(*add->add_option("RESULT", commands.add.results,
+                            "result file (JSON) or run folder, repeatable")
+                ->required());
   add_store_place(*add, commands.add.store);
   add_runs(app, commands.runs);
   add_history(app, commands.history);

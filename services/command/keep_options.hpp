@@ -8,12 +8,16 @@
 
 namespace CLI { // NOLINT(readability-identifier-naming): of the library
 class App;
-}
+class Option;
+} // namespace CLI
 
 namespace dyncal::services {
 
 // --folder, --store
 void add_keep_options(CLI::App& command, KeepOptions& keep);
+
+// The option names a run: its folder, or ROOT/BENCH/NAME for the newest of that name.
+void take_run(CLI::Option& option);
 
 struct StoreCommands {
   StoreAddCommand add;

@@ -106,11 +106,12 @@ void add_demo(CLI::App& app, DemoCommand& demo) {
 void add_analyse(CLI::App& app, AnalyseCommand& analyse) {
   CLI::App* command = app.add_subcommand(
       "analyse", "evaluate the file sources of a bench file, or a recording, without the network");
-  command
-      ->add_option("BENCH.toml", analyse.bench_file,
-                   "bench file, the folder of a run, or a recording (.mcap, or .h5 of 'dyncal "
-                   "export'), which gives the results of the live run")
-      ->required();
+  take_run(
+      *command
+           ->add_option("BENCH.toml", analyse.bench_file,
+                        "bench file, the folder of a run, or a recording (.mcap, or .h5 of 'dyncal "
+                        "export'), which gives the results of the live run")
+           ->required());
   command->add_option("--run", analyse.run, "run of the recording (default: the only one)");
   command->add_option("--recipe", analyse.recipe,
                       "evaluate the recording by this bench file, not by the one of its run");

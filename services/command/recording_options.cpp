@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "services/command/keep_options.hpp"
+
 namespace dyncal::services {
 namespace {
 
@@ -38,10 +40,10 @@ void add_export(CLI::App& app, ExportCommand& exported) {
   CLI::App* command = app.add_subcommand(
       "export", "a recording for other programs: HDF5, NumPy, CSV, or MCAP with one message a "
                 "sample");
-  command
-      ->add_option("SOURCE", exported.recording,
-                   "folder of a run, recording (.mcap), or HDF5 export (.h5)")
-      ->required();
+  take_run(*command
+                ->add_option("SOURCE", exported.recording,
+                             "folder of a run, recording (.mcap), or HDF5 export (.h5)")
+                ->required());
   command
       ->add_option("--to", exported.to, "file to write, a folder for csv; nothing is overwritten")
       ->required();

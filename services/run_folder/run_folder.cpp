@@ -209,7 +209,7 @@ std::filesystem::path find_run_folder(const std::filesystem::path& root, const s
   std::pair<std::string, fs::path> newest; // by when it began
   const fs::path folders = fs::absolute(root / bench).lexically_normal();
   for (const auto& entry : fs::directory_iterator(folders, unknown)) {
-    const auto found = entry.is_directory(unknown)
+    const auto found = fs::is_directory(entry.symlink_status(unknown))
                            ? run_of_folder(entry.path().filename().string(), run)
                            : std::nullopt;
     if (found) {
@@ -217,6 +217,18 @@ std::filesystem::path find_run_folder(const std::filesystem::path& root, const s
     }
   }
   return newest.second;
+}
+
+std::filesystem::path run_path(const std::filesystem::path& typed) {
+  std::error_code unknown;
+  const fs::path path = fs::absolute(typed, unknown).lexically_normal();
+  if (fs::exists(path, unknown) || !path.has_filename()) {
+    return typed;
+  }
+  const fs::path bench = path.parent_path();
+  const fs::path newest =
+      find_run_folder(bench.parent_path(), bench.filename().string(), path.filename().string());
+  return newest.empty() ? typed : newest;
 }
 
 bool is_in_use(const std::filesystem::path& run_folder) {

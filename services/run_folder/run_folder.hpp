@@ -62,10 +62,14 @@ private:
 };
 
 // The newest folder of the bench whose run is called so (services/contract/run_identity.hpp);
-// empty: there is none.
+// empty: there is none. A link to a folder is not the run of its name.
 [[nodiscard]] std::filesystem::path find_run_folder(const std::filesystem::path& root,
                                                     const std::string& bench,
                                                     const std::string& run);
+
+// What a person means who writes ROOT/BENCH/NAME: the file or folder of that path, or, where there
+// is none, the newest run of that name; the path as it is, where there is none of these.
+[[nodiscard]] std::filesystem::path run_path(const std::filesystem::path& typed);
 
 // Whether a program that conducts the run has the folder open now.
 [[nodiscard]] bool is_in_use(const std::filesystem::path& run_folder);

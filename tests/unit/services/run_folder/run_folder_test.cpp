@@ -207,5 +207,29 @@ TEST_F(Folder, OfANameThatCameAgainIsTheNewest) {
   EXPECT_TRUE(find_run_folder(root_, "bench-1", "mon").empty());
 }
 
+TEST_F(Folder, IsNoLinkToAnother) {
+  ASSERT_TRUE(create("monday.20261122T101531.125Z.00000001"));
+  ASSERT_TRUE(create("tuesday.20261122T101532.125Z.00000002"));
+  fs::create_directory_symlink(root_ / "bench-1/tuesday.20261122T101532.125Z.00000002",
+                               root_ / "bench-1/monday.20261122T101539.125Z.00000003");
+  EXPECT_EQ(find_run_folder(root_, "bench-1", "monday").filename(),
+            "monday.20261122T101531.125Z.00000001");
+}
+
+TEST_F(Folder, OfARunIsFoundByItsNameWhereNothingHasThatPath) {
+  for (const char* name :
+       {"monday.20261122T101531.125Z.00000001", "monday.20261122T101532.125Z.00000000"}) {
+    ASSERT_TRUE(create(name));
+  }
+  const fs::path bench = root_ / "bench-1";
+  EXPECT_EQ(run_path(bench / "monday"), bench / "monday.20261122T101532.125Z.00000000");
+  const fs::path exact = bench / "monday.20261122T101531.125Z.00000001";
+  EXPECT_EQ(run_path(exact), exact);
+  for (const char* other : {"mon", "monday.toml", "", "/", "monday/result.json"}) {
+    EXPECT_EQ(run_path(other), other); // whatever is not there is named as it was typed
+  }
+  EXPECT_EQ(run_path(bench / "mon"), bench / "mon");
+}
+
 } // namespace
 } // namespace dyncal::services
