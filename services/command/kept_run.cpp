@@ -5,7 +5,9 @@
 #include <fmt/core.h>
 
 #include "services/bench/named_files.hpp"
+#include "services/command/own_recording.hpp"
 #include "services/contract/run_identity.hpp"
+#include "services/report/stored_result.hpp"
 #include "services/store/store.hpp"
 
 namespace dyncal::services {
@@ -33,6 +35,26 @@ Expected<std::unique_ptr<recording::Recorder>> start_recorder(const RunFolder& f
   options.dds = setup.dds;
   options.domain = setup.domain;
   return recording::Recorder::start(participant, std::move(options));
+}
+
+// As its result file has it; nothing where that cannot be read: then the analysis alone knows.
+std::optional<BegunRun> begun_run(const std::filesystem::path& folder) {
+  const auto result = read_stored_result(folder);
+  if (!result) {
+    return std::nullopt;
+  }
+  BegunRun begun{result->recipe_sha256, {}, !result->points.empty()};
+  const auto text = [](const nlohmann::json& source, const char* key) {
+    return source.contains(key) && source[key].is_string() ? source[key].get<std::string>() : "";
+  };
+  for (const nlohmann::json& source : result->json->value("sources", nlohmann::json::array())) {
+    RunSource one;
+    one.source = text(source, "source");
+    one.description.device = text(source, "device");
+    one.description.serial = text(source, "serial");
+    begun.sources.push_back(std::move(one));
+  }
+  return begun;
 }
 
 std::string line_of(const RunProgress& progress) {
@@ -93,7 +115,8 @@ RunKeeping KeptRun::keeping() {
   return {
       .check = [this](const RunOutcome& planned) { return check(planned); },
       .keep =
-          [this](const RunOutcome& so_far) { disk_->folder->results().keep(completed(so_far)); }};
+          [this](const RunOutcome& so_far) { disk_->folder->results().keep(completed(so_far)); },
+      .begun = setup_.is_resumed ? begun_run(disk_->folder->path()) : std::nullopt};
 }
 
 Expected<void> KeptRun::check(const RunOutcome& planned) {
@@ -171,6 +194,7 @@ void KeptRun::end_recording() {
                     "never came",
                     ended->not_stored, ended->missing));
   } else {
+    is_recorded_whole_ = true;
     disk_->log.write(fmt::format("the recording has {} messages, {}", ended->stored,
                                  size_text(ended->file_bytes)));
   }
@@ -212,6 +236,25 @@ void KeptRun::add_to_store(const RunOutcome& outcome) {
                     "'dyncal store add {}'",
                     outcome.run, added.error().message, disk_->folder->path().string()));
   }
+}
+
+Expected<void> KeptRun::hold_against_recording(const RunOutcome& outcome,
+                                               const std::stop_token& stop) {
+  if (!disk_) {
+    return {};
+  }
+  if (!disk_->recorder) {
+    say(not_held("there is none"));
+    return {};
+  }
+  const OwnRecordingCheck check = check_own_recording(
+      outcome, disk_->folder->path(), setup_.is_resumed || !is_recorded_whole_, stop);
+  if (check.differs) {
+    disk_->log.write(check.sentence);
+    return fail(ErrorCode::no_result, check.sentence);
+  }
+  say(check.sentence);
+  return {};
 }
 
 void KeptRun::discard() {

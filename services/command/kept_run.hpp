@@ -56,6 +56,10 @@ public:
   [[nodiscard]] Expected<void> finish(const RunOutcome& outcome);
   // After everything else, for a database may let wait. REQUIRES: finish() has not failed.
   void add_to_store(const RunOutcome& outcome);
+  // The last: whether the recording gives what came live (own_recording.hpp); says what came out.
+  // Fails (no_result) where it does not. REQUIRES: finish() has not failed.
+  [[nodiscard]] Expected<void> hold_against_recording(const RunOutcome& outcome,
+                                                      const std::stop_token& stop);
   // Of a run that has excited nothing.
   void discard();
   // Nothing when none is kept.
@@ -87,6 +91,7 @@ private:
   std::size_t noted_results_ = 0;
   bool noted_problem_ = false;
   bool noted_end_of_recording_ = false;
+  bool is_recorded_whole_ = false;
 };
 
 } // namespace dyncal::services

@@ -229,7 +229,10 @@ Expected<RunOutcome> conduct_run(const RunCommand& command, const std::stop_toke
   if (!run) {
     return fail(run.error());
   }
-  if (const auto shown = show_and_keep(command, *run); !shown) {
+  const auto shown = show_and_keep(command, *run).and_then([&] {
+    return run->kept->hold_against_recording(run->outcome, stop);
+  });
+  if (!shown) {
     return fail(shown.error());
   }
   return std::move(run->outcome);
