@@ -4,6 +4,7 @@ Everything runs on loopback, on a DDS domain of its own and in a folder of its o
 what was started. Programs are those of a build tree or of an installation.
 """
 
+import fcntl
 import json
 import os
 import pathlib
@@ -12,6 +13,7 @@ import signal
 import socket
 import subprocess
 import sys
+import termios
 import time
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
@@ -67,15 +69,23 @@ def free_udp_port():
     raise Failure("no free UDP port is left")
 
 
+def take_terminal():
+    fcntl.ioctl(0, termios.TIOCSCTTY)
+
+
 class Program:
-    def __init__(self, command, log, environment=None):
+    """`terminal`: the end of a pseudo terminal that is the program's own, as in a window."""
+
+    def __init__(self, command, log, environment=None, terminal=None):
         self.log = log
         with open(log, "w", encoding="utf-8") as errors:
             self.process = subprocess.Popen(
                 command,
                 stdout=subprocess.DEVNULL,
                 stderr=errors,
-                stdin=subprocess.DEVNULL,
+                stdin=subprocess.DEVNULL if terminal is None else terminal,
+                start_new_session=terminal is not None,
+                preexec_fn=None if terminal is None else take_terminal,
                 cwd=log.parent,
                 env={**os.environ, **(environment or {})},
             )
@@ -125,6 +135,7 @@ class BenchLaboratory:
     preset = "mpu9250-ptb"  # of the virtual bench
     channels = 3  # of its sensor
     sensor_uncertainty = "adc_delay_s = 1e-6"
+    terminal = None  # of the programs that are started from now on
     run_s = 11.0  # about what an undisturbed run takes, from its first word to its last
 
     def __init__(
@@ -216,7 +227,7 @@ dut = ["dau/acceleration_x", "dau/acceleration_y", "dau/acceleration_z"]"""
             "XDG_STATE_HOME": str(self.folder / "state"),
         }
         environment.update(self.environments.get(program, {}))
-        self.started.append(Program(command, place / "log.txt", environment))
+        self.started.append(Program(command, place / "log.txt", environment, self.terminal))
         return self.started[-1]
 
     def on_bus(self, program, arguments):

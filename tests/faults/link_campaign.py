@@ -35,12 +35,17 @@ HOST_OF = {"dyncal-analysis": "analysis", "dyncal": "operator"}
 class SpreadLaboratory(BenchLaboratory):
     """A live bench whose programs are on hosts of their own."""
 
+    places = HOSTS
+
     def __init__(self, programs, folder, vendors, **options):
-        self.hosts = hosts.Hosts(HOSTS)
+        self.hosts = hosts.Hosts(self.places)
         super().__init__(programs, folder, vendors, **options)
 
+    def host_of(self, program):
+        return HOST_OF.get(program, "bench")
+
     def start_program(self, program, arguments):
-        host = HOST_OF.get(program, "bench")
+        host = self.host_of(program)
         if program == "dyncal-virtual-bench":
             arguments = [*arguments, "--generator-listen", f"{self.hosts.address['bench']}:0"]
         return super().start_program(program, arguments, self.hosts.command(host))
