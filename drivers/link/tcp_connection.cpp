@@ -5,10 +5,12 @@
 #include <cstring>
 #include <memory>
 
+#include <linux/sockios.h>
 #include <netdb.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 
 namespace dyncal::drivers {
@@ -93,6 +95,12 @@ int connect_once(int socket, const addrinfo& target, int stop_descriptor,
   return status;
 }
 
+// What is not acknowledged by the kernel of the other side is still on its way, or was lost.
+bool is_under_way(int socket) {
+  int bytes = 0;
+  return ioctl(socket, SIOCOUTQ, &bytes) == 0 && bytes > 0;
+}
+
 } // namespace
 
 Expected<TcpConnection> TcpConnection::connect(const Address& address,
@@ -133,7 +141,12 @@ Expected<void> TcpConnection::wait(short events, Clock::time_point deadline) {
   case Ready::stopped:
     return fail(ErrorCode::disconnected, address_.text() + ": stopped");
   case Ready::timed_out:
-    return fail(ErrorCode::timeout, address_.text() + ": the instrument does not answer");
+    return fail(ErrorCode::timeout,
+                address_.text() +
+                    (is_under_way(socket_.number())
+                         ? ": what was sent to the instrument does not arrive; is the "
+                           "network to it interrupted or overloaded?"
+                         : ": the instrument does not answer"));
   case Ready::yes:
     break;
   }

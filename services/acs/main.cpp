@@ -6,6 +6,7 @@
 
 #include "services/acs/played_source.hpp"
 #include "services/program/bench_program.hpp"
+#include "services/program/watched_network.hpp"
 #include "services/source/run_sources.hpp"
 
 namespace {
@@ -44,11 +45,12 @@ Expected<void> serve(const std::vector<BenchFile>& benches, const NetworkOptions
   if (!sources) {
     return fail(sources.error());
   }
-  auto participant = join_network(network, "dyncal-acs");
-  if (!participant) {
-    return fail(participant.error());
+  auto joined = WatchedNetwork::join(network, "dyncal-acs", stop);
+  if (!joined) {
+    return fail(joined.error());
   }
-  return run_sources(*participant, *sources, supervisor, stop);
+  WatchedNetwork& bus = **joined;
+  return bus.outcome(run_sources(bus.participant, *sources, supervisor, bus.stop()));
 }
 
 } // namespace

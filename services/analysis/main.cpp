@@ -9,6 +9,7 @@
 #include "services/host_clocks/clock_responder.hpp"
 #include "services/program/command_line.hpp"
 #include "services/program/program.hpp"
+#include "services/program/watched_network.hpp"
 #include "services/supervision/supervisor.hpp"
 #include "services/version.hpp"
 
@@ -27,11 +28,12 @@ int main(int argc, char** argv) {
   }
 
   services::set_up_log("dyncal-analysis");
-  const std::stop_token stop = services::stop_on_signals();
-  auto participant = services::join_network(network, "dyncal-analysis");
-  if (!participant) {
-    return services::report_error(participant.error());
+  const auto joined =
+      services::WatchedNetwork::join(network, "dyncal-analysis", services::stop_on_signals());
+  if (!joined) {
+    return services::report_error(joined.error());
   }
+  const std::stop_token stop = (*joined)->stop();
   const auto created = services::Supervisor::create(
       services::this_program("dyncal-analysis", services::software_version(), network.dds),
       metrics);
@@ -39,7 +41,7 @@ int main(int argc, char** argv) {
     return services::report_error(created.error());
   }
   services::Supervisor& supervisor = **created;
-  const auto clock = services::ClockResponder::start(*participant, supervisor.identity());
+  const auto clock = services::ClockResponder::start((*joined)->participant, supervisor.identity());
   if (!clock) {
     return services::report_error(clock.error());
   }
@@ -50,7 +52,8 @@ int main(int argc, char** argv) {
       fmt::format("analysis@{}:{}", identity.host, identity.process_id).substr(0, 64);
   identity.dds = network.dds;
   supervisor.describe(fmt::format("{} on {}", identity.dds, identity.service));
-  auto service = services::AnalysisService::create(std::move(*participant), std::move(identity));
+  auto service =
+      services::AnalysisService::create(std::move((*joined)->participant), std::move(identity));
   if (!service) {
     return services::report_error(service.error());
   }
@@ -60,5 +63,6 @@ int main(int argc, char** argv) {
     supervisor.report(figures);
     supervisor.turned();
   });
-  return 0;
+  const auto served = (*joined)->outcome({});
+  return served ? 0 : services::report_error(served.error());
 }

@@ -35,6 +35,7 @@
 
 #include "services/bus/discovery.hpp"
 #include "services/bus/names.hpp"
+#include "services/bus/own_addresses.hpp"
 #include "services/bus/refused_packets.hpp"
 #include "services/bus/type_support.hpp"
 #include "services/bus/wake_up.hpp"
@@ -90,6 +91,9 @@ public:
   [[nodiscard]] virtual std::uint64_t malformed_messages() const = 0;
   [[nodiscard]] virtual std::shared_ptr<const RefusedPackets> refused_packets() const {
     return std::make_shared<RefusedPackets>(nullptr); // none, where there are no packets
+  }
+  [[nodiscard]] virtual std::shared_ptr<const OwnAddresses> own_addresses() const {
+    return std::make_shared<OwnAddresses>(); // none, where nothing leaves the process
   }
   // Nobody, where there is no discovery.
   [[nodiscard]] virtual Discovery discovered() const { return {}; }
@@ -216,6 +220,10 @@ public:
   // Counts on, also when the participant is gone.
   [[nodiscard]] std::shared_ptr<const RefusedPackets> refused_packets() const {
     return untyped_->refused_packets();
+  }
+  // Also when the participant is gone.
+  [[nodiscard]] std::shared_ptr<const OwnAddresses> own_addresses() const {
+    return untyped_->own_addresses();
   }
   // The others of the domain and what they have, as far as it is known by now; nobody without
   // `watch_discovery`. Any thread.

@@ -2,8 +2,10 @@
 
 #include <arpa/inet.h>
 #include <array>
+#include <filesystem>
 #include <ifaddrs.h>
 #include <memory>
+#include <net/if.h>
 #include <netdb.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
@@ -18,6 +20,13 @@ std::string text_of(const sockaddr* address) {
   return inet_ntop(AF_INET, &ipv4->sin_addr, text, sizeof text) != nullptr ? text : "";
 }
 
+bool is_inner(const ifaddrs& entry) {
+  std::error_code error;
+  return (entry.ifa_flags & IFF_POINTOPOINT) != 0 ||
+         std::filesystem::exists("/sys/class/net/" + std::string(entry.ifa_name) + "/bridge",
+                                 error);
+}
+
 } // namespace
 
 std::string host_name() {
@@ -25,28 +34,47 @@ std::string host_name() {
   return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
 }
 
-services::Expected<std::string> interface_address(const std::string& name_or_address) {
+services::Expected<std::vector<HostAddress>> host_addresses() {
   ifaddrs* list = nullptr;
   if (getifaddrs(&list) != 0) {
     return fail(services::ErrorCode::network,
                 "the network interfaces of this machine cannot be listed");
   }
   const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> owner(list, &freeifaddrs);
-
-  std::string known;
+  std::vector<HostAddress> addresses;
   for (const ifaddrs* entry = list; entry != nullptr; entry = entry->ifa_next) {
-    if (entry->ifa_addr == nullptr || entry->ifa_addr->sa_family != AF_INET) {
-      continue;
+    if (entry->ifa_addr != nullptr && entry->ifa_addr->sa_family == AF_INET &&
+        (entry->ifa_flags & IFF_UP) != 0) {
+      addresses.push_back({.interface = entry->ifa_name,
+                           .index = if_nametoindex(entry->ifa_name),
+                           .address = text_of(entry->ifa_addr),
+                           .loopback = (entry->ifa_flags & IFF_LOOPBACK) != 0,
+                           .inner = is_inner(*entry)});
     }
-    const std::string address = text_of(entry->ifa_addr);
-    if (name_or_address == entry->ifa_name || name_or_address == address) {
-      return address;
+  }
+  return addresses;
+}
+
+std::string to_string(const HostAddress& address) {
+  return address.address + " (" + address.interface + ")";
+}
+
+services::Expected<std::string> interface_address(const std::string& name_or_address) {
+  const auto addresses = host_addresses();
+  if (!addresses) {
+    return fail(addresses.error());
+  }
+  std::string known;
+  for (const HostAddress& one : *addresses) {
+    if (name_or_address == one.interface || name_or_address == one.address) {
+      return one.address;
     }
-    known += (known.empty() ? "" : ", ") + std::string(entry->ifa_name) + " (" + address + ")";
+    known += (known.empty() ? "" : ", ") + one.interface + " (" + one.address + ")";
   }
   return fail(services::ErrorCode::network,
               "network interface \"" + name_or_address +
-                  "\" is not one with an IPv4 address on this machine, which has " + known);
+                  "\" is not one that is up with an IPv4 address on this machine, which has " +
+                  known);
 }
 
 services::Expected<std::vector<std::string>> resolve_peers(const std::vector<std::string>& hosts) {

@@ -12,6 +12,22 @@
 
 namespace dyncal::bus {
 
+struct HostAddress {
+  std::string interface;
+  unsigned index = 0;  // of the interface, another one when it is plugged in again
+  std::string address; // IPv4
+  bool loopback = false;
+  bool inner = false; // a bridge of containers or a tunnel: beside the network of the laboratory
+
+  bool operator==(const HostAddress&) const = default;
+};
+
+// Of all interfaces that are up. Fails (network) where they cannot be listed.
+[[nodiscard]] services::Expected<std::vector<HostAddress>> host_addresses();
+
+// "10.98.0.1 (lab)"
+[[nodiscard]] std::string to_string(const HostAddress& address);
+
 // As the host calls itself; "unknown" if it has no name.
 [[nodiscard]] std::string host_name();
 

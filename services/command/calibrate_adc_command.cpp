@@ -18,6 +18,7 @@
 #include "services/contract/digest.hpp"
 #include "services/contract/topics.hpp"
 #include "services/program/bench_program.hpp"
+#include "services/program/watched_network.hpp"
 #include "services/report/show_outcome.hpp"
 
 namespace dyncal::services {
@@ -233,14 +234,16 @@ Expected<void> write(const CalibrateAdcCommand& command, const BenchFile& bench,
 }
 
 Expected<Measurements> measure(const CalibrateAdcCommand& command, const BenchFile& bench,
-                               const std::string& run, const std::stop_token& stop) {
+                               const std::string& run, const std::stop_token& asked) {
   NetworkOptions network = command.network;
   add_network_settings(bench.network, network);
-  auto participant = join_network(network, "dyncal-calibrate");
-  if (!participant) {
-    return fail(participant.error());
+  const auto joined = WatchedNetwork::join(network, "dyncal-calibrate", asked);
+  if (!joined) {
+    return fail(joined.error());
   }
-  if (const auto common = require_common_time_scale(*participant, bench, stop); !common) {
+  bus::Participant& participant = (*joined)->participant;
+  const std::stop_token stop = (*joined)->stop();
+  if (const auto common = require_common_time_scale(participant, bench, stop); !common) {
     return fail(common.error());
   }
   std::vector<std::optional<double>> passes(command.amplitudes_vpp.begin(),
@@ -255,7 +258,7 @@ Expected<Measurements> measure(const CalibrateAdcCommand& command, const BenchFi
                  passes.size());
     }
     const auto measured = measure_pass(command, bench, fmt::format("{}-{}", run, i + 1), passes[i],
-                                       *participant, stop);
+                                       participant, stop);
     if (!measured) {
       return measured;
     }

@@ -1,20 +1,17 @@
 #include "services/command/doctor_command.hpp"
 
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "services/bus/host_network.hpp"
-#include "services/doctor/announcement_listener.hpp"
+#include "services/command/laboratory_look.hpp"
 #include "services/doctor/checks.hpp"
-#include "services/doctor/laboratory_watch.hpp"
 #include "services/doctor/report.hpp"
+#include "services/doctor/unheard_analysis.hpp"
 #include "services/json_text.hpp"
 #include "services/program/bench_program.hpp"
-#include "services/version.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -24,26 +21,6 @@ using doctor::Severity;
 
 void append(Findings& findings, const Findings& more) {
   findings.insert(findings.end(), more.begin(), more.end());
-}
-
-// Looks at the laboratory for as long as the command says.
-doctor::LaboratoryView look(doctor::LaboratoryWatch& watch, doctor::AnnouncementListener* listener,
-                            double seconds, const std::stop_token& stop) {
-  using Clock = std::chrono::steady_clock;
-  const auto began = Clock::now();
-  const auto passed_s = [&] { return std::chrono::duration<double>(Clock::now() - began).count(); };
-  while (!stop.stop_requested() && passed_s() < seconds) {
-    watch.work();
-    if (listener != nullptr) {
-      listener->work();
-    }
-  }
-  doctor::LaboratoryView view = watch.view();
-  view.seconds = passed_s();
-  if (listener != nullptr) {
-    view.announced_by_multicast = listener->heard();
-  }
-  return view;
 }
 
 Expected<std::optional<BenchFile>> read_bench(const DoctorCommand& command,
@@ -59,24 +36,22 @@ Expected<std::optional<BenchFile>> read_bench(const DoctorCommand& command,
   return std::optional<BenchFile>(std::move(*bench));
 }
 
-// Null where multicast is not to be used, or cannot be; then a finding says so.
-std::optional<doctor::AnnouncementListener> open_listener(const NetworkOptions& network,
-                                                          Findings& findings) {
-  if (network.no_multicast) {
-    return std::nullopt;
+Findings judge(const LaboratoryLook& look, const std::optional<BenchFile>& bench) {
+  const doctor::LaboratoryView& view = look.view;
+  Findings findings = doctor::check_programs(view);
+  if (!doctor::analysis_is_heard(view)) {
+    findings.push_back(
+        {Severity::warning, "analysis", doctor::why_no_analysis_is_heard(view, look.host)});
   }
-  const auto address = network.interface_name.empty()
-                           ? Expected<std::string>(std::string())
-                           : bus::interface_address(network.interface_name);
-  if (address && address->starts_with("127.")) {
-    return std::nullopt; // nothing is sent by multicast there
-  }
-  auto listener = doctor::AnnouncementListener::open(network.domain, address ? *address : "");
-  if (!listener) {
-    findings.push_back({Severity::warning, "multicast", listener.error().message});
-    return std::nullopt;
-  }
-  return std::move(*listener);
+  append(findings, doctor::check_sources(view, bench));
+  append(findings, doctor::check_guards(view, bench));
+  append(findings, doctor::check_endpoints(view, bench ? std::vector{bench->bench}
+                                                       : std::vector<std::string>()));
+  append(findings, look.about_multicast);
+  append(findings, doctor::check_network(view));
+  append(findings, doctor::check_loss(view));
+  append(findings, doctor::check_host(look.host, view.domain));
+  return findings;
 }
 
 // Nothing was looked at: neither a warning nor a problem.
@@ -94,38 +69,15 @@ int run_doctor(const DoctorCommand& command, const std::stop_token& stop) {
   if (!bench) {
     return could_not_look(bench.error());
   }
-  auto participant = join_network(network, "dyncal-doctor", {.watch_discovery = true});
-  if (!participant) {
-    return could_not_look(participant.error());
-  }
-  const auto own = this_program("dyncal-doctor", software_version(), network.dds);
-  auto watch = doctor::LaboratoryWatch::open(*participant, own, bus::system_clock());
-  if (!watch) {
-    return could_not_look(watch.error());
-  }
-  Findings about_listener;
-  auto listener = open_listener(network, about_listener);
-  doctor::HostView host = doctor::look_at_host(".");
-  doctor::LaboratoryView view =
-      look(**watch, listener ? &*listener : nullptr, command.seconds, stop);
-  host.udp_after = doctor::udp_counters();
-  view.domain = network.domain;
-
-  Findings findings = doctor::check_programs(view);
-  append(findings, doctor::check_sources(view, *bench));
-  append(findings, doctor::check_guards(view, *bench));
-  append(findings, doctor::check_endpoints(view, *bench ? std::vector{(*bench)->bench}
-                                                        : std::vector<std::string>()));
-  append(findings, about_listener);
-  append(findings, doctor::check_network(view));
-  append(findings, doctor::check_loss(view));
-  append(findings, doctor::check_host(host, network.domain));
-  fmt::print("{}", command.json ? json_text(doctor::as_json(findings, view), 2) + "\n"
-                                : doctor::as_text(findings));
-  std::fflush(stdout);
-  // At once: Cyclone DDS waits at its end for a packet that it sends to itself, and a firewall that
-  // the doctor is to find may drop just that.
-  std::_Exit(doctor::exit_status(findings));
+  const auto looked =
+      look_at_laboratory(network, command.seconds, stop, [&](const LaboratoryLook& look) {
+        const Findings findings = judge(look, *bench);
+        fmt::print("{}", command.json ? json_text(doctor::as_json(findings, look.view), 2) + "\n"
+                                      : doctor::as_text(findings));
+        std::fflush(stdout);
+        std::_Exit(doctor::exit_status(findings));
+      });
+  return could_not_look(looked.error());
 }
 
 } // namespace dyncal::services

@@ -65,7 +65,7 @@ void print_text(const live::Laboratory& laboratory) {
 } // namespace
 
 int run_list(const ListCommand& command, const std::stop_token& stop) {
-  const auto watched = WatchedLaboratory::open(command.network, "dyncal-list", command.bench);
+  const auto watched = WatchedLaboratory::open(command.network, "dyncal-list", command.bench, stop);
   if (!watched) {
     return report_error(watched.error());
   }
@@ -74,7 +74,7 @@ int run_list(const ListCommand& command, const std::stop_token& stop) {
                                            std::chrono::duration<double>(command.seconds));
   auto number_of_things = std::size_t{0};
   auto quiet_at = Clock::now() + 2 * quiet_time;
-  while (!stop.stop_requested() && Clock::now() < std::min(deadline, quiet_at)) {
+  while (!(*watched)->is_over() && Clock::now() < std::min(deadline, quiet_at)) {
     (*watched)->work(Clock::now() + 100ms);
     std::size_t things = laboratory.programs().size();
     for (const auto& [name, bench] : laboratory.benches()) {
@@ -90,7 +90,8 @@ int run_list(const ListCommand& command, const std::stop_token& stop) {
   } else {
     print_text(laboratory);
   }
-  return 0;
+  const auto heard = (*watched)->outcome();
+  return heard ? 0 : report_error(heard.error());
 }
 
 } // namespace dyncal::services

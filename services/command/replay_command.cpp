@@ -4,6 +4,8 @@
 
 #include <fmt/core.h>
 
+#include "services/program/watched_network.hpp"
+
 namespace dyncal::services {
 namespace {
 
@@ -21,7 +23,7 @@ Expected<double> parse_speed(const std::string& text) {
   return speed;
 }
 
-Expected<ReplayFigures> replay(const ReplayCommand& command, const std::stop_token& stop) {
+Expected<ReplayFigures> replay(const ReplayCommand& command, const std::stop_token& asked) {
   ReplayWish wish = command.wish;
   wish.results = !command.without_results;
   const auto speed = parse_speed(command.speed);
@@ -29,11 +31,12 @@ Expected<ReplayFigures> replay(const ReplayCommand& command, const std::stop_tok
     return fail(speed.error());
   }
   wish.speed = *speed;
-  auto participant = join_network(command.network, "dyncal-replay");
-  if (!participant) {
-    return fail(participant.error());
+  const auto joined = WatchedNetwork::join(command.network, "dyncal-replay", asked);
+  if (!joined) {
+    return fail(joined.error());
   }
-  auto player = RecordingPlayer::open(*participant, std::move(wish), stop);
+  const std::stop_token stop = (*joined)->stop();
+  auto player = RecordingPlayer::open((*joined)->participant, std::move(wish), stop);
   if (!player) {
     return fail(player.error());
   }

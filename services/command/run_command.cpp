@@ -1,5 +1,6 @@
 #include "services/command/run_command.hpp"
 
+#include <atomic>
 #include <cstdio>
 #include <utility>
 
@@ -8,11 +9,15 @@
 #include "drivers/utc_clock.hpp"
 #include "services/bench/adc_file.hpp"
 #include "services/bench_check/checks.hpp"
+#include "services/command/laboratory_look.hpp"
 #include "services/command/progress_line.hpp"
+#include "services/command/run_again.hpp"
 #include "services/contract/run_identity.hpp"
 #include "services/contract/time_name.hpp"
 #include "services/contract/topics.hpp"
+#include "services/doctor/unheard_analysis.hpp"
 #include "services/program/bench_program.hpp"
+#include "services/program/watched_network.hpp"
 #include "services/report/show_outcome.hpp"
 #include "services/run/bench_queue.hpp"
 #include "services/run/run_plan.hpp"
@@ -33,6 +38,12 @@ Expected<std::vector<analysis::AdcCalibrationPoint>> read_adc_calibration(const 
 
 namespace {
 
+// At a run.
+struct Attempt {
+  std::string name;
+  bool misses_analysis = false; // none has been heard of it
+};
+
 // All that the attempts at a run have in common.
 struct Conduct {
   const RunCommand& command;
@@ -42,6 +53,7 @@ struct Conduct {
   bus::Participant& participant;
   const ShowProgress& show;
   const std::stop_token& stop;
+  Attempt& newest;
 };
 
 void show_notice(const ShowProgress& show, const std::string& sentence) {
@@ -58,6 +70,7 @@ struct ConductedRun {
 // `text`: of its RunIdentity.
 Expected<ConductedRun> conduct(const Conduct& run, const std::string& text) {
   const bool resumes = !run.command.resume.empty();
+  run.newest.name = RunIdentity::parse(text).name;
   auto kept = KeptRun::open(
       run.command.keep, run.bench,
       {.run = text,
@@ -79,6 +92,8 @@ Expected<ConductedRun> conduct(const Conduct& run, const std::string& text) {
   auto outcome =
       resumes ? controller.resume(run.adc, run.stop) : controller.conduct(run.adc, run.stop);
   if (!outcome) {
+    run.newest.misses_analysis =
+        outcome.error().code == ErrorCode::no_analysis && !controller.has_heard_analysis();
     (*kept)->discard();
     return fail(outcome.error());
   }
@@ -165,8 +180,10 @@ Expected<ConductedRun> conduct_as_asked(const Conduct& run) {
   return conduct_new(run);
 }
 
-// The folder first, which is what is left if the rest fails; the database last, which may let wait.
-Expected<void> show_and_keep(const RunCommand& command, ConductedRun& run) {
+// The folder first, which is what is left if the rest fails; then the database, which may let wait.
+// What is kept is evaluated once more at the end.
+Expected<void> show_and_keep(const RunCommand& command, ConductedRun& run,
+                             const std::stop_token& stop) {
   const auto kept = run.kept->finish(run.outcome);
   auto shown = show_outcome(run.outcome, command.json, command.figures);
   if (const auto folder = run.kept->folder(); folder && kept) {
@@ -178,7 +195,20 @@ Expected<void> show_and_keep(const RunCommand& command, ConductedRun& run) {
   if (!done && run.outcome.output_may_be_on) {
     done.error().message += "; " + output_warning(run.outcome);
   }
-  return done;
+  return done.and_then([&] { return run.kept->hold_against_recording(run.outcome, stop); });
+}
+
+// What this host hears instead of an analysis, in brackets. `links` as they were at the beginning.
+std::string why_unheard(const NetworkOptions& network, const std::map<std::string, unsigned>& links,
+                        const std::stop_token& stop) {
+  constexpr double look_s = 3.0;
+  std::string why;
+  const auto looked = look_at_laboratory(network, look_s, stop, [&](const LaboratoryLook& look) {
+    doctor::HostView host = look.host;
+    host.link_changes_before = links;
+    why = " (" + doctor::why_no_analysis_is_heard(look.view, host) + ")";
+  });
+  return looked ? why : " (" + looked.error().message + ")";
 }
 
 // What would be excited for nothing.
@@ -198,7 +228,7 @@ Expected<void> check_bench(const BenchFile& bench) {
 
 } // namespace
 
-Expected<RunOutcome> conduct_run(const RunCommand& command, const std::stop_token& stop) {
+Expected<RunOutcome> conduct_run(const RunCommand& command, const std::stop_token& asked) {
   if (const auto named = RunIdentity::begin(command.run, utc_now_ns()); !named) {
     return fail(named.error());
   }
@@ -218,22 +248,34 @@ Expected<RunOutcome> conduct_run(const RunCommand& command, const std::stop_toke
   }
   NetworkOptions network = command.network;
   add_network_settings(bench->network, network);
-  auto participant = join_network(network, "dyncal-run");
-  if (!participant) {
-    return fail(participant.error());
-  }
-  ProgressLine progress(stderr);
-  const ShowProgress show = [&](const RunProgress& state) { progress.show(state); };
-  auto run = conduct_as_asked({command, *bench, *adc, network, *participant, show, stop});
-  progress.end();
-  if (!run) {
-    return fail(run.error());
-  }
-  const auto shown = show_and_keep(command, *run).and_then([&] {
-    return run->kept->hold_against_recording(run->outcome, stop);
+  const auto links = doctor::link_changes();
+  Attempt newest{command.resume};
+  std::atomic<bool> excited = !command.resume.empty(); // then the name does not change any more
+  auto joined = WatchedNetwork::join(network, "dyncal-run", asked, [&](const std::string& why) {
+    if (bench->generator.driver != GeneratorDriver::none) { // files are not resumed
+      run_again(why, excited ? newest.name : "");
+    }
   });
-  if (!shown) {
-    return fail(shown.error());
+  if (!joined) {
+    return fail(joined.error());
+  }
+  const std::stop_token stop = (*joined)->stop();
+  ProgressLine progress(stderr);
+  const ShowProgress show = [&](const RunProgress& state) {
+    excited = excited || state.step > 0;
+    progress.show(state);
+  };
+  auto run = conduct_as_asked(
+      {command, *bench, *adc, network, (*joined)->participant, show, stop, newest});
+  progress.end();
+  const auto shown = run ? show_and_keep(command, *run, stop) : fail(run.error());
+  auto heard = (*joined)->outcome(shown);
+  if (!heard && newest.misses_analysis) {
+    joined->reset(); // what is looked for may be in its way
+    heard.error().message += why_unheard(network, links, asked);
+  }
+  if (!heard) {
+    return fail(heard.error());
   }
   return std::move(run->outcome);
 }

@@ -99,7 +99,8 @@ private:
 } // namespace
 
 int run_watch(const WatchCommand& command, const std::stop_token& stop) {
-  const auto watched = WatchedLaboratory::open(command.network, "dyncal-watch", command.bench);
+  const auto watched =
+      WatchedLaboratory::open(command.network, "dyncal-watch", command.bench, stop);
   if (!watched) {
     return report_error(watched.error());
   }
@@ -108,7 +109,7 @@ int run_watch(const WatchCommand& command, const std::stop_token& stop) {
   auto next_output = began;
   const auto over = [&] {
     const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - began;
-    return stop.stop_requested() || (command.seconds && passed.count() > *command.seconds);
+    return (*watched)->is_over() || (command.seconds && passed.count() > *command.seconds);
   };
   while (!over()) {
     (*watched)->work(std::chrono::steady_clock::now() + 200ms);
@@ -117,7 +118,8 @@ int run_watch(const WatchCommand& command, const std::stop_token& stop) {
       next_output = std::chrono::steady_clock::now() + 1s;
     }
   }
-  return 0;
+  const auto heard = (*watched)->outcome();
+  return heard ? 0 : report_error(heard.error());
 }
 
 } // namespace dyncal::services

@@ -7,15 +7,16 @@ namespace dyncal::services {
 
 Expected<std::unique_ptr<WatchedLaboratory>> WatchedLaboratory::open(const NetworkOptions& network,
                                                                      const std::string& program,
-                                                                     const std::string& bench) {
-  auto participant = join_network(network, program);
-  if (!participant) {
-    return fail(participant.error());
+                                                                     const std::string& bench,
+                                                                     const std::stop_token& asked) {
+  auto joined = WatchedNetwork::join(network, program, asked);
+  if (!joined) {
+    return fail(joined.error());
   }
   std::unique_ptr<WatchedLaboratory> watched(
-      new WatchedLaboratory(std::move(*participant), std::make_shared<bus::WakeUp>()));
+      new WatchedLaboratory(std::move(*joined), std::make_shared<bus::WakeUp>()));
   auto readers = live::LaboratoryReaders::open(
-      watched->participant_, bench, this_program(program, software_version(), network.dds),
+      watched->network_->participant, bench, this_program(program, software_version(), network.dds),
       bus::system_clock(), watched->wake_up_);
   if (!readers) {
     return fail(readers.error());

@@ -8,30 +8,35 @@
 
 #include "services/live/laboratory.hpp"
 #include "services/live/laboratory_readers.hpp"
-#include "services/program/program.hpp"
+#include "services/program/watched_network.hpp"
 
 namespace dyncal::services {
 
 class WatchedLaboratory {
 public:
-  // `program` on the bus: "dyncal-watch"; `bench` "*": all. Fails (network).
+  // `program` on the bus: "dyncal-watch"; `bench` "*": all; until `asked`. Fails (network).
   [[nodiscard]] static Expected<std::unique_ptr<WatchedLaboratory>>
-  open(const NetworkOptions& network, const std::string& program, const std::string& bench);
+  open(const NetworkOptions& network, const std::string& program, const std::string& bench,
+       const std::stop_token& asked);
 
   // Takes what has come; waits for it until then at most.
   void work(std::chrono::steady_clock::time_point until);
 
   [[nodiscard]] const live::Laboratory& laboratory() const { return laboratory_; }
+  // Nothing more is heard of the laboratory, or the end was asked for.
+  [[nodiscard]] bool is_over() const { return network_->stop().stop_requested(); }
+  // Fails (network) where nothing more is heard.
+  [[nodiscard]] Expected<void> outcome() const { return network_->outcome({}); }
 
 private:
-  WatchedLaboratory(bus::Participant participant, std::shared_ptr<bus::WakeUp> wake_up)
-      : participant_(std::move(participant)), wake_up_(std::move(wake_up)),
+  WatchedLaboratory(std::unique_ptr<WatchedNetwork> network, std::shared_ptr<bus::WakeUp> wake_up)
+      : network_(std::move(network)), wake_up_(std::move(wake_up)),
         laboratory_(bus::system_clock()) {}
 
-  bus::Participant participant_;
+  std::unique_ptr<WatchedNetwork> network_;
   std::shared_ptr<bus::WakeUp> wake_up_;
   live::Laboratory laboratory_;
-  std::optional<live::LaboratoryReaders> readers_; // of the participant
+  std::optional<live::LaboratoryReaders> readers_; // of its participant
 };
 
 } // namespace dyncal::services

@@ -10,6 +10,7 @@
 #include "services/dau/listening_plan.hpp"
 #include "services/host_clocks/clock_responder.hpp"
 #include "services/program/bench_program.hpp"
+#include "services/program/watched_network.hpp"
 #include "services/source/source_service.hpp"
 #include "services/source/supervised.hpp"
 
@@ -75,27 +76,28 @@ Expected<void> serve(const std::vector<BenchFile>& benches, const NetworkOptions
   if (!plan) {
     return fail(plan.error());
   }
-  auto participant = join_network(network, "dyncal-dau");
-  if (!participant) {
-    return fail(participant.error());
+  auto joined = WatchedNetwork::join(network, "dyncal-dau", stop);
+  if (!joined) {
+    return fail(joined.error());
   }
-  const auto service = SourceService::create(*participant, supervised(supervisor, *participant));
+  bus::Participant& participant = (*joined)->participant;
+  const auto service = SourceService::create(participant, supervised(supervisor, participant));
   auto reception = open_reception(*plan, *service);
   if (!reception) {
     return fail(reception.error());
   }
   report_sockets(*reception->receiver, *plan);
-  const auto clock = ClockResponder::start(*participant, supervisor.identity());
+  const auto clock = ClockResponder::start(participant, supervisor.identity());
   if (!clock) {
     return fail(clock.error());
   }
   service->start();
   reception->receiver->start();
   supervisor.serving();
-  wait_for_stop(stop);
+  wait_for_stop((*joined)->stop());
   reception->receiver->stop();
   service->stop();
-  return {};
+  return (*joined)->outcome({});
 }
 
 } // namespace

@@ -80,18 +80,25 @@ AnnouncementListener::~AnnouncementListener() {
 }
 
 AnnouncementListener::AnnouncementListener(AnnouncementListener&& other) noexcept
-    : descriptor_(std::exchange(other.descriptor_, -1)), heard_(std::move(other.heard_)) {}
+    : descriptor_(std::exchange(other.descriptor_, -1)), heard_(std::move(other.heard_)),
+      heard_from_(std::move(other.heard_from_)) {}
 
 void AnnouncementListener::work() {
   std::array<unsigned char, 2048> buffer{};
   while (true) {
-    const ssize_t size = recv(descriptor_, buffer.data(), buffer.size(), 0);
+    sockaddr_in from{};
+    socklen_t from_size = sizeof(from);
+    const ssize_t size = recvfrom(descriptor_, buffer.data(), buffer.size(), 0,
+                                  reinterpret_cast<sockaddr*>(&from), &from_size);
     if (size < 0) {
       return;
     }
     const std::string sender = sender_of_packet(buffer.data(), static_cast<std::size_t>(size));
     if (!sender.empty() && heard_.size() < max_participants) {
       heard_.insert(sender);
+      std::array<char, INET_ADDRSTRLEN> text{};
+      inet_ntop(AF_INET, &from.sin_addr, text.data(), text.size());
+      heard_from_.insert(text.data());
     }
   }
 }

@@ -29,12 +29,15 @@ public:
   void work();
   // Participants heard so far, by their ids (services/bus/discovery.hpp).
   [[nodiscard]] const std::set<std::string>& heard() const { return heard_; }
+  // The addresses that they were heard from.
+  [[nodiscard]] const std::set<std::string>& heard_from() const { return heard_from_; }
 
 private:
   explicit AnnouncementListener(int descriptor) : descriptor_(descriptor) {}
 
   int descriptor_;
   std::set<std::string> heard_;
+  std::set<std::string> heard_from_;
 };
 
 // The sender of an RTPS packet; empty if it is none.

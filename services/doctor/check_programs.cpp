@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "services/doctor/checks.hpp"
+#include "services/doctor/unheard_analysis.hpp"
 
 namespace dyncal::services::doctor {
 namespace {
@@ -55,16 +56,16 @@ Findings check_others(const LaboratoryView& view) {
 }
 
 Findings check_analysis(const LaboratoryView& view) {
-  const auto analyses = std::ranges::count_if(view.programs, [](const HeardProgram& program) {
-    return program.identity.program == "dyncal-analysis";
-  });
-  if (analyses == 0 && view.analyses.empty()) {
+  if (!analysis_is_heard(view)) {
     const bool empty = view.programs.empty() && view.sources.empty();
     return {{Severity::warning, "analysis",
              empty ? "no analysis service either"
                    : "no analysis service is there; start dyncal-analysis on one machine of the "
                      "laboratory"}};
   }
+  const auto analyses = std::ranges::count_if(view.programs, [](const HeardProgram& program) {
+    return program.identity.program == "dyncal-analysis";
+  });
   return {{Severity::ok, "analysis",
            fmt::format("{} analysis service{}", std::max<std::ptrdiff_t>(analyses, 1),
                        analyses > 1 ? "s" : "")}};

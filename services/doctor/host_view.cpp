@@ -8,9 +8,12 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <fstream>
+#include <iterator>
+#include <set>
 #include <sstream>
 
 #include "services/bus/host_network.hpp"
@@ -88,6 +91,29 @@ int mtu_of(const std::string& name) {
   return known ? request.ifr_mtu : 0;
 }
 
+// Up, not loopback, and with an address of its own, but of IPv6 alone.
+std::vector<std::string> interfaces_without_ipv4() {
+  std::set<std::string> ipv4;
+  std::set<std::string> ipv6;
+  std::set<std::string> of_others;
+  ifaddrs* list = nullptr;
+  if (getifaddrs(&list) != 0) {
+    return {};
+  }
+  for (const ifaddrs* one = list; one != nullptr; one = one->ifa_next) {
+    if (one->ifa_addr != nullptr && (one->ifa_flags & IFF_UP) != 0 &&
+        (one->ifa_flags & IFF_LOOPBACK) == 0) {
+      const auto family = one->ifa_addr->sa_family;
+      (family == AF_INET ? ipv4 : family == AF_INET6 ? ipv6 : of_others).insert(one->ifa_name);
+    }
+  }
+  freeifaddrs(list);
+  std::vector<std::string> without;
+  std::set_difference(ipv6.begin(), ipv6.end(), ipv4.begin(), ipv4.end(),
+                      std::back_inserter(without));
+  return without;
+}
+
 std::vector<HostInterface> interfaces_of_host() {
   std::vector<HostInterface> interfaces;
   ifaddrs* list = nullptr;
@@ -145,10 +171,24 @@ std::optional<UdpCounters> udp_counters() {
   return std::nullopt;
 }
 
+std::map<std::string, unsigned> link_changes() {
+  std::map<std::string, unsigned> changes;
+  std::error_code error;
+  for (const auto& one : std::filesystem::directory_iterator("/sys/class/net", error)) {
+    std::ifstream file(one.path() / "carrier_changes");
+    if (unsigned count = 0; file >> count) {
+      changes[one.path().filename().string()] = count;
+    }
+  }
+  return changes;
+}
+
 HostView look_at_host(const std::filesystem::path& output_folder) {
   HostView view;
   view.receive_buffer_bytes = bus::granted_receive_buffer(bus::wanted_receive_buffer_bytes);
   view.interfaces = interfaces_of_host();
+  view.without_ipv4 = interfaces_without_ipv4();
+  view.link_changes_before = link_changes();
   view.multicast_loops = multicast_comes_back();
   view.udp_before = udp_counters();
   std::error_code error;

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,7 +31,11 @@ struct UdpCounters { // since the host was started; /proc/net/snmp
 struct HostView {
   int receive_buffer_bytes = 0;          // that a socket is granted
   std::vector<HostInterface> interfaces; // that are up and have an IPv4 address
-  std::optional<bool> multicast_loops;   // a datagram to a group comes back; nothing: not tried
+  std::vector<std::string> without_ipv4; // interfaces that are up and have IPv6 alone
+  // How often the link of an interface has changed between down and up, since it is there.
+  std::map<std::string, unsigned> link_changes_before;
+  std::map<std::string, unsigned> link_changes_after;
+  std::optional<bool> multicast_loops; // a datagram to a group comes back; nothing: not tried
   std::optional<UdpCounters> udp_before;
   std::optional<UdpCounters> udp_after;
   std::filesystem::path output_folder;
@@ -38,8 +43,9 @@ struct HostView {
   bool output_writable = false;
 };
 
-// All but udp_after.
+// All but udp_after and link_changes_after.
 [[nodiscard]] HostView look_at_host(const std::filesystem::path& output_folder);
 [[nodiscard]] std::optional<UdpCounters> udp_counters();
+[[nodiscard]] std::map<std::string, unsigned> link_changes();
 
 } // namespace dyncal::services::doctor

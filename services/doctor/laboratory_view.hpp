@@ -41,6 +41,7 @@ struct LaboratoryView {
   bus::Discovery discovery;
   // Participants whose multicast announcements came; nothing: it could not be listened for.
   std::optional<std::set<std::string>> announced_by_multicast;
+  std::set<std::string> announced_from; // addresses that those came from
   std::uint64_t malformed_messages = 0;
 };
 

@@ -7,6 +7,7 @@
 #include "services/dso/triggered_bench.hpp"
 #include "services/host_clocks/clock_responder.hpp"
 #include "services/program/bench_program.hpp"
+#include "services/program/watched_network.hpp"
 #include "services/source/source_service.hpp"
 #include "services/source/supervised.hpp"
 
@@ -16,21 +17,23 @@ using namespace dyncal::services;
 using dyncal::fail;
 
 Expected<void> serve(const std::vector<BenchFile>& files, const NetworkOptions& network,
-                     Supervisor& supervisor, const std::stop_token& stop) {
-  auto participant = join_network(network, "dyncal-dso");
-  if (!participant) {
-    return fail(participant.error());
+                     Supervisor& supervisor, const std::stop_token& asked) {
+  auto joined = WatchedNetwork::join(network, "dyncal-dso", asked);
+  if (!joined) {
+    return fail(joined.error());
   }
-  const auto service = SourceService::create(*participant, supervised(supervisor, *participant));
+  dyncal::bus::Participant& participant = (*joined)->participant;
+  const std::stop_token stop = (*joined)->stop();
+  const auto service = SourceService::create(participant, supervised(supervisor, participant));
   std::vector<std::unique_ptr<dso::TriggeredBench>> benches;
   for (const BenchFile& file : files) {
-    auto bench = dso::TriggeredBench::create(*participant, *service, file);
+    auto bench = dso::TriggeredBench::create(participant, *service, file);
     if (!bench) {
       return fail(bench.error());
     }
     benches.push_back(std::move(*bench));
   }
-  const auto clock = ClockResponder::start(*participant, supervisor.identity());
+  const auto clock = ClockResponder::start(participant, supervisor.identity());
   if (!clock) {
     return fail(clock.error());
   }
@@ -43,7 +46,7 @@ Expected<void> serve(const std::vector<BenchFile>& files, const NetworkOptions& 
     }
   }
   service->stop();
-  return {};
+  return (*joined)->outcome({});
 }
 
 } // namespace

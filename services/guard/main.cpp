@@ -11,6 +11,7 @@
 #include "services/guard/exciter_guard.hpp"
 #include "services/host_clocks/clock_responder.hpp"
 #include "services/program/bench_program.hpp"
+#include "services/program/watched_network.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -37,12 +38,14 @@ GuardedExciter exciter_of(const BenchFile& bench) {
 }
 
 Expected<void> serve(const std::vector<BenchFile>& benches, const NetworkOptions& network,
-                     Supervisor& supervisor, const std::stop_token& stop) {
-  auto participant = join_network(network, "dyncal-guard");
-  if (!participant) {
-    return fail(participant.error());
+                     Supervisor& supervisor, const std::stop_token& asked) {
+  auto joined = WatchedNetwork::join(network, "dyncal-guard", asked);
+  if (!joined) {
+    return fail(joined.error());
   }
-  const auto clock = ClockResponder::start(*participant, supervisor.identity());
+  bus::Participant& participant = (*joined)->participant;
+  const std::stop_token stop = (*joined)->stop();
+  const auto clock = ClockResponder::start(participant, supervisor.identity());
   if (!clock) {
     return fail(clock.error());
   }
@@ -55,7 +58,7 @@ Expected<void> serve(const std::vector<BenchFile>& benches, const NetworkOptions
                       "there is nothing to guard");
     }
     auto guard = ExciterGuard::create(
-        *participant, supervisor.identity(), exciter_of(bench), unattended_limit,
+        participant, supervisor.identity(), exciter_of(bench), unattended_limit,
         std::make_unique<GeneratorOutput>(bench.generator.address),
         DrivenRecord(guard_state_folder(), bench.bench, bench.generator.address));
     if (!guard) {
@@ -65,20 +68,22 @@ Expected<void> serve(const std::vector<BenchFile>& benches, const NetworkOptions
     spdlog::info("bench {}: guarding the output of the generator {}", bench.bench,
                  bench.generator.address);
   }
-  std::vector<std::jthread> threads; // one a bench: a generator that does not answer takes time
-  threads.reserve(guards.size());
-  for (const auto& guard : guards) {
-    threads.emplace_back([&] {
-      guard->serve(stop, [&] {
-        supervisor.turned();
-        supervisor.report(guard->figures());
-        supervisor.report_malformed_messages(participant->malformed_messages());
-        supervisor.report_refused_packets(participant->refused_packets()->count());
+  {
+    std::vector<std::jthread> threads; // one a bench: a generator that does not answer takes time
+    threads.reserve(guards.size());
+    for (const auto& guard : guards) {
+      threads.emplace_back([&] {
+        guard->serve(stop, [&] {
+          supervisor.turned();
+          supervisor.report(guard->figures());
+          supervisor.report_malformed_messages(participant.malformed_messages());
+          supervisor.report_refused_packets(participant.refused_packets()->count());
+        });
       });
-    });
+    }
+    supervisor.serving();
   }
-  supervisor.serving();
-  return {};
+  return (*joined)->outcome({});
 }
 
 } // namespace

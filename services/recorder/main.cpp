@@ -5,6 +5,7 @@
 #include "services/host_clocks/clock_responder.hpp"
 #include "services/program/command_line.hpp"
 #include "services/program/program.hpp"
+#include "services/program/watched_network.hpp"
 #include "services/recorder/bench_recordings.hpp"
 #include "services/supervision/supervisor.hpp"
 #include "services/version.hpp"
@@ -36,7 +37,7 @@ void add_options(CLI::App& app, RecorderProgram& program) {
   add_metrics_option(app, program.metrics);
 }
 
-Expected<void> serve(RecorderProgram& program, const std::stop_token& stop) {
+Expected<void> serve(RecorderProgram& program, const std::stop_token& asked) {
   const auto compression = recording::parse_compression(program.compression);
   if (!compression) {
     return fail(compression.error());
@@ -51,20 +52,22 @@ Expected<void> serve(RecorderProgram& program, const std::stop_token& stop) {
   program.plan.options.min_free_bytes = static_cast<std::uint64_t>(program.min_free_mb * 1e6);
   program.plan.options.dds = program.network.dds;
   program.plan.options.domain = program.network.domain;
-  auto participant = join_network(program.network, "dyncal-recorder");
-  if (!participant) {
-    return fail(participant.error());
+  auto joined = WatchedNetwork::join(program.network, "dyncal-recorder", asked);
+  if (!joined) {
+    return fail(joined.error());
   }
+  bus::Participant& participant = (*joined)->participant;
+  const std::stop_token stop = (*joined)->stop();
   const auto supervisor = Supervisor::create(
       this_program("dyncal-recorder", software_version(), program.network.dds), program.metrics);
   if (!supervisor) {
     return fail(supervisor.error());
   }
-  const auto clock = ClockResponder::start(*participant, (*supervisor)->identity());
+  const auto clock = ClockResponder::start(participant, (*supervisor)->identity());
   if (!clock) {
     return fail(clock.error());
   }
-  auto recordings = BenchRecordings::create(*participant, program.plan);
+  auto recordings = BenchRecordings::create(participant, program.plan);
   if (!recordings) {
     return fail(recordings.error());
   }
@@ -78,11 +81,11 @@ Expected<void> serve(RecorderProgram& program, const std::stop_token& stop) {
     for (const RecorderFigures& figures : (*recordings)->figures()) {
       (*supervisor)->report(figures);
     }
-    (*supervisor)->report_malformed_messages(participant->malformed_messages());
-    (*supervisor)->report_refused_packets(participant->refused_packets()->count());
+    (*supervisor)->report_malformed_messages(participant.malformed_messages());
+    (*supervisor)->report_refused_packets(participant.refused_packets()->count());
     (*supervisor)->turned();
   }
-  return (*recordings)->stop();
+  return (*joined)->outcome((*recordings)->stop());
 }
 
 } // namespace

@@ -70,6 +70,9 @@ public:
   resume(const std::vector<analysis::AdcCalibrationPoint>& adc_calibration,
          const std::stop_token& stop);
 
+  // An analysis has spoken of the run.
+  [[nodiscard]] bool has_heard_analysis() const { return watch_ && watch_->analysis(); }
+
 private:
   using Instant = bus::Clock::Instant;
 

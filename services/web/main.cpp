@@ -67,11 +67,11 @@ Expected<void> serve(WebProgram& program, const std::stop_token& stop) {
   if (program.web.guide_folder.empty()) {
     program.web.guide_folder = installed_guide();
   }
-  auto service = web::WebService::create(program.network, program.web);
+  auto service = web::WebService::create(program.network, program.web, stop);
   if (!service) {
     return fail(service.error());
   }
-  return (*service)->serve(stop);
+  return (*service)->serve();
 }
 
 } // namespace

@@ -7,6 +7,7 @@
 #include "services/host_clocks/clock_responder.hpp"
 #include "services/live/laboratory_readers.hpp"
 #include "services/live_signals/signal_tap.hpp"
+#include "services/program/watched_network.hpp"
 #include "services/store/store.hpp"
 #include "services/supervision/supervisor.hpp"
 #include "services/version.hpp"
@@ -38,9 +39,9 @@ DoorOptions door_options(const WebOptions& options) {
 } // namespace
 
 struct WebService::Parts {
-  Parts(bus::Participant joined, const ProgramIdentity& own, const WebOptions& web,
+  Parts(std::unique_ptr<WatchedNetwork> joined, const ProgramIdentity& own, const WebOptions& web,
         ActionOptions action_options)
-      : participant(std::move(joined)), identity(own), options(web),
+      : network(std::move(joined)), identity(own), options(web),
         board(clock, [this](nlohmann::ordered_json& json) { add_daemon(json); }),
         files(web.runs_folder), door(door_options(web), clock), answers(board, files),
         tap(participant, clock), signals(board, tap, clock),
@@ -68,7 +69,8 @@ struct WebService::Parts {
   void report();
 
   bus::Clock& clock = bus::system_clock();
-  bus::Participant participant;
+  std::unique_ptr<WatchedNetwork> network;
+  bus::Participant& participant = network->participant;
   ProgramIdentity identity;
   WebOptions options;
   std::shared_ptr<bus::WakeUp> wake_up = std::make_shared<bus::WakeUp>();
@@ -128,10 +130,11 @@ WebService::WebService(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) 
 WebService::~WebService() = default;
 
 Expected<std::unique_ptr<WebService>> WebService::create(const NetworkOptions& network,
-                                                         const WebOptions& options) {
-  auto participant = join_network(network, "dyncal-web");
-  if (!participant) {
-    return fail(participant.error());
+                                                         const WebOptions& options,
+                                                         const std::stop_token& asked) {
+  auto joined = WatchedNetwork::join(network, "dyncal-web", asked);
+  if (!joined) {
+    return fail(joined.error());
   }
   auto supervisor = Supervisor::create(this_program("dyncal-web", software_version(), network.dds),
                                        options.metrics);
@@ -150,7 +153,7 @@ Expected<std::unique_ptr<WebService>> WebService::create(const NetworkOptions& n
     }
     actions.token = std::move(*token);
   }
-  auto parts = std::make_unique<Parts>(std::move(*participant), (*supervisor)->identity(), options,
+  auto parts = std::make_unique<Parts>(std::move(*joined), (*supervisor)->identity(), options,
                                        std::move(actions));
   parts->supervisor = std::move(*supervisor);
   auto responder = ClockResponder::start(parts->participant, parts->identity);
@@ -164,8 +167,9 @@ Expected<std::unique_ptr<WebService>> WebService::create(const NetworkOptions& n
   return std::unique_ptr<WebService>(new WebService(std::move(parts)));
 }
 
-Expected<void> WebService::serve(const std::stop_token& stop) {
+Expected<void> WebService::serve() {
   Parts& parts = *parts_;
+  const std::stop_token stop = parts.network->stop();
   parts.add_answers();
   if (const auto started = parts.door.start(); !started) {
     return fail(started.error());
@@ -188,7 +192,7 @@ Expected<void> WebService::serve(const std::stop_token& stop) {
     parts.supervisor->turned();
   }
   parts.door.stop();
-  return {};
+  return parts.network->outcome({});
 }
 
 } // namespace dyncal::services::web

@@ -31,14 +31,14 @@ struct WebOptions {
 
 class WebService {
 public:
-  // Fails as the network, the token file and the address do.
-  [[nodiscard]] static Expected<std::unique_ptr<WebService>> create(const NetworkOptions& network,
-                                                                    const WebOptions& options);
+  // Serves until `asked`. Fails as the network, the token file and the address do.
+  [[nodiscard]] static Expected<std::unique_ptr<WebService>>
+  create(const NetworkOptions& network, const WebOptions& options, const std::stop_token& asked);
   ~WebService();
   WebService(const WebService&) = delete;
   WebService& operator=(const WebService&) = delete;
 
-  [[nodiscard]] Expected<void> serve(const std::stop_token& stop);
+  [[nodiscard]] Expected<void> serve();
 
 private:
   struct Parts;

@@ -5,6 +5,7 @@
 
 #include "services/bus/adapters.hpp"
 #include "services/bus/cyclonedds/cyclone_dds_config.hpp"
+#include "services/bus/cyclonedds/cyclone_dds_connections.h"
 #include "services/bus/cyclonedds/cyclone_dds_discovery.hpp"
 #include "services/bus/cyclonedds/cyclone_dds_log.hpp"
 #include "services/bus/cyclonedds/cyclone_dds_screen.hpp"
@@ -81,6 +82,17 @@ struct CycloneParticipantHandle {
   std::shared_ptr<MalformedMessages> malformed;
   std::shared_ptr<const RefusedPackets> refused;
 };
+
+std::vector<std::string> addresses_of(const ddsi_domaingv& domain) {
+  const CycloneDdsAddresses own = cyclone_dds_addresses_of(&domain);
+  std::vector<std::string> addresses;
+  for (int i = 0; i < own.count; ++i) {
+    const unsigned char* bytes = own.ipv4[i];
+    addresses.push_back(std::to_string(bytes[0]) + "." + std::to_string(bytes[1]) + "." +
+                        std::to_string(bytes[2]) + "." + std::to_string(bytes[3]));
+  }
+  return addresses;
+}
 
 struct QosDeleter {
   void operator()(dds_qos_t* qos) const { dds_delete_qos(qos); }
@@ -256,6 +268,10 @@ public:
     return participant_->refused;
   }
 
+  [[nodiscard]] std::shared_ptr<const OwnAddresses> own_addresses() const override {
+    return addresses_;
+  }
+
   [[nodiscard]] Discovery discovered() const override {
     return discovered_by_cyclone_dds(participant_->entity.get());
   }
@@ -267,13 +283,18 @@ private:
                                                         &sertype, nullptr, nullptr, nullptr);
     if (topic < 0) {
       release_cyclone_sertype(sertype);
-    } else if (screened_) {
-      participant_->domain->screen.install(domain_of(*sertype));
+      return topic;
+    }
+    const ddsi_domaingv& domain = domain_of(*sertype);
+    addresses_->set(addresses_of(domain));
+    if (screened_) {
+      participant_->domain->screen.install(domain);
     }
     return topic;
   }
 
   std::shared_ptr<CycloneParticipantHandle> participant_;
+  std::shared_ptr<OwnAddresses> addresses_ = std::make_shared<OwnAddresses>();
   bool screened_;
 };
 

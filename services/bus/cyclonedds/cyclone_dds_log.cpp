@@ -1,5 +1,7 @@
 #include "services/bus/cyclonedds/cyclone_dds_log.hpp"
 
+#include <atomic>
+#include <chrono>
 #include <cstdio>
 #include <dds/ddsrt/log.h>
 #include <string>
@@ -8,11 +10,27 @@
 namespace dyncal::bus {
 namespace {
 
+// Of packets that cannot be sent, a hundred a second where this host has no network for a while.
+bool is_said_often(std::string_view message) {
+  using Clock = std::chrono::steady_clock;
+  static std::atomic<Clock::rep> next{0};
+  if (message.find("ddsi_udp_conn_write") == std::string_view::npos) {
+    return false;
+  }
+  const Clock::rep now = Clock::now().time_since_epoch().count();
+  Clock::rep due = next.load();
+  return now < due || !next.compare_exchange_strong(
+                          due, now + Clock::duration(std::chrono::seconds(10)).count());
+}
+
 void write_or_count(void* refused, const dds_log_data_t* data) {
   // Not always at its beginning: some lines are not ended before.
   const std::string_view message(data->message, data->size);
   if (message.find("malformed packet received") != std::string_view::npos) {
     static_cast<RefusedPackets*>(refused)->add(0); // it does not tell from whom
+    return;
+  }
+  if (is_said_often(message)) {
     return;
   }
   const std::string line =

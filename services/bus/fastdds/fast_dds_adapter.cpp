@@ -20,6 +20,7 @@
 #include "services/bus/fastdds/fast_dds_discovery.hpp"
 #include "services/bus/fastdds/fast_dds_participant_qos.hpp"
 #include "services/bus/fastdds/fast_dds_type.hpp"
+#include "services/bus/host_network.hpp"
 #include "services/bus/qos_profiles.hpp"
 #include "services/bus/write_within.hpp"
 
@@ -254,8 +255,11 @@ private:
 
 class FastDdsParticipant : public UntypedParticipant {
 public:
-  explicit FastDdsParticipant(std::shared_ptr<FastDdsParticipantHandle> participant)
-      : participant_(std::move(participant)) {}
+  FastDdsParticipant(std::shared_ptr<FastDdsParticipantHandle> participant,
+                     std::vector<std::string> addresses)
+      : participant_(std::move(participant)) {
+    addresses_->set(std::move(addresses));
+  }
 
   services::Expected<std::unique_ptr<UntypedWriter>>
   writer(const TypeSupport& type, const std::string& topic, Profile profile,
@@ -318,11 +322,30 @@ public:
     return participant_->refused_packets();
   }
 
+  [[nodiscard]] std::shared_ptr<const OwnAddresses> own_addresses() const override {
+    return addresses_;
+  }
+
   [[nodiscard]] Discovery discovered() const override { return participant_->discovered(); }
 
 private:
   std::shared_ptr<FastDdsParticipantHandle> participant_;
+  std::shared_ptr<OwnAddresses> addresses_ = std::make_shared<OwnAddresses>();
 };
+
+// The one of its interface, else all but loopback, which it announces where there is nothing else.
+std::vector<std::string> announced_addresses(const std::string& interface_name) {
+  if (const auto one = interface_address(interface_name); !interface_name.empty() && one) {
+    return {*one};
+  }
+  std::vector<std::string> addresses;
+  for (const HostAddress& one : host_addresses().value_or(std::vector<HostAddress>())) {
+    if (!one.loopback) {
+      addresses.push_back(one.address);
+    }
+  }
+  return addresses.empty() ? std::vector<std::string>{"127.0.0.1"} : addresses;
+}
 
 } // namespace
 
@@ -334,6 +357,7 @@ create_fast_dds_participant(const ParticipantOptions& options) {
   if (!qos) {
     return fail(qos.error());
   }
+  auto addresses = announced_addresses(options.interface_name);
   auto number = std::make_unique<ParticipantNumber>();
   qos->wire_protocol().participant_id = number->value();
   auto discovery = std::make_unique<FastDdsDiscovery>();
@@ -347,9 +371,11 @@ create_fast_dds_participant(const ParticipantOptions& options) {
                     ": see its messages above, and check the profiles file if you set one");
   }
   transports->listens = true;
-  return std::make_unique<FastDdsParticipant>(std::make_shared<FastDdsParticipantHandle>(
-      std::move(number), std::move(discovery), participant,
-      std::make_shared<MalformedMessages>(options.warn), transports->refused));
+  return std::make_unique<FastDdsParticipant>(
+      std::make_shared<FastDdsParticipantHandle>(
+          std::move(number), std::move(discovery), participant,
+          std::make_shared<MalformedMessages>(options.warn), transports->refused),
+      std::move(addresses));
 }
 
 } // namespace dyncal::bus

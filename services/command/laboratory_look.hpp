@@ -1,0 +1,27 @@
+// A look of some seconds at the laboratory and at this host, for doctor's judges. Blocks.
+#pragma once
+
+#include <functional>
+#include <stop_token>
+#include <string>
+
+#include "services/doctor/finding.hpp"
+#include "services/doctor/host_view.hpp"
+#include "services/doctor/laboratory_view.hpp"
+#include "services/program/program.hpp"
+
+namespace dyncal::services {
+
+struct LaboratoryLook {
+  doctor::LaboratoryView view;
+  doctor::HostView host;
+  doctor::Findings about_multicast; // that could not be listened for
+};
+
+// Hands the look over before it leaves the bus: Cyclone DDS waits at its end for a packet that it
+// sends to itself, and a firewall that is looked for may drop just that. Fails (network).
+[[nodiscard]] Expected<void>
+look_at_laboratory(const NetworkOptions& network, double seconds, const std::stop_token& stop,
+                   const std::function<void(const LaboratoryLook&)>& judge);
+
+} // namespace dyncal::services

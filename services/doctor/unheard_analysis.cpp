@@ -1,0 +1,127 @@
+#include "services/doctor/unheard_analysis.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include <fmt/format.h>
+
+namespace dyncal::services::doctor {
+namespace {
+
+constexpr const char* analysis_program = "dyncal-analysis";
+constexpr double bad_link = 0.05; // of probes that are lost; runs begin at 20 %, a sound link has 0
+
+std::set<std::string> own_addresses(const HostView& host) {
+  std::set<std::string> addresses;
+  for (const HostInterface& one : host.interfaces) {
+    addresses.insert(one.address);
+  }
+  return addresses;
+}
+
+std::string this_host(const HostView& host) {
+  std::vector<std::string> names;
+  for (const HostInterface& one : host.interfaces) {
+    if (!one.loopback) {
+      names.push_back(fmt::format("{} ({})", one.address, one.name));
+    }
+  }
+  return names.empty() ? "" : fmt::format("this host is {}", fmt::join(names, ", "));
+}
+
+std::string about_no_address(const HostView& host) {
+  return "this host has no IPv4 address but that of loopback" +
+         (host.without_ipv4.empty()
+              ? std::string(": is its network up?")
+              : fmt::format("; {} has IPv6 alone, which is not used: give it an IPv4 address",
+                            fmt::join(host.without_ipv4, ", ")));
+}
+
+// Empty where the links of this host were steady.
+std::string about_flapping(const HostView& host) {
+  for (const auto& [name, changes] : host.link_changes_after) {
+    const auto before = host.link_changes_before.find(name);
+    if (before != host.link_changes_before.end() && changes > before->second) {
+      return fmt::format("the link of {} went down or came back {} times meanwhile: look at cable "
+                         "and switch",
+                         name, changes - before->second);
+    }
+  }
+  return "";
+}
+
+bool answers(const LaboratoryView& view, const std::string& program) {
+  return std::ranges::any_of(view.programs,
+                             [&](const auto& one) { return one.identity.program == program; });
+}
+
+bool is_found(const LaboratoryView& view, const std::string& program) {
+  return std::ranges::any_of(view.discovery.participants,
+                             [&](const auto& one) { return one.name == program; });
+}
+
+double worst_loss(const LaboratoryView& view) {
+  double worst = 0.0;
+  for (const LinkLoss& loss : view.losses) {
+    worst =
+        std::max({worst, lost_part(loss.there).value_or(0.0), lost_part(loss.back).value_or(0.0)});
+  }
+  return worst;
+}
+
+// Addresses of other hosts that announce programs.
+std::vector<std::string> announcing_hosts(const LaboratoryView& view, const HostView& host) {
+  const auto own = own_addresses(host);
+  std::vector<std::string> others;
+  std::ranges::set_difference(view.announced_from, own, std::back_inserter(others));
+  return others;
+}
+
+std::string about_others(const LaboratoryView& view, const HostView& host) {
+  if (const double lost = worst_loss(view); lost > bad_link) {
+    return fmt::format("{:.0f} % of the packets between this host and the others are lost: the "
+                       "link is overloaded or bad",
+                       100.0 * lost);
+  }
+  if (answers(view, analysis_program)) {
+    return "a dyncal-analysis answers now, which did not in time: it was started late, or the link "
+           "was interrupted or overloaded";
+  }
+  const auto hosts = announcing_hosts(view, host);
+  const std::string where = hosts.empty() ? "" : fmt::format(" from {}", fmt::join(hosts, ", "));
+  if (is_found(view, analysis_program) || (view.programs.empty() && !hosts.empty())) {
+    return fmt::format(
+        "announcements come{}{}, but no answer: what this host sends does not arrive "
+        "there (a firewall, or a way that is cut in one direction)",
+        where, is_found(view, analysis_program) ? ", of a dyncal-analysis too" : "");
+  }
+  if (!view.programs.empty()) {
+    std::set<std::string> names;
+    for (const HeardProgram& one : view.programs) {
+      names.insert(fmt::format("{} on {}", one.identity.program, one.identity.host));
+    }
+    return fmt::format("{} answer{}, but no dyncal-analysis is among them: start one",
+                       fmt::join(names, ", "), names.size() == 1 ? "s" : "");
+  }
+  return fmt::format("nothing is heard in DDS domain {}{}: where the network carries no multicast, "
+                     "each program needs --peer with the address of the others",
+                     view.domain, view.announced_by_multicast ? ", by multicast neither" : "");
+}
+
+} // namespace
+
+bool analysis_is_heard(const LaboratoryView& view) {
+  return answers(view, analysis_program) || !view.analyses.empty();
+}
+
+std::string why_no_analysis_is_heard(const LaboratoryView& view, const HostView& host) {
+  const std::string own = this_host(host);
+  if (own.empty() && view.programs.empty()) {
+    return about_no_address(host);
+  }
+  const std::string flapping = about_flapping(host);
+  const std::string why = flapping.empty() ? about_others(view, host) : flapping;
+  return own.empty() ? why : why + "; " + own;
+}
+
+} // namespace dyncal::services::doctor

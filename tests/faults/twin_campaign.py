@@ -1,0 +1,138 @@
+#!/usr/bin/env python3
+"""Lets another program describe itself as a source and go, and judges the runs afterwards.
+
+    twin_campaign.py PROGRAMS [--draws 30] [--seed 1] [--vendors cyclonedds,...] [--at-once 3]
+
+PROGRAMS is the folder of the built programs. The other is a `twin`, a second dyncal-dau of the same
+name with a sensor of another type and range, that lives for 2 to 8 s; or an `older` program of the
+first contract, that describes the source once with another channel (older_source). It ends or is
+killed before a run begins, 0 to 4 s before it or while the run waits; or it comes in the run.
+
+Held: a run that begins after it has gone is in its first step within 15 s, and is whole: every
+value, valid, without loss and flag, those of an undisturbed run. What comes in a run may pause it
+or end it, and is named then; the run after it is whole.
+Exit status 1 if a draw did not hold.
+"""
+
+import argparse
+import concurrent.futures
+import pathlib
+import random
+import shutil
+import signal
+import sys
+import tempfile
+import time
+
+from bench_laboratory import VENDORS, BenchLaboratory, Failure, free_udp_port
+from kill_campaign import expect_off, judge, undisturbed_result
+
+FIRST_STEP_S = 15.0
+NAMES_IT = ("two services", "send as source", "no channel", "describes itself", "goes on")
+OTHER_PRESET = "bma280"
+
+
+class DescribedLaboratory(BenchLaboratory):
+    """A live bench that another program takes for its own."""
+
+    def start_twin(self, vendor):
+        """A second dyncal-dau of the same source, with a unit and a bench file of its own."""
+        unit = f"127.0.0.1:{free_udp_port()}"
+        self.start_program("dyncal-virtual-bench", ["--preset", OTHER_PRESET, "--dau", unit])
+        bench_file = self.folder / "twin.toml"
+        text = self.bench_file.read_text(encoding="utf-8")
+        bench_file.write_text(text.replace(self.dau, unit), encoding="utf-8")
+        place = [bench_file, "--domain", self.domain, "--dds", vendor]
+        twin = self.start_program("dyncal-dau", place)
+        twin.wait_for_text("listening at UDP")
+        return twin
+
+    def start_older(self, vendor, lives_s):
+        place = [vendor, self.domain, self.name, "dau", lives_s]
+        return self.start_program("older_source", place)
+
+
+def other_program(laboratory, kind, chance):
+    """Comes, lives and has gone."""
+    vendor = chance.choice(("cyclonedds", "fastdds"))
+    lives_s = chance.uniform(2.0, 8.0)
+    if kind == "twin":
+        other = laboratory.start_twin(vendor)
+    else:
+        other = laboratory.start_older(vendor, 60.0)
+    time.sleep(lives_s)  # drawn
+    if not other.runs():
+        raise Failure(f"the other program has failed: {other.errors()[-300:]}")
+    other.send(chance.choice((signal.SIGTERM, signal.SIGKILL)))
+    other.wait(20.0)
+
+
+def whole_run(laboratory, undisturbed, slack_s):
+    began_s = time.monotonic()
+    run = laboratory.run()
+    run.wait_for_text("step 1 of", FIRST_STEP_S + slack_s)
+    first_s = time.monotonic() - began_s
+    status = run.wait()
+    expect_off(laboratory)
+    if status != 0:
+        raise Failure(f"exit status {status}: {run.errors().strip().splitlines()[-1:]}")
+    judge(laboratory, undisturbed)
+    return first_s
+
+
+def disturbed_run(laboratory, kind, chance, undisturbed):
+    """The other program comes in the run, which is whole or says what is wrong."""
+    run = laboratory.run("--run", "disturbed")
+    run.wait_for_text("step 1 of")
+    other_program(laboratory, kind, chance)
+    if run.wait() == 0:
+        judge(laboratory, undisturbed)
+    elif not any(one in run.errors() for one in NAMES_IT):
+        raise Failure(f"a wrong cause: {run.errors().strip().splitlines()[-1:]}")
+
+
+def draw(arguments, number, undisturbed):
+    vendors = arguments.vendors[number % len(arguments.vendors)]
+    chance = random.Random(f"{arguments.seed} {number} {vendors}")
+    kind = ("twin", "older")[number // len(arguments.vendors) % 2]
+    in_run = chance.random() < 0.3
+    pause_s = chance.choice((0.0, chance.uniform(0.0, 4.0)))
+    what = f"{number:3} {vendors:11} {kind:5} {'in a run' if in_run else 'between'}"
+    folder = pathlib.Path(tempfile.mkdtemp(prefix="dyncal-twin-"))
+    try:
+        with DescribedLaboratory(arguments.programs, folder, vendors) as laboratory:
+            if in_run:
+                disturbed_run(laboratory, kind, chance, undisturbed)
+            else:
+                other_program(laboratory, kind, chance)
+            time.sleep(pause_s)  # drawn
+            first_s = whole_run(laboratory, undisturbed, arguments.slack_s)
+    except Failure as failure:
+        print(f"{what}: {failure} (logs in {folder})", flush=True)
+        return False
+    shutil.rmtree(folder)
+    print(f"{what}: holds, first step {first_s:.1f} s after the run began", flush=True)
+    return True
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("programs", type=pathlib.Path)
+    parser.add_argument("--draws", type=int, default=30)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--vendors", type=lambda text: text.split(","), default=list(VENDORS))
+    parser.add_argument("--at-once", type=int, default=3)
+    parser.add_argument("--slack-s", type=float, default=3.0, help="of a busy machine")
+    arguments = parser.parse_args()
+    arguments.programs = arguments.programs.resolve()
+    undisturbed = undisturbed_result(arguments, BenchLaboratory)
+    with concurrent.futures.ThreadPoolExecutor(arguments.at_once) as pool:
+        held = list(
+            pool.map(lambda number: draw(arguments, number, undisturbed), range(arguments.draws))
+        )
+    print(f"{sum(held)} of {len(held)} hold")
+    return 0 if held and all(held) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,84 @@
+#include "services/doctor/unheard_analysis.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace dyncal::services::doctor {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+class UnheardAnalysis : public testing::Test {
+protected:
+  UnheardAnalysis() {
+    host_.interfaces = {{.name = "lo", .address = "127.0.0.1", .loopback = true},
+                        {.name = "lab", .address = "10.98.0.3"}};
+    host_.link_changes_before = host_.link_changes_after = {{"lab", 2}, {"lo", 0}};
+    view_.domain = 7;
+    view_.announced_by_multicast.emplace();
+    view_.announced_from = {"10.98.0.3"}; // our own
+  }
+  [[nodiscard]] std::string why() const { return why_no_analysis_is_heard(view_, host_); }
+  void answer(const std::string& program) {
+    HeardProgram heard;
+    heard.identity.program = program;
+    heard.identity.host = "lab-2";
+    view_.programs.push_back(heard);
+  }
+
+  LaboratoryView view_;
+  HostView host_;
+};
+
+TEST_F(UnheardAnalysis, NamesTheOwnAddressesWhereNothingIsHeard) {
+  EXPECT_EQ(why(), "nothing is heard in DDS domain 7, by multicast neither: where the network "
+                   "carries no multicast, each program needs --peer with the address of the "
+                   "others; this host is 10.98.0.3 (lab)");
+}
+
+TEST_F(UnheardAnalysis, NamesWhoAnswersInstead) {
+  answer("dyncal-dau");
+  EXPECT_THAT(why(), AllOf(HasSubstr("dyncal-dau on lab-2 answers, but no dyncal-analysis"),
+                           HasSubstr("10.98.0.3 (lab)")));
+}
+
+TEST_F(UnheardAnalysis, TellsAWayThatIsCutInOneDirection) {
+  view_.announced_from.insert("10.98.0.1");
+  EXPECT_THAT(why(), HasSubstr("announcements come from 10.98.0.1, but no answer"));
+  view_.discovery.participants = {{"0110", "dyncal-analysis", "Cyclone DDS"}};
+  EXPECT_THAT(why(), HasSubstr("announcements come from 10.98.0.1, of a dyncal-analysis too"));
+}
+
+TEST_F(UnheardAnalysis, TellsALinkThatFlaps) {
+  view_.announced_from.insert("10.98.0.1");
+  host_.link_changes_after["lab"] = 8;
+  EXPECT_THAT(why(), HasSubstr("the link of lab went down or came back 6 times"));
+}
+
+TEST_F(UnheardAnalysis, TellsALinkThatIsOverloaded) {
+  answer("dyncal-analysis");
+  LinkLoss loss;
+  loss.answers_probes = true;
+  loss.there = {100, 60};
+  loss.back = {100, 98};
+  view_.losses = {loss};
+  EXPECT_THAT(why(), HasSubstr("40 % of the packets between this host and the others are lost"));
+}
+
+TEST_F(UnheardAnalysis, TellsAHostWithoutIpv4) {
+  host_.interfaces.pop_back();
+  EXPECT_THAT(why(), AllOf(HasSubstr("no IPv4 address"), Not(HasSubstr("IPv6"))));
+  host_.without_ipv4 = {"lab"};
+  EXPECT_THAT(why(), HasSubstr("lab has IPv6 alone"));
+}
+
+TEST_F(UnheardAnalysis, SaysThatOneAnswersNow) {
+  answer("dyncal-analysis");
+  EXPECT_TRUE(analysis_is_heard(view_));
+  EXPECT_THAT(why(), HasSubstr("answers now"));
+}
+
+} // namespace
+} // namespace dyncal::services::doctor
