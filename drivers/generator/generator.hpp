@@ -9,9 +9,10 @@
 // bench goes.
 //
 // An instrument behind a bad link may let wait for seconds before a call returns; what is given to
-// call_while_waiting() is called about twice a second meanwhile, by drivers that can, with what is
-// awaited, and returns false when nobody needs the bench time any more that is being asked for. An
-// answer that does not come is a sign that nobody has hold of the output; a bench time is none.
+// call_while_waiting() is called about twice a second meanwhile, by drivers that can: with `answer`
+// while the instrument answers nothing, which is a sign that nobody has hold of the output, with
+// `bench_time` when it has answered and its time has not come yet. It returns false when nobody
+// needs the bench time any more that is being asked for.
 //
 // Destruction switches the output off, or asks for it where only a person can. One thread.
 #pragma once

@@ -1,7 +1,8 @@
 #include "drivers/generator/scpi_generator.hpp"
 
-#include <array>
 #include <charconv>
+#include <cmath>
+#include <string_view>
 #include <utility>
 
 #include "drivers/generator/generator_output.hpp"
@@ -15,21 +16,20 @@ using std::chrono::milliseconds;
 constexpr milliseconds answer_limit{8000};
 constexpr milliseconds connect_limit{4000}; // and for each answer meanwhile; it is tried again
 constexpr milliseconds delivery_limit{2000};
-constexpr double question_interval_s = 1.0;
+// Of an output that is on. Whoever conducts waits in turns of 0.4 s and says between them that it
+// has hold of the output, which the answer of every turn makes true.
+constexpr double question_interval_s = 0.3;
 
-// What another program may have left: burst, sweep, modulations, offset, phase and polarity, in the
-// words of the DG4000, the DG1000Z and the 33500.
-constexpr std::array resets{
-    ":SOURce1:BURSt:STATe OFF",  ":SOURce1:SWEep:STATe OFF", ":SOURce1:MOD:STATe OFF",
-    ":SOURce1:AM:STATe OFF",     ":SOURce1:FM:STATe OFF",    ":SOURce1:PM:STATe OFF",
-    ":SOURce1:VOLTage:OFFSet 0", ":SOURce1:PHASe 0",         ":OUTPut1:POLarity NORMal",
-};
+// Of an unknown instrument to a question that it may not know.
+constexpr milliseconds unknown_limit{1000};
 
 } // namespace
 
-Expected<std::unique_ptr<ScpiGenerator>> ScpiGenerator::connect(const std::string& address) {
+Expected<std::unique_ptr<ScpiGenerator>> ScpiGenerator::connect(const std::string& address,
+                                                                double maximum_voltage_v) {
   std::unique_ptr<ScpiGenerator> generator(new ScpiGenerator());
   generator->address_ = address;
+  generator->maximum_voltage_v_ = maximum_voltage_v;
   if (auto connected = generator->reconnect(); !connected) {
     return fail(connected.error());
   }
@@ -59,7 +59,22 @@ Expected<void> ScpiGenerator::reconnect() {
   }
   connection->set_delivery_limit(delivery_limit);
   connection->call_while_waiting([this] { return go_on_waiting(); });
-  const auto identity = connection->query("*IDN?");
+  if (auto ready = set_up(*connection); !ready) {
+    const bool knew_no_question = connection->lost() && ready.error().code == ErrorCode::timeout &&
+                                  reads_back_ && family_of(identity_) == GeneratorFamily::unknown;
+    if (!knew_no_question) {
+      return ready;
+    }
+    reads_back_ = false;
+    return reconnect();
+  }
+  connection->set_answer_limit(answer_limit);
+  connection_.emplace(std::move(*connection));
+  return confirm_off();
+}
+
+Expected<void> ScpiGenerator::set_up(ScpiConnection& connection) {
+  const auto identity = connection.query("*IDN?");
   if (!identity) {
     return fail(identity.error());
   }
@@ -67,18 +82,44 @@ Expected<void> ScpiGenerator::reconnect() {
   // An instrument that was switched off in between has forgotten all of this.
   for (const char* setting : {":OUTPut1 OFF", ":OUTPut1:LOAD INFinity",
                               ":SOURce1:FUNCtion SINusoid", ":SOURce1:VOLTage:UNIT VPP"}) {
-    if (auto done = connection->command(setting); !done) {
+    if (auto done = connection.command(setting); !done) {
       return done;
     }
   }
-  for (const char* reset : resets) {
-    if (auto done = connection->command(reset); !done && connection->lost()) {
-      return done; // what is refused is nothing that this instrument has
+  return reset(connection);
+}
+
+Expected<void> ScpiGenerator::reset(ScpiConnection& connection) {
+  const GeneratorFamily family = family_of(identity_);
+  answers_offset_ = false;
+  for (const LeftOverState& state : left_over_states(family)) {
+    if (auto done = connection.command(state.reset); !done) {
+      if (connection.lost()) {
+        return done;
+      }
+      continue; // it has no such state
     }
+    if (!reads_back_) {
+      continue;
+    }
+    connection.set_answer_limit(family == GeneratorFamily::unknown ? unknown_limit : connect_limit);
+    const auto answer = connection.query(state.query);
+    connection.set_answer_limit(connect_limit);
+    if (!answer) {
+      return fail(answer.error());
+    }
+    const auto is_reset = says_reset(*answer);
+    if (!is_reset.value_or(true)) {
+      return fail(ErrorCode::refused, "generator " + address_ + " takes " + state.reset +
+                                          " without an error, but answers " + state.query +
+                                          " with '" + shown(*answer) +
+                                          "': what another program left in it (" + state.name +
+                                          ") would reach the exciter; reset it by hand");
+    }
+    answers_offset_ =
+        answers_offset_ || (is_reset && std::string_view(state.query) == offset_query);
   }
-  connection->set_answer_limit(answer_limit);
-  connection_.emplace(std::move(*connection));
-  return confirm_off();
+  return {};
 }
 
 Expected<std::optional<bool>> ScpiGenerator::output_is_on() {
@@ -137,13 +178,51 @@ Expected<void> ScpiGenerator::set_amplitude_v(double amplitude_v) {
                                                 scpi_decimal(amplitude_v) +
                                                 " V: must be between 0 and 1000 V");
   }
+  if (auto allowed = check_voltage(amplitude_v); !allowed) {
+    return allowed;
+  }
+  amplitude_v_ = amplitude_v;
   return command(":SOURce1:VOLTage " + scpi_decimal(2.0 * amplitude_v));
 }
 
+Expected<void> ScpiGenerator::check_voltage(double amplitude_v) const {
+  if (amplitude_v + std::abs(offset_v_) <= maximum_voltage_v_) {
+    return {};
+  }
+  return fail(ErrorCode::invalid_setting,
+              "generator: " + scpi_decimal(amplitude_v) + " V amplitude and " +
+                  scpi_decimal(offset_v_) +
+                  " V DC offset are above generator.maximum_voltage_v = " +
+                  scpi_decimal(maximum_voltage_v_));
+}
+
+// A person may have set an offset since the instrument was connected.
+Expected<void> ScpiGenerator::check_before_on() {
+  if (!answers_offset_) {
+    return {};
+  }
+  const auto answer = query(offset_query);
+  if (!answer) {
+    return fail(answer.error());
+  }
+  const auto offset_v = parse_scpi_number(*answer);
+  if (offset_v && std::abs(*offset_v) > reset_rounding) {
+    return fail(ErrorCode::refused,
+                "generator " + address_ + " answers that its DC offset is " +
+                    scpi_decimal(*offset_v) +
+                    " V, which was reset: the output is not switched on; was it set by hand?");
+  }
+  offset_v_ = offset_v.value_or(0.0);
+  return check_voltage(amplitude_v_);
+}
+
 Expected<void> ScpiGenerator::set_output(bool on) {
-  is_on_ = on;
+  is_on_ = false;
   if (on) {
-    return command(":OUTPut1 ON");
+    return check_before_on().and_then([this] {
+      is_on_ = true;
+      return command(":OUTPut1 ON");
+    });
   }
   return command(":OUTPut1 OFF").and_then([this] { return confirm_off(); });
 }
@@ -174,8 +253,7 @@ void ScpiGenerator::call_while_waiting(const std::function<bool(Awaited)>& callb
 }
 
 bool ScpiGenerator::go_on_waiting() {
-  return !while_waiting_ || while_waiting_(asks_time_ ? Awaited::bench_time : Awaited::answer) ||
-         !asks_time_;
+  return !while_waiting_ || while_waiting_(Awaited::answer) || !asks_time_;
 }
 
 Expected<double> ScpiGenerator::clock_now_s() {
@@ -199,6 +277,9 @@ Expected<double> ScpiGenerator::wait_until_s(double time_s, std::stop_token stop
     // second of the host.
     auto now_s = query_bench_time(":BENCh:WAIT? " + scpi_decimal(time_s));
     if (!now_s || *now_s >= time_s || stop.stop_requested()) {
+      return now_s;
+    }
+    if (while_waiting_ && !while_waiting_(Awaited::bench_time)) {
       return now_s;
     }
   }

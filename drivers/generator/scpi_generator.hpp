@@ -7,14 +7,15 @@
 // are lost (4 s while connecting); after that the connection is given up, and the next call
 // connects anew, which switches the output off.
 //
-// What another program may have left (burst, sweep, modulation, offset, phase, polarity) is
-// switched off while connecting, with the output off; a reset that the instrument refuses is passed
-// over.
+// What another program may have left (left_over_state.hpp) is reset while connecting, with the
+// output off, and read back: an instrument that answers that it is still there is refused, a reset
+// that it refuses is passed over. The DC offset is asked again before each ON; peak voltage plus
+// |offset| stays within the limit (invalid_setting).
 //
 // No command arrives later than 2 s after it was sent: an ON that the network held would otherwise
 // switch on after the run, with nobody there. OFF is believed when :OUTPut1? confirms it: a front
 // panel that is locked, another dialect or a relay leave the output on without an error (refused).
-// An output that was switched on is asked every second of a wait whether it still is: an instrument
+// An output that was switched on is asked at each turn of a wait whether it still is: an instrument
 // that is mute or was switched off is noticed in the step (timeout, refused).
 //
 // The virtual bench also understands :BENCh:TIME? and :BENCh:WAIT?; with every other instrument,
@@ -22,12 +23,14 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "drivers/generator/generator.hpp"
 #include "drivers/generator/host_clock.hpp"
+#include "drivers/generator/left_over_state.hpp"
 #include "drivers/link/scpi_connection.hpp"
 #include "drivers/link/stop_signal.hpp"
 
@@ -35,8 +38,11 @@ namespace dyncal::drivers::generator {
 
 class ScpiGenerator : public Generator {
 public:
-  // Connects, identifies the instrument, switches the output off and chooses a sine.
-  [[nodiscard]] static Expected<std::unique_ptr<ScpiGenerator>> connect(const std::string& address);
+  // Connects, identifies the instrument, switches the output off, resets what was left and chooses
+  // a sine. The limit is zero to peak.
+  [[nodiscard]] static Expected<std::unique_ptr<ScpiGenerator>>
+  connect(const std::string& address,
+          double maximum_voltage_v = std::numeric_limits<double>::infinity());
   ~ScpiGenerator() override;
   ScpiGenerator(const ScpiGenerator&) = delete;
   ScpiGenerator& operator=(const ScpiGenerator&) = delete;
@@ -59,6 +65,10 @@ private:
   void choose_clock();
   bool go_on_waiting();
   Expected<void> reconnect();
+  Expected<void> set_up(ScpiConnection& connection);
+  Expected<void> reset(ScpiConnection& connection);
+  Expected<void> check_voltage(double amplitude_v) const;
+  Expected<void> check_before_on();
   Expected<void> confirm_off();
   Expected<void> confirm_on();
   Expected<void> command(const std::string& text);
@@ -72,8 +82,13 @@ private:
   bool asks_time_ = false; // now
   std::string identity_;
   bool has_bench_clock_ = false;
-  bool is_on_ = false;   // as set last
-  double asked_s_ = 0.0; // host clock: whether it still is
+  bool reads_back_ = true; // an unknown instrument may not answer the questions
+  bool answers_offset_ = false;
+  double maximum_voltage_v_ = std::numeric_limits<double>::infinity();
+  double amplitude_v_ = 0.0; // as set last
+  double offset_v_ = 0.0;    // as read last
+  bool is_on_ = false;       // as set last
+  double asked_s_ = 0.0;     // host clock: whether it still is
   HostClock host_clock_;
 };
 

@@ -51,8 +51,9 @@ ExciterGuard::create(bus::Participant& participant, const ProgramIdentity& own,
                      bus::Clock& clock) {
   auto wake_up = std::make_shared<bus::WakeUp>();
   auto excitation = participant.reader(bus::topics::excitation, exciter.bench, wake_up);
+  auto measurement = participant.reader(bus::topics::measurement, exciter.bench, wake_up);
   auto status = participant.writer(bus::topics::service_status, exciter.bench);
-  if (const auto error = first_error(excitation, status)) {
+  if (const auto error = first_error(excitation, measurement, status)) {
     return fail(*error);
   }
   ExciterWatch watch(unattended_limit, exciter.planned, record.read(), clock.now());
@@ -60,9 +61,10 @@ ExciterGuard::create(bus::Participant& participant, const ProgramIdentity& own,
     spdlog::info("bench {}: run {} drove the generator when this guard was last there",
                  exciter.bench, watch.run().run);
   }
-  return std::unique_ptr<ExciterGuard>(new ExciterGuard(
-      status_of(own, exciter), exciter, std::move(watch), std::move(output), std::move(record),
-      clock, std::move(wake_up), {std::move(*excitation), std::move(*status)}));
+  return std::unique_ptr<ExciterGuard>(
+      new ExciterGuard(status_of(own, exciter), exciter, std::move(watch), std::move(output),
+                       std::move(record), clock, std::move(wake_up),
+                       {std::move(*excitation), std::move(*measurement), std::move(*status)}));
 }
 
 void ExciterGuard::serve(const std::stop_token& stop, const std::function<void()>& turned) {
@@ -113,12 +115,20 @@ void ExciterGuard::take_messages() {
       return;
     }
     const std::string name = excitation.run().to_string();
-    if (is_driven(excitation) && name != watch_.run().run) {
+    if (is_driven(excitation) && name != watched_run_) {
+      watched_run_ = name;
       spdlog::info("bench {}: watching over run {}", exciter_.bench, name);
     }
     watch_.heard(
         {.run = name, .is_driven = is_driven(excitation), .settings = settings_of(excitation)},
         clock_.now());
+  });
+  endpoints_.measurement.take([&](const wire::Measurement& measurement) {
+    if (measurement.bench().to_string() == exciter_.bench &&
+        measurement.state() != wire::MEASUREMENT_PLANNED) {
+      watch_.heard_run(measurement.run().to_string(),
+                       measurement.state() == wire::MEASUREMENT_RUNNING, clock_.now());
+    }
   });
 }
 
@@ -149,7 +159,9 @@ void ExciterGuard::act() {
 }
 
 void ExciterGuard::keep_record() {
-  if (watch_.run() == recorded_) {
+  const DrivenRun& run = watch_.run();
+  const bool has_driven = run.run.empty() || !run.settings.empty(); // else what was driven before
+  if (run == recorded_ || !has_driven) {
     return;
   }
   recorded_ = watch_.run();

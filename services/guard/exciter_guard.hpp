@@ -66,6 +66,7 @@ public:
 private:
   struct Endpoints {
     bus::Reader<wire::Excitation> excitation;
+    bus::Reader<wire::Measurement> measurement;
     bus::Writer<wire::ServiceStatus> status;
   };
 
@@ -93,6 +94,7 @@ private:
   Endpoints endpoints_;
   wire::ServiceStatus status_; // as published last
   DrivenRun recorded_;
+  std::string watched_run_; // in the log
   bool record_failed_ = false;
   Instant next_status_{};
   Instant next_report_{};

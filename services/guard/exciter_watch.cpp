@@ -47,6 +47,7 @@ void ExciterWatch::step_to(State state, Instant now) {
   switch (state) {
   case State::idle:
     run_ = {};
+    is_conducted_ = false;
     is_from_record_ = false;
     break;
   case State::silent:
@@ -81,6 +82,7 @@ void ExciterWatch::heard(const ExciterAnnouncement& announcement, Instant now) {
   }
   if (!is_of_driver) {
     run_ = {announcement.run, false, {}};
+    is_conducted_ = false;
     answers_in_run_ = true;
   }
   const bool is_news = state_ != (announcement.is_driven ? State::driven : State::ended) ||
@@ -101,12 +103,36 @@ void ExciterWatch::heard(const ExciterAnnouncement& announcement, Instant now) {
   on_since_.reset();
 }
 
+void ExciterWatch::heard_run(const std::string& run, bool is_running, Instant now) {
+  if (run == run_.run) {
+    is_conducted_ = is_running;
+    if (is_running && state_ == State::ended && idle_from_) {
+      idle_from_ = now + watched_after;
+    }
+    return;
+  }
+  const bool is_free = state_ == State::idle || (state_ == State::ended && !must_be_off_);
+  if (!is_running || !is_free) {
+    return; // what was driven comes first
+  }
+  run_ = {run, true, {}};
+  heard_ = now;
+  is_conducted_ = true;
+  is_from_record_ = false;
+  answers_in_run_ = true;
+  has_switched_off_ = false;
+  step_to(State::ended, now);
+  next_question_ =
+      now + unattended_limit_; // it may be connecting to an instrument of one connection
+}
+
 bool ExciterWatch::is_of_run(const OutputReading& reading) const {
   if (!reading.settings) {
     return state_ == State::silent; // it does not say with what it is on
   }
   return is_among(*reading.settings, run_.settings) ||
-         (state_ == State::silent && !is_from_record_ && is_among(*reading.settings, planned_));
+         ((is_conducted_ || (state_ == State::silent && !is_from_record_)) &&
+          is_among(*reading.settings, planned_));
 }
 
 void ExciterWatch::found_on(const OutputReading& reading, Instant now) {

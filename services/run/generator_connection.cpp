@@ -1,5 +1,6 @@
 #include "services/run/generator_connection.hpp"
 
+#include <limits>
 #include <unistd.h>
 
 #include "drivers/generator/by_hand_generator.hpp"
@@ -21,7 +22,9 @@ Expected<GeneratorConnection> connect_generator(const GeneratorSettings& setting
     return fail(guard.error());
   }
   connection.guard.emplace(std::move(*guard));
-  auto generator = drivers::generator::ScpiGenerator::connect(settings.address);
+  auto generator = drivers::generator::ScpiGenerator::connect(
+      settings.address,
+      settings.maximum_voltage_v.value_or(std::numeric_limits<double>::infinity()));
   if (!generator) {
     connection.guard->dismiss(); // nothing was switched on
     return fail(device_error(generator.error()));

@@ -27,6 +27,7 @@ struct Words {
   std::string tss = "127.0.0.1:0";
   std::string sensor = "0xbccb0100";
   std::string can_bus = "1M";
+  std::string generator_words = "dg4000";
   std::vector<std::string> scope_faults;
   std::size_t scope_pieces = 0;
   std::string response;
@@ -54,6 +55,10 @@ void add_instrument_options(CLI::App& app, Words& words, BenchOptions& options) 
       ->capture_default_str();
   app.add_option("--generator-listen", words.generator,
                  "HOST:PORT of the generator's SCPI (port 0: chosen)")
+      ->capture_default_str();
+  app.add_option("--generator-words", words.generator_words,
+                 "whose SCPI the generator speaks: dg4000, 33500")
+      ->check(CLI::IsMember({"dg4000", "33500"}))
       ->capture_default_str();
   app.add_option("--dso-listen", words.dso, "HOST:PORT of the oscilloscope's SCPI (preset tss)")
       ->capture_default_str();
@@ -319,6 +324,9 @@ Expected<void> read_words(const Words& words, BenchOptions& options) {
   }
   options.bench.preset = *preset;
   options.server.speed = 0.0;
+  options.bench.generator_words = words.generator_words == "33500"
+                                      ? device::GeneratorWords::keysight_33500
+                                      : device::GeneratorWords::dg4000;
   if (words.speed != "max" &&
       (!read_whole(words.speed, options.server.speed) || !(options.server.speed > 0.0))) {
     return refuse(fmt::format("--speed {}: write a number above 0, or max", words.speed));

@@ -275,6 +275,31 @@ Expected<void> read_ring_down(FaultText& text, BenchFaults& faults) {
   return {};
 }
 
+Expected<void> read_left_offset(FaultText& text, BenchFaults& faults) {
+  const auto offset_v = text.value("VOLTS", -10.0, 10.0);
+  if (!offset_v) {
+    return fail(offset_v.error());
+  }
+  faults.left_in_generator.offset_v = *offset_v;
+  return {};
+}
+
+Expected<void> read_left_burst(FaultText& text, BenchFaults& faults) {
+  if (text.has_value()) {
+    return text.refuse("takes no value");
+  }
+  faults.left_in_generator.in_burst = true;
+  return {};
+}
+
+Expected<void> read_no_reset(FaultText& text, BenchFaults& faults) {
+  if (text.has_value()) {
+    return text.refuse("takes no value");
+  }
+  faults.left_in_generator.is_kept = true;
+  return {};
+}
+
 Expected<void> read_stamp_fault(FaultText& text, BenchFaults& faults) {
   const auto probability = text.value("PROBABILITY", 0.0, 1.0);
   if (!probability) {
@@ -290,7 +315,7 @@ struct Fault {
   Expected<void> (*read)(FaultText&, BenchFaults&);
 };
 
-constexpr std::array<Fault, 15> known_faults{{
+constexpr std::array<Fault, 18> known_faults{{
     {"over-range", "over-range=LIMIT,at=CHANNEL", read_over_range},
     {"soft-ends", "soft-ends=LIMIT,at=CHANNEL[,end=upper|lower]", read_soft_ends},
     {"held", "held=PART,at=CHANNEL", read_held},
@@ -306,6 +331,9 @@ constexpr std::array<Fault, 15> known_faults{{
     {"start-jitter", "start-jitter=SECONDS", read_start_jitter},
     {"exciter-gain", "exciter-gain=FACTOR", read_exciter_gain},
     {"ring-down", "ring-down=SECONDS", read_ring_down},
+    {"generator-offset", "generator-offset=VOLTS", read_left_offset},
+    {"generator-burst", "generator-burst", read_left_burst},
+    {"generator-no-reset", "generator-no-reset", read_no_reset},
 }};
 
 std::vector<std::string> forms() {

@@ -5,9 +5,10 @@
     late            answers 0.6 s late
     mute            takes everything and answers nothing
 
-begin() says from when on.
+begin() says from when on. What came is kept, with its instant and the number of its connection.
 """
 
+import itertools
 import socket
 import threading
 import time
@@ -23,6 +24,7 @@ class GeneratorProxy:
         self.place = place
         self.enter = enter
         self.fault = "sound"
+        self.heard = []  # (monotonic s, connection, line)
         self.listener = call(lambda: socket.create_server((place[0], 0)))
         self.port = self.listener.getsockname()[1]
         self.start(self.accept)
@@ -33,21 +35,28 @@ class GeneratorProxy:
     def begin(self, fault):
         self.fault = fault
 
+    def ask_instrument(self, line):
+        """Past the fault."""
+        with socket.create_connection(self.place, 10.0) as link:
+            link.sendall(f"{line}\n".encode())
+            return link.makefile().readline().strip()
+
     def accept(self):
         self.enter()
-        while True:
+        for connection in itertools.count():
             try:
                 client, _ = self.listener.accept()
                 instrument = socket.create_connection(self.place, 10.0)
             except OSError:
                 return
             instrument.settimeout(None)
-            self.start(self.forward, client, instrument)
+            self.start(self.forward, client, instrument, connection)
             self.start(self.answer, instrument, client)
 
-    def forward(self, client, instrument):
+    def forward(self, client, instrument, connection):
         try:
             for line in client.makefile("rb"):
+                self.heard.append((time.monotonic(), connection, line.strip().decode()))
                 if self.fault == "ignores-off" and line.strip().upper().endswith(b" OFF"):
                     line = b"*CLS\n"
                 instrument.sendall(line)

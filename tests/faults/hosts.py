@@ -6,6 +6,7 @@ machine itself. close() removes all of them.
 
 import concurrent.futures
 import ctypes
+import itertools
 import os
 import pathlib
 import subprocess
@@ -28,13 +29,12 @@ def can_be_made():
 
 
 class Hosts:
-    made = 0
+    numbers = itertools.count(1)
 
     def __init__(self, names):
         self.names = names
         self.address = {}
-        Hosts.made += 1
-        self.prefix = f"dyncal-{os.getpid()}-{Hosts.made}"
+        self.prefix = f"dyncal-{os.getpid()}-{next(Hosts.numbers)}"
         self.callers = {}
         for name in (SWITCH, *names):
             ip("netns", "add", self.namespace(name))

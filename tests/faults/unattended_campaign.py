@@ -1,202 +1,331 @@
 #!/usr/bin/env python3
 """Lets operator, guard, path and generator fail in drawn order, and holds that nothing stays on.
 
-    unattended_campaign.py PROGRAMS [--draws 60] [--seed 1] [--vendors mixed] [--watch-s 60]
-                           [--slack-s 0.5] [--healthy 3]
+    unattended_campaign.py PROGRAMS [--draws 60] [--held 4] [--calibrations 8] [--healthy 200]
+                           [--seed 1] [--vendors mixed] [--watch-s 60] [--at-once 3]
 
 PROGRAMS is the folder of the built programs. Bench (instruments, sources, guard), analysis and
-operator are on a host each. In each draw a run is in its first step; then, within 4 s, the
-operator's host loses its power, or its path loses all of its datagrams; the guard dies in half of
-the draws, at any time around that, and is back after up to 10 s; the generator is sound, ignores
-OFF, answers late, or falls mute. Held: from the moment when the run is not attended and the guard
-is there, the output is off after 2.1 s where the guard heard the run die, else 3.5 s, and stays off
-for --watch-s; or the guard says MAY BE ON.
+operator are on a host each.
 
-The opposite, --healthy times: a run, and after it a person who uses the generator with settings of
-their own: nothing is switched off, and the run is whole.
-Exit status 1 if a draw did not hold, 77 where there are no network namespaces.
+Draws: a run is in its first step; within 4 s the operator's host loses its power, its program is
+killed or stands still, or the path fails: both ways, one way, for datagrams, for the generator's
+TCP, or with the very ON of the step, before or after the guard has heard of it. The guard dies in
+half of the draws, at any time around that, and is back after up to 10 s. The generator is sound,
+ignores OFF, answers late, or falls mute. Held: from the moment when nobody attends and the guard is
+there, the output is off after 2.1 s where the guard heard the run, 3.5 s where it has to ask, and
+stays off for --watch-s; or MAY BE ON is said.
+
+Held packets: the path fails with ON in flight, and is back after 5 or 18 s. That ON never arrives.
+
+Calibrations: `dyncal calibrate dso-delay` is killed or its terminal closed.
+
+The opposite, in one laboratory: runs one after the other, with pauses, resumed, and with a person
+who uses the generator between them. Nothing is switched off, and every run is whole.
+
+Limits are extended by three times the worst delay with which this machine let a program go on in
+the draw, which is said. Exit status 1 if one did not hold, 77 where there are no namespaces.
 """
 
 import argparse
+import concurrent.futures
+import json
 import pathlib
 import random
+import re
 import shutil
 import signal
-import socket
-import subprocess
 import sys
 import tempfile
 import time
 
 import hosts
-from bench_laboratory import VENDORS, Failure, wait_until
+from bench_laboratory import READY, VENDORS, Failure, Program, wait_until
 from generator_proxy import FAULTS, GeneratorProxy
-from link_campaign import SpreadLaboratory
+from guarded_laboratory import GuardedLaboratory, SchedulingDelay
 
 HEARD_S = 2.1  # idl/README.md, deploy/README.md
 ASKED_S = 3.5
+WITHIN_S = 4.0
 LOOK_S = 0.05
 MAY_BE_ON = "MAY BE ON"
-NO_DATAGRAMS = """
-table ip unattended {
-  chain lost { type filter hook output priority 0; meta l4proto udp drop; }
-}
-"""
-
-
-class GuardedLaboratory(SpreadLaboratory):
-    """Its generator is reached through a proxy, and asked directly by the campaign."""
-
-    proxy = None
-    link = None
-
-    def bench_text(self):
-        place = (self.generator_host(), self.ports["generator"])
-        self.proxy = GeneratorProxy(
-            place,
-            lambda function: self.hosts.call("bench", function),
-            lambda: self.hosts.enter("bench"),
-        )
-        text = super().bench_text()
-        return text.replace(f":{place[1]}", f":{self.proxy.port}").replace(
-            "duration_s = 1.5", f"duration_s = {self.duration_s}"
-        )
-
-    duration_s = 1.5
-
-    def ask_generator(self, line):
-        """Directly, over one connection."""
-
-        def ask():
-            if self.link is None:
-                place = (self.generator_host(), self.ports["generator"])
-                self.link = socket.create_connection(place, 10.0).makefile("rw")
-            self.link.write(line + "\n")
-            self.link.flush()
-            return self.link.readline().strip()
-
-        return self.hosts.call("bench", ask)
-
-    def output_is_on(self):
-        return self.ask_generator(":OUTPut1?") == "ON"
-
-    def set_by_person(self, frequency_hz):
-        for line in (f":SOURce1:FREQuency {frequency_hz}", ":OUTPut1 ON"):
-            self.ask_generator(f"{line}\n:SYSTem:ERRor?")
-
-    def lose_datagrams(self):
-        nft = [*self.hosts.command("operator"), "nft", "-f", "-"]
-        subprocess.run(nft, check=True, input=NO_DATAGRAMS, text=True)
-
-    def close(self):
-        if self.proxy:
-            self.proxy.close()
-        super().close()
+PATHS = ("path", "to-bench", "from-bench", "datagrams", "generator-tcp")
+WITH_ON = ("with-on", "with-on-unheard")  # before the run begins
+DEATHS = ("power", "killed", "stands", *PATHS, *WITH_ON)
+HEALTHY = ("plain", "person", "paused", "resumed")
 
 
 class LongSteps(GuardedLaboratory):
     duration_s = 300.0
 
 
-def guard_words(laboratory):
-    return "".join(
-        one.errors() for one in laboratory.started if "dyncal-guard" in str(one.log)
-    )
+class ShortSteps(GuardedLaboratory):
+    duration_s = 0.5
 
 
-def expect_off(laboratory, limit_s, since_s, fault, watch_s):
-    """Off within `limit_s`, and then for `watch_s`; or said to be on."""
-    last_on_s = None
-    until_s = since_s + limit_s + watch_s
-    while time.monotonic() < until_s:
-        now_s = time.monotonic()
-        if laboratory.output_is_on():
-            last_on_s = now_s
-            if now_s - since_s > limit_s and MAY_BE_ON not in guard_words(laboratory):
-                raise Failure(f"{fault}: on {now_s - since_s:.2f} s after, and nobody says so")
-        time.sleep(LOOK_S)  # between two looks
-    return (last_on_s or since_s) - since_s
+class Judge:
+    """When the output was on, from the moment `since_s`."""
+
+    def __init__(self, is_on, words):
+        self.is_on = is_on
+        self.words = words
+
+    def expect_off(self, limit_s, since_s, watch_s, delay):
+        """Off within the limit, and then for `watch_s`, or said to be on; returns the last look at
+        which it was on, and by how much the limit was extended."""
+        last_on_s = since_s
+        while time.monotonic() < since_s + limit_s + watch_s:
+            now_s = time.monotonic()
+            if self.is_on():
+                last_on_s = now_s
+                if now_s - since_s > limit_s + self.slack_s(delay) and MAY_BE_ON not in self.words():
+                    raise Failure(f"on {now_s - since_s:.2f} s after, and nobody says so")
+            time.sleep(LOOK_S)  # between two looks
+        return last_on_s - since_s
+
+    @staticmethod
+    def slack_s(delay):
+        return LOOK_S + 3.0 * delay.worst_s
 
 
-def draw(arguments, number):
+def laboratory_folder():
+    return pathlib.Path(tempfile.mkdtemp(prefix="dyncal-unattended-"))
+
+
+class Row:
+    """One draw: what was drawn, what became of it."""
+
+    def __init__(self, name):
+        self.name = name
+        self.problem = ""
+        self.figures = ""
+        self.took_s = None
+        self.kind = ""
+
+    def run(self, function):
+        folder = laboratory_folder()
+        try:
+            with SchedulingDelay() as delay:
+                function(self, folder, delay)
+                self.figures += f" (machine late by up to {delay.worst_s:.2f} s)"
+        except (Failure, OSError, ValueError) as failure:
+            self.problem = f"{failure} (logs in {folder})"
+        else:
+            shutil.rmtree(folder)
+        print(f"{self.name}: {self.problem or 'holds' + self.figures}", flush=True)
+        return self
+
+
+def draw_events(chance):
+    """What fails when, from the beginning of the step on."""
+    drawn = {
+        "death": chance.choice(DEATHS),
+        "dies_s": chance.uniform(0.0, WITHIN_S),
+        "fault_s": chance.uniform(0.0, WITHIN_S),
+        "guard_dies_s": chance.uniform(0.0, WITHIN_S) if chance.random() < 0.5 else None,
+        "guard_away_s": chance.uniform(0.0, 10.0),
+    }
+    if drawn["death"] in WITH_ON:
+        drawn["dies_s"] = 0.0
+    if drawn["death"] == "with-on-unheard":
+        drawn["guard_dies_s"] = None  # a guard that was never told has no record of it
+    return drawn
+
+
+def die(laboratory, run, death):
+    if death == "power":
+        laboratory.hosts.set_cable("operator", "down")
+        run.send(signal.SIGKILL)
+    elif death == "killed":
+        run.send(signal.SIGKILL)
+    elif death == "stands":
+        run.send(signal.SIGSTOP)
+    elif death in PATHS:
+        laboratory.lose_path(death)
+
+
+def unattended(arguments, number):
     chance = random.Random(f"{arguments.seed} {number}")
     fault = FAULTS[number % len(FAULTS)]
-    death = chance.choice(("power", "datagrams"))
-    guard_dies = chance.random() < 0.5
-    dies_s, guard_dies_s = chance.uniform(0.5, 4.0), chance.uniform(0.5, 4.0)
-    guard_away_s = chance.uniform(0.0, 10.0)
-    case = f"{fault}, {death} after {dies_s:.1f} s"
-    if guard_dies:
-        case += f", guard away from {guard_dies_s:.1f} s on for {guard_away_s:.1f} s"
-    folder = pathlib.Path(tempfile.mkdtemp(prefix="dyncal-unattended-"))
-    try:
+    drawn = draw_events(chance)
+    case = f"{number:3} {fault}, {drawn['death']} after {drawn['dies_s']:.1f} s"
+    if drawn["guard_dies_s"] is not None:
+        case += f", guard away from {drawn['guard_dies_s']:.1f} s for {drawn['guard_away_s']:.1f} s"
+
+    def one(row, folder, delay):
         with LongSteps(arguments.programs, folder, arguments.vendors) as laboratory:
+            guard = laboratory.services["dyncal-guard"]
+            if drawn["death"] in WITH_ON:
+                laboratory.lose_path_with_on(drawn["death"] == "with-on", delivered=True)
             run = laboratory.run()
-            run.wait_for_text("step 1 of")
             wait_until(laboratory.output_is_on, "the output to be on")
-            laboratory.services["dyncal-guard"].wait_for_text("watching over run", 10.0)
             began_s = time.monotonic()
-
-            def operator_dies():
-                if death == "power":
-                    laboratory.hosts.set_cable("operator", "down")
-                    run.send(signal.SIGKILL)
-                else:
-                    laboratory.lose_datagrams()
-
-            def guard_is_killed():
-                laboratory.services["dyncal-guard"].send(signal.SIGKILL)
-
-            events = [(dies_s, operator_dies), (dies_s, lambda: laboratory.proxy.begin(fault))]
-            if guard_dies:
-                events.append((guard_dies_s, guard_is_killed))
+            if drawn["death"] not in WITH_ON:
+                guard.wait_for_text("watching over run", 10.0)
+                began_s = time.monotonic()
+            events = [
+                (drawn["dies_s"], lambda: die(laboratory, run, drawn["death"])),
+                (drawn["fault_s"], lambda: laboratory.proxy.begin(fault)),
+            ]
+            if drawn["guard_dies_s"] is not None:
+                events.append((drawn["guard_dies_s"], lambda: guard.send(signal.SIGKILL)))
             for due_s, event in sorted(events, key=lambda one: one[0]):
                 time.sleep(max(0.0, began_s + due_s - time.monotonic()))  # the drawn instants
                 event()
-            since_s, limit_s = time.monotonic(), HEARD_S
-            if guard_dies:
-                back_s = began_s + guard_dies_s + guard_away_s
+            unattended_s = drawn["dies_s"]
+            if fault == "mute":
+                unattended_s = min(unattended_s, drawn["fault_s"])
+            since_s = began_s + unattended_s
+            row.kind, limit_s = "heard", HEARD_S
+            if drawn["death"] == "with-on-unheard":
+                row.kind, limit_s = "asked", ASKED_S
+            if drawn["guard_dies_s"] is not None:
+                back_s = began_s + drawn["guard_dies_s"] + drawn["guard_away_s"]
                 time.sleep(max(0.0, back_s - time.monotonic()))
                 laboratory.restart("dyncal-guard")
-                since_s, limit_s = time.monotonic(), ASKED_S
-            took_s = expect_off(
-                laboratory, limit_s + arguments.slack_s, since_s, fault, arguments.watch_s
-            )
-            said = ", said to be on" if MAY_BE_ON in guard_words(laboratory) else ""
-            print(f"{number:3} {case}: off after {took_s:.2f} s{said}", flush=True)
-    except Failure as failure:
-        print(f"{number:3} {case}: {failure} (logs in {folder})", flush=True)
-        return False
-    shutil.rmtree(folder)
-    return True
+                since_s = max(since_s, time.monotonic())
+                row.kind, limit_s = "asked", ASKED_S
+            judge = Judge(laboratory.output_is_on, laboratory.guard_words)
+            row.took_s = judge.expect_off(limit_s, since_s, arguments.watch_s, delay)
+            words = laboratory.guard_words()
+            row.figures = f", off after {row.took_s:.2f} s"
+            own = re.findall(r"for ([\d.]+) s while its exciter was", words)
+            row.figures += f", by the guard's clock {own[0]} s" if own else ""
+            row.figures += ", said to be on" if MAY_BE_ON in words else ""
+
+    return Row(case).run(one)
 
 
-def healthy(arguments, number):
-    """A run with a person's use after it."""
-    folder = pathlib.Path(tempfile.mkdtemp(prefix="dyncal-attended-"))
-    try:
+def held_packet(arguments, number):
+    is_killed, back_s = number % 2 == 0, (5.0, 18.0)[number // 2 % 2]
+    name = f"held packet {number}: run {'killed' if is_killed else 'goes on'}, path back {back_s:g} s"
+
+    def one(row, folder, delay):
         with GuardedLaboratory(arguments.programs, folder, arguments.vendors) as laboratory:
+            laboratory.lose_path_with_on(heard=True, delivered=False)
             run = laboratory.run()
-            status = run.wait(60.0)
-            if status != 0:
-                raise Failure(f"exit status {status}: {run.errors()[-300:]}")
-            laboratory.expect_whole_result()
-            laboratory.set_by_person(100)
-            laboratory.services["dyncal-guard"].wait_for_text("it is left on", 20.0)
-            until_s = time.monotonic() + arguments.watch_s
-            while time.monotonic() < until_s:
-                if not laboratory.output_is_on():
-                    raise Failure("a person's output was switched off")
+            wait_until(laboratory.path_is_lost, "the path to fail with ON in flight")
+            laboratory.lose_path_to_operator()
+            lost_s = time.monotonic()
+            wait_until(lambda: time.monotonic() - lost_s > 1.0, "a second")
+            if is_killed:
+                run.send(signal.SIGKILL)
+            wait_until(lambda: time.monotonic() - lost_s > back_s, "the drawn time")
+            before = {connection for _, connection, _ in laboratory.proxy.heard}
+            laboratory.restore_path()
+            if not is_killed:
+                status = run.wait(180.0)
+                row.figures = f", run ended with {status}"
+            ended_s = time.monotonic()
+            while time.monotonic() < ended_s + arguments.watch_s:
+                if laboratory.output_is_on():
+                    raise Failure(f"on {time.monotonic() - ended_s:.1f} s after the run")
                 time.sleep(LOOK_S)  # between two looks
-            words = guard_words(laboratory)
-            if "switched off" in words or "it is left on" not in words:
-                raise Failure(f"the guard says: {words[-300:]}")
-            print(f"healthy {number}: holds", flush=True)
-    except Failure as failure:
-        print(f"healthy {number}: {failure} (logs in {folder})", flush=True)
-        return False
-    shutil.rmtree(folder)
-    return True
+            old = [line for _, number, line in laboratory.proxy.heard if number in before]
+            if any(line == ":OUTPut1 ON" for line in old):
+                raise Failure("the ON of the old connection has arrived")
+
+    return Row(name).run(one)
+
+
+def calibration(arguments, number):
+    fault = FAULTS[number % len(FAULTS)]
+    end = (signal.SIGHUP, signal.SIGKILL)[number // len(FAULTS) % 2]
+
+    def one(row, folder, delay):
+        programs = arguments.programs
+        bench = Program(
+            [programs / "dyncal-virtual-bench", "--preset", "tss", "--ports-file", "ports.json"],
+            folder / "bench.txt",
+        )
+        proxy = calibrate = None
+        try:
+            bench.wait_for_text("ports")
+            ports = json.loads((folder / "ports.json").read_text(encoding="utf-8"))
+            place = ("127.0.0.1", ports["generator"])
+            proxy = GeneratorProxy(place, lambda function: function(), lambda: None)
+            command = [programs / "dyncal", "calibrate", "dso-delay", "--shots", "100000"]
+            command += ["--oscilloscope", f"127.0.0.1:{ports['dso']}", "--output", "delay.json"]
+            command += ["--generator", f"127.0.0.1:{proxy.port}"]
+            calibrate = Program(command, folder / "calibrate.txt")
+
+            def is_on():
+                return proxy.ask_instrument(":OUTPut1?") == "ON"
+
+            wait_until(is_on, "the output to be on")
+            proxy.begin(fault)
+            calibrate.send(end)
+            since_s = time.monotonic()
+            limit_s = HEARD_S if fault != "ignores-off" else ASKED_S
+            judge = Judge(is_on, calibrate.errors)
+            row.kind = "heard"
+            row.took_s = judge.expect_off(limit_s, since_s, min(10.0, arguments.watch_s), delay)
+            row.figures = f", off after {row.took_s:.2f} s"
+            row.figures += ", said to be on" if MAY_BE_ON in calibrate.errors() else ""
+            proxy.begin("sound")
+            wait_until(lambda: not is_on(), "the process that guards the output", 30.0)
+        finally:
+            for program in (calibrate, bench):
+                if program:
+                    program.end()
+            if proxy:
+                proxy.close()
+
+    return Row(f"calibrate dso-delay, {fault}, {end.name}").run(one)
+
+
+def expect_left_on(laboratory, chance):
+    laboratory.set_by_person(chance.choice((25, 100, 160)))
+    until_s = time.monotonic() + chance.uniform(2.5, 5.0)
+    while time.monotonic() < until_s:
+        if not laboratory.output_is_on():
+            raise Failure("a person's output was switched off")
+        time.sleep(LOOK_S)  # between two looks
+    laboratory.switch_off_by_person()
+
+
+def healthy_run(laboratory, kind, number, chance):
+    name = f"h{number}"
+    run = laboratory.run("--run", name)
+    if kind in ("paused", "resumed"):
+        wait_until(laboratory.output_is_on, "the output to be on")
+    if kind == "paused":
+        analysis = laboratory.services["dyncal-analysis"]
+        analysis.send(signal.SIGSTOP)
+        stopped_s = time.monotonic()
+        wait_until(lambda: time.monotonic() - stopped_s > 4.5, "the analysis to be missed")
+        analysis.send(signal.SIGCONT)
+    if kind == "resumed":
+        run.send(signal.SIGINT)
+        run.wait(60.0)
+        run = laboratory.run("--resume", name)
+    status = run.wait(90.0)
+    if status != 0:
+        raise Failure(f"run {number}, {kind}: exit status {status}: {run.errors()[-300:]}")
+    laboratory.expect_whole_result()
+    if kind == "person":
+        expect_left_on(laboratory, chance)
+    if "switched off" in laboratory.guard_words() or MAY_BE_ON in laboratory.guard_words():
+        raise Failure(f"run {number}, {kind}: the guard says {laboratory.guard_words()[-300:]}")
+
+
+def healthy(arguments):
+    """One after the other in one laboratory; how many held before the first that did not."""
+    chance = random.Random(f"{arguments.seed} healthy")
+    counts = dict.fromkeys(HEALTHY, 0)
+
+    def all_of_them(row, folder, _):
+        two = ("40", "80")
+        with ShortSteps(arguments.programs, folder, arguments.vendors, two) as laboratory:
+            for number in range(arguments.healthy):
+                kind = chance.choice(HEALTHY) if arguments.healthy > 1 else "person"
+                healthy_run(laboratory, kind, number, chance)
+                counts[kind] += 1
+            row.figures = ": " + ", ".join(f"{count} {kind}" for kind, count in counts.items())
+
+    row = Row(f"{arguments.healthy} healthy runs").run(all_of_them)
+    if row.problem:
+        print(f"  before that held: {counts}", flush=True)
+    return row
 
 
 def main():
@@ -204,21 +333,32 @@ def main():
     parser.add_argument("programs", type=pathlib.Path)
     parser.add_argument("--draws", type=int, default=60)
     parser.add_argument("--first", type=int, default=0)
-    parser.add_argument("--healthy", type=int, default=3)
+    parser.add_argument("--held", type=int, default=4)
+    parser.add_argument("--calibrations", type=int, default=8)
+    parser.add_argument("--healthy", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--vendors", choices=VENDORS, default="mixed")
     parser.add_argument("--watch-s", type=float, default=60.0)
-    parser.add_argument("--slack-s", type=float, default=0.5, help="of a busy machine")
+    parser.add_argument("--at-once", type=int, default=3)
     arguments = parser.parse_args()
     arguments.programs = arguments.programs.resolve()
     if not hosts.can_be_made():
         print("skipped: this machine makes no network namespaces, or not for this user")
         return 77
-    numbers = range(arguments.first, arguments.first + arguments.draws)
-    held = [draw(arguments, number) for number in numbers]
-    held += [healthy(arguments, number) for number in range(arguments.healthy)]
-    print(f"{sum(held)} of {len(held)} hold")
-    return 0 if held and all(held) else 1
+    with concurrent.futures.ThreadPoolExecutor(arguments.at_once) as pool:
+        rows = [pool.submit(healthy, arguments)] if arguments.healthy else []
+        numbers = range(arguments.first, arguments.first + arguments.draws)
+        rows += [pool.submit(unattended, arguments, number) for number in numbers]
+        rows += [pool.submit(held_packet, arguments, number) for number in range(arguments.held)]
+        rows += [pool.submit(calibration, arguments, one) for one in range(arguments.calibrations)]
+    done = [row.result() for row in rows]
+    for kind in ("heard", "asked"):
+        times = [row.took_s for row in done if row.kind == kind and row.took_s is not None]
+        if times:
+            print(f"{kind}: {len(times)} draws, off after {max(times):.2f} s at the worst")
+    held = sum(not row.problem for row in done)
+    print(f"{held} of {len(done)} hold")
+    return 0 if held == len(done) > 0 else 1
 
 
 if __name__ == "__main__":

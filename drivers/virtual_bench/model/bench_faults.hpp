@@ -14,8 +14,8 @@
 //   knock      half a sine of 10 ms, so long after each change of the generator
 //
 // Hum and drift are in parts of the signal: of the highest level, or of the amplitude of sync.
-// Stamps have faults of their own (stamp_faults.hpp), as have datagrams (wire/datagram_path.hpp).
-// Plain data; any thread.
+// The generator may hold what another program left, and keep it. Stamps have faults of their own
+// (stamp_faults.hpp), as have datagrams (wire/datagram_path.hpp). Plain data; any thread.
 #pragma once
 
 #include <cstddef>
@@ -63,6 +63,13 @@ struct SeriesStart {
   double jitter_s = 0.0;     // standard deviation from shot to shot
 };
 
+// What another program left in the generator. It is kept for those who ask, and does not act.
+struct LeftInGenerator {
+  double offset_v = 0.0;
+  bool in_burst = false;
+  bool is_kept = false; // whatever is reset: commands are taken without an error
+};
+
 struct BenchFaults {
   ChannelFaults sensor; // each axis of it
   ChannelFaults reference;
@@ -71,6 +78,7 @@ struct BenchFaults {
   SampleLoss sensor_loss;
   SampleLoss acs_loss;
   SeriesStart series_start;
+  LeftInGenerator left_in_generator;
   StampFaultProbabilities stamps;
   std::size_t fifo_samples = 0; // of the sensor: read so many at once, stamped 10 ns apart
   DelayChange delay_change;

@@ -21,6 +21,8 @@
 
 namespace dyncal::drivers::virtual_bench {
 
+enum class GeneratorWords { dg4000, keysight_33500 }; // whose SCPI the generator speaks
+
 struct BenchSettings {
   Preset preset;
   std::uint64_t seed = 1;
@@ -29,6 +31,7 @@ struct BenchSettings {
   double thermal_cycle_s = 100.0;
   double reference_magnitude_rel = 1e-3; // standard uncertainties that the recipe states
   double reference_phase_rad = 1.7e-3;
+  GeneratorWords generator_words = GeneratorWords::dg4000;
   BenchFaults faults;
   std::optional<ResponseTable> response; // of z, in place of the preset's
   bool acs_utc = false;                  // the ACS stamps in UTC too

@@ -19,7 +19,8 @@ std::string canonical(std::string_view header) {
   static constexpr std::pair<const char*, const char*> short_forms[] = {
       {"SOURCE", "SOUR"}, {"FREQUENCY", "FREQ"}, {"VOLTAGE", "VOLT"}, {"FUNCTION", "FUNC"},
       {"OUTPUT", "OUTP"}, {"SYSTEM", "SYST"},    {"ERROR", "ERR"},    {"BENCH", "BENC"},
-      {"STATE", "STAT"},  {"IMPEDANCE", "IMP"}};
+      {"STATE", "STAT"},  {"IMPEDANCE", "IMP"},  {"OFFSET", "OFFS"},  {"POLARITY", "POL"},
+      {"BURST", "BURS"},  {"SWEEP", "SWE"},      {"PHASE", "PHAS"}};
   std::string text = upper(header);
   if (!text.empty() && text.front() == ':') {
     text.erase(0, 1);
@@ -70,11 +71,18 @@ ScpiInstrument::Reply ScpiInstrument::execute(std::string_view line) {
   return {};
 }
 
+std::string ScpiInstrument::identity() const {
+  const BenchSettings& settings = bench_.settings();
+  const std::string seed = std::to_string(settings.seed);
+  if (settings.generator_words == GeneratorWords::keysight_33500) {
+    return "Keysight Technologies,33512B,dyncal virtual bench " + settings.preset.name + "," + seed;
+  }
+  return "dyncal virtual bench," + settings.preset.name + "," + seed + ",1";
+}
+
 ScpiInstrument::Reply ScpiInstrument::query(const std::string& header, std::string_view argument) {
   if (header == "*IDN") {
-    return {"dyncal virtual bench," + bench_.settings().preset.name + "," +
-                std::to_string(bench_.settings().seed) + ",1",
-            {}};
+    return {identity(), {}};
   }
   if (header == "*OPC") {
     return {"1", {}};
@@ -94,7 +102,7 @@ ScpiInstrument::Reply ScpiInstrument::query(const std::string& header, std::stri
     return {number_text(2.0 * bench_.drive().amplitude_v), {}};
   }
   if (header == "OUTP1" || header == "OUTP1:STAT") {
-    return {bench_.drive().on ? "ON" : "OFF", {}};
+    return {left_over_.state_text(bench_.drive().on), {}};
   }
   if (header == "BENC:TIME") {
     return {time_text(bench_.now_s()), {}};
@@ -106,6 +114,9 @@ ScpiInstrument::Reply ScpiInstrument::query(const std::string& header, std::stri
     complain("-104,\"Data type error\"");
     return {};
   }
+  if (auto answer = left_over_.answer(header)) {
+    return {std::move(*answer), {}};
+  }
   complain("-113,\"Undefined header\"");
   return {};
 }
@@ -115,6 +126,7 @@ void ScpiInstrument::set(const std::string& header, std::string_view argument) {
     errors_.clear();
   } else if (header == "*RST") {
     bench_.set_drive(Drive{});
+    left_over_.reset();
   } else if (header == "SOUR1:FREQ") {
     set_frequency(argument);
   } else if (header == "SOUR1:VOLT") {
@@ -131,8 +143,10 @@ void ScpiInstrument::set(const std::string& header, std::string_view argument) {
     if (!upper(argument).starts_with("INF")) {
       complain("-224,\"Illegal parameter value\"");
     }
-  } else {
+  } else if (!left_over_.has(header)) {
     complain("-113,\"Undefined header\"");
+  } else if (!left_over_.set(header, argument)) {
+    complain("-224,\"Illegal parameter value\"");
   }
 }
 

@@ -6,6 +6,7 @@
 //   :SOURce1:FREQuency[?], :SOURce1:VOLTage[?] (peak to peak), :SOURce1:VOLTage:UNIT VPP
 //   :SOURce1:FUNCtion SINusoid|SQUare
 //   :OUTPut1[?] ON|OFF, :OUTPut1:LOAD INFinity
+// and what left_over_settings.hpp keeps, in the words of a DG4000 or of a 33500,
 // and of the bench itself :BENCh:TIME? and :BENCh:WAIT? <bench time in s>, which is answered when
 // that time has come. A frequency at which the sensor's response is not known is out of range. One
 // thread.
@@ -17,6 +18,7 @@
 #include <string_view>
 
 #include "drivers/virtual_bench/model/virtual_bench.hpp"
+#include "drivers/virtual_bench/wire/left_over_settings.hpp"
 
 namespace dyncal::drivers::virtual_bench {
 
@@ -27,13 +29,16 @@ public:
     std::optional<double> wait_until_s; // :BENCh:WAIT?: answer with the bench time when it has come
   };
 
-  explicit ScpiInstrument(VirtualBench& bench) : bench_(bench) {}
+  explicit ScpiInstrument(VirtualBench& bench)
+      : bench_(bench),
+        left_over_(bench.settings().generator_words, bench.settings().faults.left_in_generator) {}
 
   [[nodiscard]] Reply execute(std::string_view line);
 
   [[nodiscard]] static std::string time_text(double bench_time_s);
 
 private:
+  [[nodiscard]] std::string identity() const;
   [[nodiscard]] Reply query(const std::string& header, std::string_view argument);
   void set(const std::string& header, std::string_view argument);
   void set_function(std::string_view argument);
@@ -43,6 +48,7 @@ private:
   void complain(const char* error);
 
   VirtualBench& bench_;
+  LeftOverSettings left_over_;
   std::deque<std::string> errors_; // at most 20, the last one says that there were more
 };
 

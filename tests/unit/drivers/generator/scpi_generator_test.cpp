@@ -29,10 +29,19 @@ public:
     const std::lock_guard lock(mutex_);
     return commands_;
   }
+  [[nodiscard]] std::vector<std::string> questions() {
+    const std::lock_guard lock(mutex_);
+    return questions_;
+  }
   // Takes :OUTPut1 OFF without an error, and stays on.
   void ignore_off() {
     const std::lock_guard lock(mutex_);
     ignores_off_ = true;
+  }
+  // To every other question; nothing: none at all.
+  void answer_questions(const std::optional<std::string>& answer) {
+    const std::lock_guard lock(mutex_);
+    other_answer_ = answer;
   }
   void always_answer_output(const std::string& answer) {
     const std::lock_guard lock(mutex_);
@@ -54,6 +63,11 @@ private:
         client.say(line.substr(13) + "\n");
       } else if (line == ":OUTPut1?") {
         client.say(output_answer_.value_or(is_on_ ? "ON" : "OFF") + "\n");
+      } else if (line.ends_with("?")) {
+        questions_.push_back(line);
+        if (other_answer_) {
+          client.say(*other_answer_ + "\n");
+        }
       } else {
         is_on_ = line == ":OUTPut1 ON" || (is_on_ && (ignores_off_ || line != ":OUTPut1 OFF"));
         commands_.push_back(line);
@@ -65,6 +79,8 @@ private:
   bool is_on_ = false;
   bool ignores_off_ = false;
   std::optional<std::string> output_answer_; // always this one
+  std::optional<std::string> other_answer_ = "0";
+  std::vector<std::string> questions_;
   std::vector<std::string> errors_;
   std::size_t answered_ = 0;
   std::string identity_;
@@ -86,14 +102,68 @@ TEST(ScpiGenerator, SetsTheInstrumentUpAndSwitchesItsOutputOffAtTheEnd) {
               ElementsAre(":OUTPut1 OFF", ":OUTPut1:LOAD INFinity", ":SOURce1:FUNCtion SINusoid",
                           ":SOURce1:VOLTage:UNIT VPP", ":SOURce1:BURSt:STATe OFF",
                           ":SOURce1:SWEep:STATe OFF", ":SOURce1:MOD:STATe OFF",
-                          ":SOURce1:AM:STATe OFF", ":SOURce1:FM:STATe OFF", ":SOURce1:PM:STATe OFF",
                           ":SOURce1:VOLTage:OFFSet 0", ":SOURce1:PHASe 0",
                           ":OUTPut1:POLarity NORMal", ":SOURce1:FREQuency 199.87",
                           ":SOURce1:VOLTage 0.5", ":OUTPut1 ON", ":OUTPut1 OFF"));
 }
 
+TEST(ScpiGenerator, ReadsBackWhatItHasReset) {
+  FakeGenerator instrument;
+  auto generator = ScpiGenerator::connect(instrument.address());
+  ASSERT_TRUE(generator) << generator.error().message;
+  EXPECT_THAT(instrument.questions(),
+              ElementsAre(":SOURce1:BURSt:STATe?", ":SOURce1:SWEep:STATe?", ":SOURce1:MOD:STATe?",
+                          ":SOURce1:VOLTage:OFFSet?", ":SOURce1:PHASe?", ":OUTPut1:POLarity?"));
+}
+
+TEST(ScpiGenerator, RefusesAnInstrumentThatKeepsWhatWasLeftInIt) {
+  FakeGenerator instrument;
+  instrument.answer_questions("ON");
+  const auto generator = ScpiGenerator::connect(instrument.address());
+  ASSERT_FALSE(generator);
+  EXPECT_EQ(generator.error().code, ErrorCode::refused);
+  EXPECT_THAT(generator.error().message, HasSubstr("what another program left in it (burst)"));
+  EXPECT_THAT(instrument.commands(), testing::Not(testing::Contains(":OUTPut1 ON")));
+}
+
+TEST(ScpiGenerator, GoesOnWithAnUnknownInstrumentThatAnswersNoSuchQuestion) {
+  FakeGenerator instrument({}, "Maker,Model 7,1,2");
+  instrument.answer_questions(std::nullopt);
+  auto generator = ScpiGenerator::connect(instrument.address());
+  ASSERT_TRUE(generator) << generator.error().message;
+  EXPECT_EQ(instrument.questions().size(), 1U); // and no other after it
+  EXPECT_THAT(instrument.commands(), testing::Contains(":SOURce1:AM:STATe OFF"));
+  EXPECT_TRUE((*generator)->set_output(true));
+}
+
+TEST(ScpiGenerator, RefusesAnUnknownInstrumentWhoseAnswerContradicts) {
+  FakeGenerator instrument({}, "Maker,Model 7,1,2");
+  instrument.answer_questions("1");
+  EXPECT_EQ(ScpiGenerator::connect(instrument.address()).error().code, ErrorCode::refused);
+}
+
+TEST(ScpiGenerator, KeepsPeakAndOffsetWithinTheLimit) {
+  FakeGenerator instrument;
+  auto generator = ScpiGenerator::connect(instrument.address(), 0.5);
+  ASSERT_TRUE(generator) << generator.error().message;
+  EXPECT_TRUE((*generator)->set_amplitude_v(0.5));
+  EXPECT_TRUE((*generator)->set_output(true));
+  EXPECT_EQ((*generator)->set_amplitude_v(0.51).error().code, ErrorCode::invalid_setting);
+  EXPECT_TRUE((*generator)->set_output(false));
+  instrument.answer_questions("-9E-4"); // as far as an instrument rounds
+  EXPECT_EQ((*generator)->set_output(true).error().code, ErrorCode::invalid_setting);
+  EXPECT_TRUE((*generator)->set_amplitude_v(0.499));
+  EXPECT_TRUE((*generator)->set_output(true));
+  EXPECT_EQ((*generator)->set_amplitude_v(0.4995).error().code, ErrorCode::invalid_setting);
+  EXPECT_TRUE((*generator)->set_output(false));
+  instrument.answer_questions("0.3");
+  const auto refused = (*generator)->set_output(true);
+  EXPECT_THAT(refused.error().message, HasSubstr("its DC offset is 0.3 V"));
+  EXPECT_FALSE((*generator)->output_is_on().value().value());
+}
+
 TEST(ScpiGenerator, PassesTheInstrumentsErrorOnWordForWord) {
-  std::vector<std::string> errors(13, "0,\"No error\"");
+  std::vector<std::string> errors(10, "0,\"No error\"");
   errors[1] = "+0,\"No error\"";
   errors[5] = "-113,\"Undefined header\""; // a reset of a state that it does not have
   errors.emplace_back("-222,\"Data out of range\"");
@@ -208,7 +278,7 @@ TEST(ScpiGenerator, CallsWhileAnAnswerLetsWaitAndReadsItToItsEnd) {
         client.say("dyncal virtual bench,bma280,1,1\n");
       } else if (line == ":SYSTem:ERRor?") {
         client.say("0,\"No error\"\n");
-      } else if (line == ":OUTPut1?") {
+      } else if (line.ends_with("?") && line != ":BENCh:TIME?") {
         client.say("OFF\n");
       } else if (line == ":BENCh:TIME?") {
         client.say("12");
@@ -230,6 +300,30 @@ TEST(ScpiGenerator, CallsWhileAnAnswerLetsWaitAndReadsItToItsEnd) {
   EXPECT_GE(calls, 1);
 }
 
+// The virtual bench answers, and its time stands.
+TEST(ScpiGenerator, SaysThatItIsTheBenchTimeWhichLetsWait) {
+  const ScriptedInstrument standing([](int, ScriptedInstrument::Client& client) {
+    for (std::string line = client.hear(); !line.empty(); line = client.hear()) {
+      if (line == "*IDN?") {
+        client.say("dyncal virtual bench,bma280,1,1\n");
+      } else if (line == ":SYSTem:ERRor?") {
+        client.say("0,\"No error\"\n");
+      } else if (line.find('?') != std::string::npos) {
+        client.say("0\n");
+      }
+    }
+  });
+  auto generator = ScpiGenerator::connect(standing.address());
+  ASSERT_TRUE(generator) << generator.error().message;
+  int calls = 0;
+  (*generator)->call_while_waiting([&](Awaited awaited) {
+    EXPECT_EQ(awaited, Awaited::bench_time);
+    return ++calls < 3;
+  });
+  EXPECT_EQ((*generator)->wait_until_s(10.0, {}).value(), 0.0);
+  EXPECT_EQ(calls, 3);
+}
+
 TEST(ScpiGenerator, GivesATimeUpThatNobodyNeedsAnyMore) {
   const ScriptedInstrument silent([](int, ScriptedInstrument::Client& client) {
     for (std::string line = client.hear(); !line.empty(); line = client.hear()) {
@@ -237,7 +331,7 @@ TEST(ScpiGenerator, GivesATimeUpThatNobodyNeedsAnyMore) {
         client.say("dyncal virtual bench,bma280,1,1\n");
       } else if (line == ":SYSTem:ERRor?") {
         client.say("0,\"No error\"\n");
-      } else if (line == ":OUTPut1?") {
+      } else if (line.ends_with("?") && line != ":BENCh:TIME?") {
         client.say("0\n");
       }
     }
@@ -246,7 +340,7 @@ TEST(ScpiGenerator, GivesATimeUpThatNobodyNeedsAnyMore) {
   ASSERT_TRUE(generator) << generator.error().message;
   int calls = 0;
   (*generator)->call_while_waiting([&](Awaited awaited) {
-    EXPECT_EQ(awaited, Awaited::bench_time);
+    EXPECT_EQ(awaited, Awaited::answer); // nobody has hold of an instrument that does not answer
     return ++calls < 2;
   });
   EXPECT_EQ((*generator)->clock_now_s().error().code, ErrorCode::timeout);

@@ -271,6 +271,67 @@ TEST_F(ExciterWatchTest, TakesTheLastWordOfARunBeforeForNothing) {
   EXPECT_FALSE(is_on_);
 }
 
+// The path fails between the conductor's word and its ON, or before the guard has heard that word.
+TEST_F(ExciterWatchTest, SwitchesOffWhatARunSwitchesOnWithoutBeingHeard) {
+  for (const bool was_driven : {false, true}) {
+    restart();
+    if (was_driven) {
+      drive();
+      end();
+    }
+    watch_.heard_run("r1", true, now_);
+    pass(30s);
+    EXPECT_EQ(attempts_, 0);
+    settings_ = of_next_step;
+    is_on_ = true;
+    pass(3500ms);
+    EXPECT_FALSE(is_on_) << was_driven;
+    attempts_ = 0;
+  }
+}
+
+TEST_F(ExciterWatchTest, LeavesWhatIsPlannedToAPersonOnceTheRunIsOver) {
+  watch_.heard_run("r1", true, now_);
+  drive();
+  end();
+  watch_.heard_run("r1", false, now_);
+  settings_ = of_next_step;
+  is_on_ = true;
+  pass(60s);
+  EXPECT_TRUE(is_on_);
+  EXPECT_EQ(watch_.left_on(), of_next_step);
+}
+
+TEST_F(ExciterWatchTest, LeavesAPersonsUseInARunThatPauses) {
+  watch_.heard_run("r1", true, now_);
+  settings_ = of_person;
+  is_on_ = true;
+  for (int i = 0; i < 100; ++i) {
+    pass(2s);
+    watch_.heard_run("r1", true, now_);
+  }
+  EXPECT_TRUE(is_on_);
+  EXPECT_EQ(watch_.state(), State::ended);
+}
+
+TEST_F(ExciterWatchTest, WatchesARunThatHasNotDrivenForTwoMinutesAfterItsLastWord) {
+  watch_.heard_run("r1", true, now_);
+  pass(121s);
+  EXPECT_EQ(watch_.state(), State::idle);
+}
+
+TEST_F(ExciterWatchTest, LetsNoOtherRunStandForOneThatIsDrivenOrSilent) {
+  drive();
+  watch_.heard_run("r2", true, now_);
+  EXPECT_EQ(watch_.run().run, "r1");
+  answers_ = false;
+  pass(5s);
+  EXPECT_NE(watch_.may_be_on(), "");
+  watch_.heard_run("r2", true, now_);
+  EXPECT_EQ(watch_.run().run, "r1");
+  EXPECT_NE(watch_.may_be_on(), "");
+}
+
 // Whatever happens in whatever order: no output that must be off stays on for longer than what is
 // promised without a word, and nothing of a person is switched off.
 TEST_F(ExciterWatchTest, HoldsItsPromiseOverDrawnHistories) {

@@ -35,6 +35,9 @@ TEST(FaultOption, EveryFaultReachesItsPlaceInTheDescription) {
                                         "start-jitter=50e-6",
                                         "exciter-gain=50",
                                         "ring-down=0.2",
+                                        "generator-offset=-1.5",
+                                        "generator-burst",
+                                        "generator-no-reset",
                                         "hum=0.002,at=sensor,frequency=16.7,while=driven",
                                         "second-slip=0.001",
                                         "knock=5,at=reference,after=1.5",
@@ -61,6 +64,9 @@ TEST(FaultOption, EveryFaultReachesItsPlaceInTheDescription) {
   EXPECT_EQ(faults.series_start.jitter_s, 50e-6);
   EXPECT_EQ(faults.exciter_gain, 50.0);
   EXPECT_EQ(faults.ring_down_s, 0.2);
+  EXPECT_EQ(faults.left_in_generator.offset_v, -1.5);
+  EXPECT_TRUE(faults.left_in_generator.in_burst);
+  EXPECT_TRUE(faults.left_in_generator.is_kept);
   EXPECT_EQ(faults.sensor.hum_hz, 16.7);
   EXPECT_TRUE(faults.sensor.hum_while_driven);
   EXPECT_FALSE(faults.sync_dau.hum_while_driven);

@@ -70,6 +70,7 @@ BenchSettings bench_settings() {
 
 class ServedBench : public testing::Test {
 protected:
+  explicit ServedBench(const BenchSettings& settings = bench_settings()) : bench_(settings) {}
   void start(double speed, double duration_s) {
     ServerSettings settings;
     settings.dau = {"127.0.0.1", receiver_.port()};
@@ -90,7 +91,7 @@ protected:
     return "127.0.0.1:" + std::to_string(port);
   }
 
-  VirtualBench bench_{bench_settings()};
+  VirtualBench bench_;
   UnitReceiver receiver_;
   std::optional<BenchServer> server_;
   StopSignal stop_;
@@ -230,6 +231,69 @@ TEST(BenchServer, RefusesAnAddressThatIsTaken) {
   ASSERT_FALSE(opened);
   EXPECT_EQ(opened.error().code, ErrorCode::refused);
 }
+
+// What another program left in the generator, of two families.
+struct LeftOverCase {
+  GeneratorWords words;
+  LeftInGenerator left;
+  const char* refused; // what the driver names; nothing: it goes on
+};
+
+class LeftOverBench : public ServedBench, public testing::WithParamInterface<LeftOverCase> {
+protected:
+  static BenchSettings settings() {
+    BenchSettings result = bench_settings();
+    result.generator_words = GetParam().words;
+    result.faults.left_in_generator = GetParam().left;
+    return result;
+  }
+  LeftOverBench() : ServedBench(settings()) {}
+
+  std::string ask(const std::string& line) {
+    StopSignal never;
+    auto connection =
+        TcpConnection::connect({"127.0.0.1", server_->generator_port()}, tests::patience, never);
+    if (!connection || !connection->send_all(line + "\n", tests::patience)) {
+      return "";
+    }
+    return connection->read_line(100, tests::patience).value_or("");
+  }
+};
+
+TEST_P(LeftOverBench, IsResetAndReadBackBeforeItsOutputIsOn) {
+  start(1.0, 0.0);
+  auto generator = generator::ScpiGenerator::connect(address(server_->generator_port()));
+  if (GetParam().refused != nullptr) {
+    ASSERT_FALSE(generator);
+    EXPECT_EQ(generator.error().code, ErrorCode::refused);
+    EXPECT_NE(generator.error().message.find(GetParam().refused), std::string::npos)
+        << generator.error().message;
+    return;
+  }
+  ASSERT_TRUE(generator) << generator.error().message;
+  EXPECT_TRUE((*generator)->set_output(true));
+  EXPECT_TRUE((*generator)->output_is_on().value().value());
+  EXPECT_TRUE((*generator)->set_output(false));
+  // A person at the front panel, between two steps.
+  EXPECT_NE(ask(":SOURce1:VOLTage:OFFSet 1.5\n:SYSTem:ERRor?"), "");
+  const auto refused = (*generator)->set_output(true);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("its DC offset is 1.5 V"), std::string::npos)
+      << refused.error().message;
+  EXPECT_FALSE((*generator)->output_is_on().value().value());
+}
+
+constexpr auto dg4000 = GeneratorWords::dg4000;
+constexpr auto keysight = GeneratorWords::keysight_33500;
+INSTANTIATE_TEST_SUITE_P(
+    OfBothFamilies, LeftOverBench,
+    testing::Values(LeftOverCase{dg4000, {}, nullptr}, LeftOverCase{keysight, {}, nullptr},
+                    LeftOverCase{dg4000, {.offset_v = -2.0, .in_burst = true}, nullptr},
+                    LeftOverCase{keysight, {.offset_v = 2.0, .in_burst = true}, nullptr},
+                    LeftOverCase{dg4000, {.offset_v = 0.05, .is_kept = true}, "(DC offset)"},
+                    LeftOverCase{keysight, {.offset_v = -2.0, .is_kept = true}, "(DC offset)"},
+                    LeftOverCase{dg4000, {.in_burst = true, .is_kept = true}, "(burst)"},
+                    LeftOverCase{keysight, {.in_burst = true, .is_kept = true}, "(burst)"}));
 
 } // namespace
 } // namespace dyncal::drivers::virtual_bench

@@ -70,5 +70,68 @@ TEST_F(Scpi, TellsBenchTimeAndWhatToWaitFor) {
   EXPECT_DOUBLE_EQ(*reply.wait_until_s, 2.5);
 }
 
+// What a DG4000 and a 33500 are asked for, in their words.
+struct LeftOver {
+  GeneratorWords words;
+  const char* query;
+  const char* left;
+  const char* reset;
+  const char* answer;
+};
+
+class LeftOverInstrument : public testing::TestWithParam<LeftOver> {
+protected:
+  static BenchSettings settings(bool is_kept) {
+    BenchSettings result;
+    result.preset = *preset_by_name("bma280");
+    result.generator_words = GetParam().words;
+    result.faults.left_in_generator = {.offset_v = -2.0, .in_burst = true, .is_kept = is_kept};
+    return result;
+  }
+};
+
+TEST_P(LeftOverInstrument, KeepsWhatWasLeftUntilItIsReset) {
+  for (const bool is_kept : {false, true}) {
+    VirtualBench bench(settings(is_kept));
+    ScpiInstrument instrument(bench);
+    EXPECT_EQ(instrument.execute(GetParam().query).line, GetParam().left);
+    static_cast<void>(instrument.execute(GetParam().reset));
+    EXPECT_EQ(instrument.execute(":SYSTem:ERRor?").line, "0,\"No error\"");
+    EXPECT_EQ(instrument.execute(GetParam().query).line,
+              is_kept ? GetParam().left : GetParam().answer);
+  }
+}
+
+constexpr auto rigol = GeneratorWords::dg4000;
+constexpr auto keysight = GeneratorWords::keysight_33500;
+INSTANTIATE_TEST_SUITE_P(
+    OfBothFamilies, LeftOverInstrument,
+    testing::Values(LeftOver{rigol, ":SOURce1:VOLTage:OFFSet?", "-2.000000E+00",
+                             ":SOUR1:VOLT:OFFS 0", "0.000000E+00"},
+                    LeftOver{rigol, ":SOURce1:BURSt:STATe?", "ON", ":SOURce1:BURSt:STATe OFF",
+                             "OFF"},
+                    LeftOver{keysight, ":SOUR1:VOLT:OFFS?", "-2.00000000000000E+00",
+                             ":SOURce1:VOLTage:OFFSet 0", "+0.00000000000000E+00"},
+                    LeftOver{keysight, ":SOUR1:BURS:STAT?", "1", ":SOURce1:BURSt:STATe 0", "0"}));
+
+TEST_F(Scpi, SetsAndResetsWhatIsLeftOver) {
+  EXPECT_EQ(ask(":OUTPut1:POLarity?"), "NORMAL");
+  for (const char* command : {":OUTPut1:POLarity INVerted", ":SOURce1:MOD:STATe ON",
+                              ":SOURce1:PHASe 90", ":SOURce1:SWEep:STATe ON"}) {
+    EXPECT_EQ(ask(command), "(nothing)");
+  }
+  EXPECT_EQ(ask(":OUTPut1:POLarity?"), "INVERTED");
+  EXPECT_EQ(ask(":SOURce1:MOD:STATe?"), "ON");
+  EXPECT_EQ(ask(":SOURce1:PHASe?"), "9.000000E+01");
+  EXPECT_EQ(ask(":SYST:ERR?"), "0,\"No error\"");
+  ask("*RST");
+  EXPECT_EQ(ask(":OUTPut1:POLarity?"), "NORMAL");
+  EXPECT_EQ(ask(":SOURce1:SWEep:STATe?"), "OFF");
+  ask(":SOURce1:AM:STATe OFF"); // a 33500 has that
+  EXPECT_EQ(ask(":SYST:ERR?"), "-113,\"Undefined header\"");
+  ask(":SOURce1:MOD:STATe maybe");
+  EXPECT_EQ(ask(":SYST:ERR?"), "-224,\"Illegal parameter value\"");
+}
+
 } // namespace
 } // namespace dyncal::drivers::virtual_bench
