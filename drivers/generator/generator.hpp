@@ -12,7 +12,8 @@
 // call_while_waiting() is called about twice a second meanwhile, by drivers that can: with `answer`
 // while the instrument answers nothing, which is a sign that nobody has hold of the output, with
 // `bench_time` when it has answered and its time has not come yet. It returns false when nobody
-// needs the bench time any more that is being asked for.
+// needs the answer any more: the call fails (timeout), and nobody knows what the instrument did.
+// What switches the output off waits on.
 //
 // Destruction switches the output off, or asks for it where only a person can. One thread.
 #pragma once

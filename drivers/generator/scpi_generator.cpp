@@ -41,6 +41,7 @@ ScpiGenerator::~ScpiGenerator() {
   if (connection_) {
     // Nothing can be done about a failure here; whoever needs to know calls set_output(false)
     // first.
+    switches_off_ = true;
     static_cast<void>(command(":OUTPut1 OFF"));
   }
 }
@@ -74,7 +75,9 @@ Expected<void> ScpiGenerator::reconnect() {
 }
 
 Expected<void> ScpiGenerator::set_up(ScpiConnection& connection) {
-  const auto identity = connection.query("*IDN?");
+  // First of all, for one that answers nothing any more may still listen.
+  const auto identity =
+      connection.send(":OUTPut1 OFF").and_then([&] { return connection.query("*IDN?"); });
   if (!identity) {
     return fail(identity.error());
   }
@@ -224,7 +227,10 @@ Expected<void> ScpiGenerator::set_output(bool on) {
       return command(":OUTPut1 ON");
     });
   }
-  return command(":OUTPut1 OFF").and_then([this] { return confirm_off(); });
+  switches_off_ = true;
+  auto off = command(":OUTPut1 OFF").and_then([this] { return confirm_off(); });
+  switches_off_ = false;
+  return off;
 }
 
 Expected<void> ScpiGenerator::set_rectangle(bool rectangle) {
@@ -232,9 +238,7 @@ Expected<void> ScpiGenerator::set_rectangle(bool rectangle) {
 }
 
 Expected<double> ScpiGenerator::query_bench_time(const std::string& text) {
-  asks_time_ = true;
   const auto answer = query(text);
-  asks_time_ = false;
   if (!answer) {
     return fail(answer.error());
   }
@@ -253,7 +257,7 @@ void ScpiGenerator::call_while_waiting(const std::function<bool(Awaited)>& callb
 }
 
 bool ScpiGenerator::go_on_waiting() {
-  return !while_waiting_ || while_waiting_(Awaited::answer) || !asks_time_;
+  return !while_waiting_ || while_waiting_(Awaited::answer) || switches_off_;
 }
 
 Expected<double> ScpiGenerator::clock_now_s() {

@@ -79,7 +79,7 @@ private:
   std::string address_;
   std::optional<ScpiConnection> connection_;
   std::function<bool(Awaited)> while_waiting_;
-  bool asks_time_ = false; // now
+  bool switches_off_ = false; // now: its answer is waited for, whoever would wait no longer
   std::string identity_;
   bool has_bench_clock_ = false;
   bool reads_back_ = true; // an unknown instrument may not answer the questions

@@ -14,6 +14,9 @@ void add_check(CLI::App& app, CheckCommand& check) {
                    "bench files; several are also held against each other")
       ->required();
   command->add_flag("--json", check.json, "print JSON");
+  command->add_flag("--ask-generator", check.asks_generator,
+                    "ask the generator who it is: another program's settings are read back only "
+                    "where its family is known");
   command->footer(
       "Exit status: 0 no errors (there may be warnings), 1 errors, 2 wrong command line.");
 }

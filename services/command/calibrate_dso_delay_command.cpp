@@ -50,7 +50,8 @@ drivers::dso::Acquisition acquisition_for(const CalibrateDsoDelayCommand& comman
 // this program is killed, or cannot do it itself.
 class DrivenGenerator {
 public:
-  static Expected<DrivenGenerator> start(const CalibrateDsoDelayCommand& command) {
+  static Expected<DrivenGenerator> start(const CalibrateDsoDelayCommand& command,
+                                         const std::stop_token& stop) {
     auto guard = OutputGuard::start(command.generator);
     if (!guard) {
       return fail(guard.error());
@@ -62,6 +63,8 @@ public:
     }
     DrivenGenerator driven(std::move(*guard), std::move(*connected));
     ScpiGenerator& generator = *driven.generator_;
+    generator.call_while_waiting(
+        [stop](drivers::generator::Awaited) { return !stop.stop_requested(); });
     const auto set = generator.set_rectangle(command.by == "rectangle")
                          .and_then([&] { return generator.set_frequency(command.frequency_hz); })
                          .and_then([&] { return generator.set_amplitude_v(command.amplitude_v); })
@@ -206,7 +209,7 @@ int run_calibrate_dso_delay(const CalibrateDsoDelayCommand& command, const std::
   }
   std::optional<DrivenGenerator> driven;
   if (!command.generator.empty()) {
-    auto started = DrivenGenerator::start(command);
+    auto started = DrivenGenerator::start(command, stop);
     if (!started) {
       return report_error(started.error());
     }

@@ -11,6 +11,7 @@ namespace dyncal::services {
 struct CheckCommand {
   std::vector<std::filesystem::path> bench_files;
   bool json = false;
+  bool asks_generator = false; // who it is; nothing else is asked or driven
 };
 
 [[nodiscard]] int run_check(const CheckCommand& command);

@@ -36,6 +36,13 @@ bool is_driven(const wire::Excitation& excitation) {
   return excitation.window_end_utc_ns() == 0;
 }
 
+RunPhase phase_of(wire::MeasurementState state) {
+  if (state == wire::MEASUREMENT_PLANNED) {
+    return RunPhase::planned;
+  }
+  return state == wire::MEASUREMENT_RUNNING ? RunPhase::running : RunPhase::over;
+}
+
 std::string text_of(const OutputSettings& settings) {
   return fmt::format(
       "{:.6g} Hz{}", settings.frequency_hz,
@@ -124,10 +131,8 @@ void ExciterGuard::take_messages() {
         clock_.now());
   });
   endpoints_.measurement.take([&](const wire::Measurement& measurement) {
-    if (measurement.bench().to_string() == exciter_.bench &&
-        measurement.state() != wire::MEASUREMENT_PLANNED) {
-      watch_.heard_run(measurement.run().to_string(),
-                       measurement.state() == wire::MEASUREMENT_RUNNING, clock_.now());
+    if (measurement.bench().to_string() == exciter_.bench) {
+      watch_.heard_run(measurement.run().to_string(), phase_of(measurement.state()), clock_.now());
     }
   });
 }

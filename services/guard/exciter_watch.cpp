@@ -55,6 +55,7 @@ void ExciterWatch::step_to(State state, Instant now) {
     next_attempt_ = now;
     next_question_ = std::min(next_question_, now);
     break;
+  case State::begins:
   case State::ended:
     idle_from_ = now + watched_after;
     break;
@@ -81,9 +82,11 @@ void ExciterWatch::heard(const ExciterAnnouncement& announcement, Instant now) {
     return; // the last word of a run before
   }
   if (!is_of_driver) {
-    run_ = {announcement.run, false, {}};
     is_conducted_ = false;
     answers_in_run_ = true;
+  }
+  if (!is_of_driver || state_ == State::begins) {
+    run_ = {announcement.run, false, {}};
   }
   const bool is_news = state_ != (announcement.is_driven ? State::driven : State::ended) ||
                        !is_among(announcement.settings, run_.settings);
@@ -103,27 +106,30 @@ void ExciterWatch::heard(const ExciterAnnouncement& announcement, Instant now) {
   on_since_.reset();
 }
 
-void ExciterWatch::heard_run(const std::string& run, bool is_running, Instant now) {
+void ExciterWatch::heard_run(const std::string& run, RunPhase phase, Instant now) {
   if (run == run_.run) {
-    is_conducted_ = is_running;
-    if (is_running && state_ == State::ended && idle_from_) {
+    word_ = now;
+    is_conducted_ = phase != RunPhase::over;
+    if (is_conducted_ && idle_from_) {
       idle_from_ = now + watched_after;
     }
     return;
   }
-  const bool is_free = state_ == State::idle || (state_ == State::ended && !must_be_off_);
-  if (!is_running || !is_free) {
-    return; // what was driven comes first
+  // What is driven, may be on or is about to be driven comes first.
+  const bool is_free =
+      state_ == State::idle || ((state_ == State::ended || state_ == State::begins) &&
+                                !must_be_off_ && (phase == RunPhase::running || !is_conducted_));
+  if (phase == RunPhase::over || !is_free) {
+    return;
   }
-  run_ = {run, true, {}};
-  heard_ = now;
+  run_.run = run; // what was driven before is still known
+  run_.has_ended = true;
+  word_ = now;
   is_conducted_ = true;
   is_from_record_ = false;
   answers_in_run_ = true;
   has_switched_off_ = false;
-  step_to(State::ended, now);
-  next_question_ =
-      now + unattended_limit_; // it may be connecting to an instrument of one connection
+  step_to(State::begins, now);
 }
 
 bool ExciterWatch::is_of_run(const OutputReading& reading) const {
@@ -144,7 +150,7 @@ void ExciterWatch::found_on(const OutputReading& reading, Instant now) {
   }
   left_on_.reset();
   on_since_ = on_since_.value_or(now);
-  if (state_ == State::silent ||
+  if (state_ == State::silent || state_ == State::begins ||
       (now - *on_since_ >= unattended_limit_ && now - heard_ >= unattended_limit_)) {
     must_be_off_ = true;
     next_attempt_ = now;
@@ -199,7 +205,8 @@ void ExciterWatch::switched_off(const Expected<void>& outcome, Instant now) {
 }
 
 bool ExciterWatch::may_ask(Instant now) const {
-  return state_ != State::idle && now >= next_question_ &&
+  const bool may_connect = state_ == State::begins && is_conducted_ && now - word_ <= word_limit;
+  return state_ != State::idle && now >= next_question_ && !may_connect &&
          (answers_in_run_ || now - heard_ > unattended_limit_);
 }
 

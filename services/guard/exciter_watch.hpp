@@ -5,20 +5,21 @@
 //   idle     nothing was driven                   (it is not asked)            -
 //   driven   an Excitation has no end             it is noted with what        -
 //   silent   that was not heard for 2 s           the run's: off               120 s after off
-//   ended    the Excitation has its end, or       the run's, for 2 s: off      120 s after the end,
-//            a run is conducted: not driven yet                                or its last word
+//   ended    the Excitation has its end           the run's, for 2 s: off      120 s after the end
+//   begins   a Measurement is PLANNED or RUNNING  planned, and no word for     120 s after its last
+//                                                 2.5 s: off                   word
 //
-// The generator is asked every second in all states but idle. Where silent begins the output is
-// switched off unasked. A guard that starts with the record of a run that was driven begins in
-// driven, heard now, and switches off only what is on with the recorded settings.
+// The generator is asked every second in all states but idle; in begins, once no word has come for
+// 2.5 s: until then the conductor may be connecting to an instrument of one connection. Where
+// silent begins the output is switched off unasked. A guard that starts with the record of a driven
+// run begins in driven, heard now, and switches off only what is on with the recorded settings.
 //
 // "The run's" is what has the frequency and the voltage with which the generator was seen while the
 // run was heard (or as announced, where it was not seen); in a silence, and while the run is
-// conducted (its Measurement is RUNNING), also what the bench file plans: a conductor that is not
+// conducted (its Measurement is not over), also what the bench file plans: a conductor that is not
 // heard may drive on, or begin with a path that has just failed. Anything else is a person's: it is
-// said and left. An output that must be off is tried every second until it has answered that it is,
-// with no limit; until then it may be on. A silent run whose generator does not answer may be on,
-// too.
+// said and left. An output that must be off is tried every second until it answers that it is, with
+// no limit; until then it may be on, as where a silent run's generator does not answer.
 //
 // A generator that does not answer while it is driven takes one connection, the conductor's: it is
 // asked again when nothing was heard for 2 s. One thread.
@@ -53,13 +54,17 @@ struct ExciterAnnouncement {
   OutputSettings settings; // without a voltage where a closed loop finds it
 };
 
+enum class RunPhase { planned, running, over };
+
 class ExciterWatch {
 public:
   using Instant = bus::Clock::Instant;
-  enum class State { idle, driven, silent, ended };
+  enum class State { idle, begins, driven, silent, ended };
   enum class Action { none, ask, switch_off };
 
-  static constexpr std::chrono::seconds interval{1};        // between two questions or attempts
+  static constexpr std::chrono::seconds interval{1}; // between two questions or attempts
+  // A conductor repeats its Measurement every 2 s.
+  static constexpr std::chrono::milliseconds word_limit{2500};
   static constexpr std::chrono::seconds watched_after{120}; // a silence or a run
   static constexpr int failures_of_silence = 2; // unanswered questions: a single one may be lost
   static constexpr std::size_t max_settings = 8;
@@ -69,8 +74,8 @@ public:
                DrivenRun recorded, Instant now);
 
   void heard(const ExciterAnnouncement& announcement, Instant now);
-  // The Measurement of a run: RUNNING, or over.
-  void heard_run(const std::string& run, bool is_running, Instant now);
+  // The Measurement of a run.
+  void heard_run(const std::string& run, RunPhase phase, Instant now);
   void answered(const Expected<OutputReading>& answer, Instant now);
   void switched_off(const Expected<void>& outcome, Instant now);
   // What is due now; the caller does it and reports the outcome.
@@ -98,7 +103,8 @@ private:
   DrivenRun run_;
   State state_ = State::idle;
   Instant heard_{};
-  bool is_conducted_ = false;   // the run: its Measurement was RUNNING when it was last heard
+  Instant word_{};              // the newest Measurement of the run
+  bool is_conducted_ = false;   // it was not over
   bool is_from_record_ = false; // not heard since the start
   bool was_seen_on_ = false;    // since then, with what the record names
   bool must_be_off_ = false;    // and is not known to be

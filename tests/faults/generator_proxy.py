@@ -17,6 +17,15 @@ FAULTS = ("sound", "ignores-off", "late", "mute")
 LATE_S = 0.6
 
 
+def end(connection):
+    """For the thread that reads from it as well."""
+    try:
+        connection.shutdown(socket.SHUT_RDWR)
+    except OSError:
+        pass
+    connection.close()
+
+
 class GeneratorProxy:
     """`call` runs a function where the instruments are, `enter` puts a thread there."""
 
@@ -24,6 +33,7 @@ class GeneratorProxy:
         self.place = place
         self.enter = enter
         self.fault = "sound"
+        self.link = None
         self.heard = []  # (monotonic s, connection, line)
         self.listener = call(lambda: socket.create_server((place[0], 0)))
         self.port = self.listener.getsockname()[1]
@@ -36,10 +46,12 @@ class GeneratorProxy:
         self.fault = fault
 
     def ask_instrument(self, line):
-        """Past the fault."""
-        with socket.create_connection(self.place, 10.0) as link:
-            link.sendall(f"{line}\n".encode())
-            return link.makefile().readline().strip()
+        """Past the fault, over one connection."""
+        if self.link is None:
+            self.link = socket.create_connection(self.place, 10.0).makefile("rw")
+        self.link.write(line + "\n")
+        self.link.flush()
+        return self.link.readline().strip()
 
     def accept(self):
         self.enter()
@@ -62,7 +74,7 @@ class GeneratorProxy:
                 instrument.sendall(line)
         except OSError:
             pass
-        instrument.close()
+        end(instrument)
 
     def answer(self, instrument, client):
         try:
@@ -73,7 +85,7 @@ class GeneratorProxy:
                     client.sendall(line)
         except OSError:
             pass
-        client.close()
+        end(client)
 
     def close(self):
         self.listener.close()

@@ -5,7 +5,6 @@ datagrams, for the generator's TCP, or with a certain command in flight.
 The path fails beyond the hosts' own interfaces: what they send is lost where it arrives.
 """
 
-import socket
 import subprocess
 import threading
 import time
@@ -23,7 +22,6 @@ class GuardedLaboratory(SpreadLaboratory):
     """Its generator is reached through a proxy, and asked directly by the campaign."""
 
     proxy = None
-    link = None
     duration_s = 1.5
 
     def bench_text(self):
@@ -39,17 +37,7 @@ class GuardedLaboratory(SpreadLaboratory):
         )
 
     def ask_generator(self, line):
-        """Directly, over one connection."""
-
-        def ask():
-            if self.link is None:
-                place = (self.generator_host(), self.ports["generator"])
-                self.link = socket.create_connection(place, 10.0).makefile("rw")
-            self.link.write(line + "\n")
-            self.link.flush()
-            return self.link.readline().strip()
-
-        return self.hosts.call("bench", ask)
+        return self.hosts.call("bench", lambda: self.proxy.ask_instrument(line))
 
     def output_is_on(self):
         return self.ask_generator(":OUTPut1?") == "ON"
@@ -69,7 +57,9 @@ class GuardedLaboratory(SpreadLaboratory):
         table = f"""table ip unattended {{
             set gone {{ type ipv4_addr; flags dynamic,timeout; timeout 1h; }}
             set deaf {{ type ipv4_addr; flags dynamic,timeout; timeout 1h; }}
-            chain arriving {{ type filter hook prerouting priority 0; {rules} }}
+            chain arriving {{ type filter hook prerouting priority 0
+                {rules}
+            }}
         }}"""
         nft = [*self.hosts.command(host), "nft", "-f", "-"]
         subprocess.run(nft, check=True, input=table, text=True)
@@ -99,7 +89,7 @@ class GuardedLaboratory(SpreadLaboratory):
             rules.append(f"{generator} {FREQUENCY} add @deaf {{ ip saddr {FOR_EVER} }} accept")
         verdict = "accept" if delivered else "drop"
         rules.append(f"{generator} {ON} add @gone {{ ip saddr {FOR_EVER} }} {verdict}")
-        self.filter_at("bench", "; ".join(rules))
+        self.filter_at("bench", "\n".join(rules))
 
     def lose_path_to_operator(self):
         self.filter_at("operator", f"ip saddr {self.hosts.address['bench']} drop")

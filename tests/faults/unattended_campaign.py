@@ -12,15 +12,16 @@ killed or stands still, or the path fails: both ways, one way, for datagrams, fo
 TCP, or with the very ON of the step, before or after the guard has heard of it. The guard dies in
 half of the draws, at any time around that, and is back after up to 10 s. The generator is sound,
 ignores OFF, answers late, or falls mute. Held: from the moment when nobody attends and the guard is
-there, the output is off after 2.1 s where the guard heard the run, 3.5 s where it has to ask, and
-stays off for --watch-s; or MAY BE ON is said.
+there, the output is off after 2.1 s where the guard heard the run, 3.5 s where it has to ask (and
+what a late generator takes to answer), and stays off for --watch-s; or MAY BE ON is said.
 
 Held packets: the path fails with ON in flight, and is back after 5 or 18 s. That ON never arrives.
 
 Calibrations: `dyncal calibrate dso-delay` is killed or its terminal closed.
 
-The opposite, in one laboratory: runs one after the other, with pauses, resumed, and with a person
-who uses the generator between them. Nothing is switched off, and every run is whole.
+The opposite, in one laboratory: runs one after the other, some of which pause, are interrupted and
+begun anew, or are followed by a person who uses the generator. Nothing is switched off, and every
+run is whole.
 
 Limits are extended by three times the worst delay with which this machine let a program go on in
 the draw, which is said. Exit status 1 if one did not hold, 77 where there are no namespaces.
@@ -28,30 +29,34 @@ the draw, which is said. Exit status 1 if one did not hold, 77 where there are n
 
 import argparse
 import concurrent.futures
+import contextlib
 import json
 import pathlib
 import random
 import re
 import shutil
 import signal
+import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 import hosts
-from bench_laboratory import READY, VENDORS, Failure, Program, wait_until
-from generator_proxy import FAULTS, GeneratorProxy
+from bench_laboratory import VENDORS, Failure, Program, wait_until
+from generator_proxy import FAULTS, LATE_S, GeneratorProxy
 from guarded_laboratory import GuardedLaboratory, SchedulingDelay
 
 HEARD_S = 2.1  # idl/README.md, deploy/README.md
 ASKED_S = 3.5
+QUESTIONS = 3  # of a guard, each of which a late generator answers late
 WITHIN_S = 4.0
 LOOK_S = 0.05
 MAY_BE_ON = "MAY BE ON"
 PATHS = ("path", "to-bench", "from-bench", "datagrams", "generator-tcp")
 WITH_ON = ("with-on", "with-on-unheard")  # before the run begins
 DEATHS = ("power", "killed", "stands", *PATHS, *WITH_ON)
-HEALTHY = ("plain", "person", "paused", "resumed")
+HEALTHY = ("plain", "person", "paused", "interrupted")
 
 
 class LongSteps(GuardedLaboratory):
@@ -62,29 +67,42 @@ class ShortSteps(GuardedLaboratory):
     duration_s = 0.5
 
 
-class Judge:
-    """When the output was on, from the moment `since_s`."""
+class Output:
+    """Looks at the output from now on, until it is closed."""
 
     def __init__(self, is_on, words):
         self.is_on = is_on
         self.words = words
+        self.looks = []  # (s, whether it was on, whether that was said)
+        self.ends = threading.Event()
+        threading.Thread(target=self.look, daemon=True).start()
+
+    def look(self):
+        while not self.ends.wait(LOOK_S):
+            now_s = time.monotonic()
+            try:
+                self.looks.append((now_s, self.is_on(), MAY_BE_ON in self.words()))
+            except (OSError, RuntimeError):
+                return  # the laboratory ends
 
     def expect_off(self, limit_s, since_s, watch_s, delay):
-        """Off within the limit, and then for `watch_s`, or said to be on; returns the last look at
-        which it was on, and by how much the limit was extended."""
-        last_on_s = since_s
-        while time.monotonic() < since_s + limit_s + watch_s:
-            now_s = time.monotonic()
-            if self.is_on():
-                last_on_s = now_s
-                if now_s - since_s > limit_s + self.slack_s(delay) and MAY_BE_ON not in self.words():
-                    raise Failure(f"on {now_s - since_s:.2f} s after, and nobody says so")
-            time.sleep(LOOK_S)  # between two looks
-        return last_on_s - since_s
+        """Off within the limit, and then for `watch_s`, or said to be on; returns when it was seen
+        on for the last time, nothing where it was said to be on."""
+        end_s = since_s + limit_s + watch_s
+        wait_until(lambda: self.looks and self.looks[-1][0] >= end_s, "looks", interval_s=0.2)
+        slack_s = LOOK_S + 3.0 * delay.worst_s
+        last_s = 0.0
+        for at_s, is_on, is_said in self.looks:
+            if is_on and not is_said and at_s - since_s > limit_s + slack_s:
+                raise Failure(f"on {at_s - since_s:.2f} s after, and nobody says so")
+            last_s = max(last_s, at_s - since_s if is_on else 0.0)
+        return None if self.looks[-1][2] and last_s > limit_s else last_s
 
-    @staticmethod
-    def slack_s(delay):
-        return LOOK_S + 3.0 * delay.worst_s
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.ends.set()
 
 
 def laboratory_folder():
@@ -107,12 +125,16 @@ class Row:
             with SchedulingDelay() as delay:
                 function(self, folder, delay)
                 self.figures += f" (machine late by up to {delay.worst_s:.2f} s)"
-        except (Failure, OSError, ValueError) as failure:
+        except (Failure, OSError, subprocess.SubprocessError) as failure:
             self.problem = f"{failure} (logs in {folder})"
         else:
             shutil.rmtree(folder)
         print(f"{self.name}: {self.problem or 'holds' + self.figures}", flush=True)
         return self
+
+
+def off_after(took_s):
+    return ", on" if took_s is None else f", off after {took_s:.2f} s"
 
 
 def draw_events(chance):
@@ -152,11 +174,17 @@ def unattended(arguments, number):
         case += f", guard away from {drawn['guard_dies_s']:.1f} s for {drawn['guard_away_s']:.1f} s"
 
     def one(row, folder, delay):
-        with LongSteps(arguments.programs, folder, arguments.vendors) as laboratory:
+        place = (arguments.programs, folder, arguments.vendors)
+        with LongSteps(*place) as laboratory, contextlib.ExitStack() as watching:
             guard = laboratory.services["dyncal-guard"]
             if drawn["death"] in WITH_ON:
                 laboratory.lose_path_with_on(drawn["death"] == "with-on", delivered=True)
             run = laboratory.run()
+
+            def words():
+                return laboratory.guard_words() + run.errors()
+
+            output = watching.enter_context(Output(laboratory.output_is_on, words))
             wait_until(laboratory.output_is_on, "the output to be on")
             began_s = time.monotonic()
             if drawn["death"] not in WITH_ON:
@@ -178,26 +206,29 @@ def unattended(arguments, number):
             row.kind, limit_s = "heard", HEARD_S
             if drawn["death"] == "with-on-unheard":
                 row.kind, limit_s = "asked", ASKED_S
+            has_own_guard = drawn["death"] == "killed" and drawn["fault_s"] >= drawn["dies_s"]
             if drawn["guard_dies_s"] is not None:
                 back_s = began_s + drawn["guard_dies_s"] + drawn["guard_away_s"]
                 time.sleep(max(0.0, back_s - time.monotonic()))
                 laboratory.restart("dyncal-guard")
-                since_s = max(since_s, time.monotonic())
-                row.kind, limit_s = "asked", ASKED_S
-            judge = Judge(laboratory.output_is_on, laboratory.guard_words)
-            row.took_s = judge.expect_off(limit_s, since_s, arguments.watch_s, delay)
-            words = laboratory.guard_words()
-            row.figures = f", off after {row.took_s:.2f} s"
-            own = re.findall(r"for ([\d.]+) s while its exciter was", words)
+                if not has_own_guard:  # a process beside the conductor's, on a sound path
+                    since_s = max(since_s, time.monotonic())
+                    row.kind, limit_s = "asked", ASKED_S
+            if fault == "late" and row.kind == "asked":
+                limit_s += QUESTIONS * LATE_S
+            row.took_s = output.expect_off(limit_s, since_s, arguments.watch_s, delay)
+            row.figures = off_after(row.took_s)
+            own = re.findall(r"for ([\d.]+) s while its exciter was", words())
             row.figures += f", by the guard's clock {own[0]} s" if own else ""
-            row.figures += ", said to be on" if MAY_BE_ON in words else ""
+            row.figures += ", said to be on" if MAY_BE_ON in words() else ""
 
     return Row(case).run(one)
 
 
 def held_packet(arguments, number):
     is_killed, back_s = number % 2 == 0, (5.0, 18.0)[number // 2 % 2]
-    name = f"held packet {number}: run {'killed' if is_killed else 'goes on'}, path back {back_s:g} s"
+    run_does = "is killed" if is_killed else "goes on"
+    name = f"held packet {number}: run {run_does}, path back after {back_s:g} s"
 
     def one(row, folder, delay):
         with GuardedLaboratory(arguments.programs, folder, arguments.vendors) as laboratory:
@@ -256,10 +287,11 @@ def calibration(arguments, number):
             calibrate.send(end)
             since_s = time.monotonic()
             limit_s = HEARD_S if fault != "ignores-off" else ASKED_S
-            judge = Judge(is_on, calibrate.errors)
             row.kind = "heard"
-            row.took_s = judge.expect_off(limit_s, since_s, min(10.0, arguments.watch_s), delay)
-            row.figures = f", off after {row.took_s:.2f} s"
+            with Output(is_on, calibrate.errors) as output:
+                watch_s = min(10.0, arguments.watch_s)
+                row.took_s = output.expect_off(limit_s, since_s, watch_s, delay)
+            row.figures = off_after(row.took_s)
             row.figures += ", said to be on" if MAY_BE_ON in calibrate.errors() else ""
             proxy.begin("sound")
             wait_until(lambda: not is_on(), "the process that guards the output", 30.0)
@@ -284,9 +316,8 @@ def expect_left_on(laboratory, chance):
 
 
 def healthy_run(laboratory, kind, number, chance):
-    name = f"h{number}"
-    run = laboratory.run("--run", name)
-    if kind in ("paused", "resumed"):
+    run = laboratory.run()
+    if kind in ("paused", "interrupted"):
         wait_until(laboratory.output_is_on, "the output to be on")
     if kind == "paused":
         analysis = laboratory.services["dyncal-analysis"]
@@ -294,10 +325,10 @@ def healthy_run(laboratory, kind, number, chance):
         stopped_s = time.monotonic()
         wait_until(lambda: time.monotonic() - stopped_s > 4.5, "the analysis to be missed")
         analysis.send(signal.SIGCONT)
-    if kind == "resumed":
+    if kind == "interrupted":
         run.send(signal.SIGINT)
         run.wait(60.0)
-        run = laboratory.run("--resume", name)
+        run = laboratory.run()
     status = run.wait(90.0)
     if status != 0:
         raise Failure(f"run {number}, {kind}: exit status {status}: {run.errors()[-300:]}")
@@ -314,8 +345,8 @@ def healthy(arguments):
     counts = dict.fromkeys(HEALTHY, 0)
 
     def all_of_them(row, folder, _):
-        two = ("40", "80")
-        with ShortSteps(arguments.programs, folder, arguments.vendors, two) as laboratory:
+        place = (arguments.programs, folder, arguments.vendors)
+        with ShortSteps(*place, frequencies=("40", "80")) as laboratory:
             for number in range(arguments.healthy):
                 kind = chance.choice(HEALTHY) if arguments.healthy > 1 else "person"
                 healthy_run(laboratory, kind, number, chance)

@@ -1,5 +1,6 @@
 #include "drivers/generator/scpi_generator.hpp"
 
+#include <atomic>
 #include <future>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -99,10 +100,10 @@ TEST(ScpiGenerator, SetsTheInstrumentUpAndSwitchesItsOutputOffAtTheEnd) {
     EXPECT_TRUE((*generator)->set_output(true));
   }
   EXPECT_THAT(instrument.commands(),
-              ElementsAre(":OUTPut1 OFF", ":OUTPut1:LOAD INFinity", ":SOURce1:FUNCtion SINusoid",
-                          ":SOURce1:VOLTage:UNIT VPP", ":SOURce1:BURSt:STATe OFF",
-                          ":SOURce1:SWEep:STATe OFF", ":SOURce1:MOD:STATe OFF",
-                          ":SOURce1:VOLTage:OFFSet 0", ":SOURce1:PHASe 0",
+              ElementsAre(":OUTPut1 OFF", ":OUTPut1 OFF", ":OUTPut1:LOAD INFinity",
+                          ":SOURce1:FUNCtion SINusoid", ":SOURce1:VOLTage:UNIT VPP",
+                          ":SOURce1:BURSt:STATe OFF", ":SOURce1:SWEep:STATe OFF",
+                          ":SOURce1:MOD:STATe OFF", ":SOURce1:VOLTage:OFFSet 0", ":SOURce1:PHASe 0",
                           ":OUTPut1:POLarity NORMal", ":SOURce1:FREQuency 199.87",
                           ":SOURce1:VOLTage 0.5", ":OUTPut1 ON", ":OUTPut1 OFF"));
 }
@@ -345,6 +346,31 @@ TEST(ScpiGenerator, GivesATimeUpThatNobodyNeedsAnyMore) {
   });
   EXPECT_EQ((*generator)->clock_now_s().error().code, ErrorCode::timeout);
   EXPECT_EQ(calls, 2);
+}
+
+// A terminal is closed while the answer to ON lets wait; the output is switched off at once.
+TEST(ScpiGenerator, WaitsForAnOffHoweverEndsTheRest) {
+  std::atomic<int> offs{0};
+  std::atomic<bool> is_mute{false};
+  const ScriptedInstrument slow([&](int, ScriptedInstrument::Client& client) {
+    for (std::string line = client.hear(); !line.empty(); line = client.hear()) {
+      offs += line == ":OUTPut1 OFF" ? 1 : 0;
+      is_mute = is_mute || line == ":OUTPut1 ON";
+      if (line.find('?') != std::string::npos && !is_mute) {
+        client.say(line == "*IDN?"            ? "Rigol Technologies,DG4162,1,2\n"
+                   : line == ":SYSTem:ERRor?" ? "0,\"No error\"\n"
+                                              : "0\n");
+      }
+    }
+  });
+  auto generator = ScpiGenerator::connect(slow.address());
+  ASSERT_TRUE(generator) << generator.error().message;
+  (*generator)->call_while_waiting([](Awaited) { return false; });
+  EXPECT_EQ((*generator)->set_output(true).error().code, ErrorCode::timeout);
+  const int before = offs;
+  is_mute = false;
+  EXPECT_TRUE((*generator)->set_output(false));
+  EXPECT_GT(offs, before);
 }
 
 TEST(ScpiGenerator, SaysThatTheInstrumentDoesNotAnswer) {

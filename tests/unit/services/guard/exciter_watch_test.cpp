@@ -279,7 +279,7 @@ TEST_F(ExciterWatchTest, SwitchesOffWhatARunSwitchesOnWithoutBeingHeard) {
       drive();
       end();
     }
-    watch_.heard_run("r1", true, now_);
+    watch_.heard_run("r1", RunPhase::running, now_);
     pass(30s);
     EXPECT_EQ(attempts_, 0);
     settings_ = of_next_step;
@@ -291,10 +291,10 @@ TEST_F(ExciterWatchTest, SwitchesOffWhatARunSwitchesOnWithoutBeingHeard) {
 }
 
 TEST_F(ExciterWatchTest, LeavesWhatIsPlannedToAPersonOnceTheRunIsOver) {
-  watch_.heard_run("r1", true, now_);
+  watch_.heard_run("r1", RunPhase::running, now_);
   drive();
   end();
-  watch_.heard_run("r1", false, now_);
+  watch_.heard_run("r1", RunPhase::over, now_);
   settings_ = of_next_step;
   is_on_ = true;
   pass(60s);
@@ -303,31 +303,54 @@ TEST_F(ExciterWatchTest, LeavesWhatIsPlannedToAPersonOnceTheRunIsOver) {
 }
 
 TEST_F(ExciterWatchTest, LeavesAPersonsUseInARunThatPauses) {
-  watch_.heard_run("r1", true, now_);
+  watch_.heard_run("r1", RunPhase::running, now_);
   settings_ = of_person;
   is_on_ = true;
   for (int i = 0; i < 100; ++i) {
     pass(2s);
-    watch_.heard_run("r1", true, now_);
+    watch_.heard_run("r1", RunPhase::running, now_);
   }
   EXPECT_TRUE(is_on_);
-  EXPECT_EQ(watch_.state(), State::ended);
+  EXPECT_EQ(watch_.state(), State::begins);
+  EXPECT_EQ(questions_, 0);
+}
+
+TEST_F(ExciterWatchTest, TakesARunThatWaitsForItsTurnForNothing) {
+  drive();
+  end();
+  watch_.heard_run("r1", RunPhase::running, now_);
+  watch_.heard_run("r2", RunPhase::planned, now_);
+  EXPECT_EQ(watch_.run().run, "r1");
+  watch_.heard_run("r1", RunPhase::over, now_);
+  watch_.heard_run("r2", RunPhase::planned, now_);
+  EXPECT_EQ(watch_.run().run, "r2");
+  watch_.heard_run("r3", RunPhase::planned, now_);
+  EXPECT_EQ(watch_.run().run, "r2");
+  watch_.heard_run("r3", RunPhase::running, now_);
+  EXPECT_EQ(watch_.run().run, "r3");
+  settings_ = {40.0, 0.9}; // a person's
+  is_on_ = true;
+  pass(10s);
+  EXPECT_TRUE(is_on_);
+  settings_ = of_step; // of r1, which TCP held
+  pass(3500ms);
+  EXPECT_FALSE(is_on_);
 }
 
 TEST_F(ExciterWatchTest, WatchesARunThatHasNotDrivenForTwoMinutesAfterItsLastWord) {
-  watch_.heard_run("r1", true, now_);
+  watch_.heard_run("r1", RunPhase::running, now_);
   pass(121s);
   EXPECT_EQ(watch_.state(), State::idle);
 }
 
 TEST_F(ExciterWatchTest, LetsNoOtherRunStandForOneThatIsDrivenOrSilent) {
   drive();
-  watch_.heard_run("r2", true, now_);
+  watch_.heard_run("r2", RunPhase::running, now_);
   EXPECT_EQ(watch_.run().run, "r1");
   answers_ = false;
   pass(5s);
   EXPECT_NE(watch_.may_be_on(), "");
-  watch_.heard_run("r2", true, now_);
+  watch_.heard_run("r2", RunPhase::running, now_);
   EXPECT_EQ(watch_.run().run, "r1");
   EXPECT_NE(watch_.may_be_on(), "");
 }
