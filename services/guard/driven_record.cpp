@@ -30,6 +30,7 @@ DrivenRun run_of(const json& kept) {
   DrivenRun run;
   run.run = kept.at("run").get<std::string>();
   run.has_ended = kept.at("has_ended").get<bool>();
+  run.is_conducted = kept.value("is_conducted", false);
   for (const json& one : kept.at("settings")) {
     OutputSettings settings;
     settings.frequency_hz = one.at("frequency_hz").get<double>();
@@ -93,6 +94,7 @@ Expected<void> DrivenRecord::write(const DrivenRun& run) const {
   return write_output_file(path_, json_text(json{{"generator", generator_},
                                                  {"run", run.run},
                                                  {"has_ended", run.has_ended},
+                                                 {"is_conducted", run.is_conducted},
                                                  {"settings", std::move(settings)}}));
 }
 

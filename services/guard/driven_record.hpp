@@ -1,7 +1,7 @@
 // What a guard keeps of the run that drives its generator, so that a guard that starts after a
 // power cut of both hosts knows what to switch off: a file of the state directory for each bench.
 //
-//   {"generator": "192.0.2.7:5025", "run": "r1", "has_ended": false,
+//   {"generator": "192.0.2.7:5025", "run": "r1", "has_ended": false, "is_conducted": true,
 //    "settings": [{"frequency_hz": 40.0, "voltage_vpp": 0.8}]}
 //
 // The state directory is systemd's ($STATE_DIRECTORY), else $XDG_STATE_HOME/dyncal-guard, else

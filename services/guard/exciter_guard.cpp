@@ -164,9 +164,7 @@ void ExciterGuard::act() {
 }
 
 void ExciterGuard::keep_record() {
-  const DrivenRun& run = watch_.run();
-  const bool has_driven = run.run.empty() || !run.settings.empty(); // else what was driven before
-  if (run == recorded_ || !has_driven) {
+  if (watch_.run() == recorded_) {
     return;
   }
   recorded_ = watch_.run();

@@ -32,9 +32,11 @@ bool is_among(const OutputSettings& settings, const std::vector<OutputSettings>&
 ExciterWatch::ExciterWatch(std::chrono::milliseconds unattended_limit,
                            std::vector<OutputSettings> planned, DrivenRun recorded, Instant now)
     : unattended_limit_(unattended_limit), planned_(std::move(planned)), run_(std::move(recorded)),
-      heard_(now), is_from_record_(!run_.run.empty()), next_question_(now) {
-  if (is_from_record_) {
-    step_to(run_.has_ended ? State::ended : State::driven, now);
+      heard_(now), word_(now), is_from_record_(!run_.run.empty()), next_question_(now) {
+  if (is_from_record_ && run_.has_ended) {
+    step_to(run_.is_conducted ? State::begins : State::ended, now);
+  } else if (is_from_record_) {
+    step_to(State::driven, now);
   }
 }
 
@@ -47,7 +49,6 @@ void ExciterWatch::step_to(State state, Instant now) {
   switch (state) {
   case State::idle:
     run_ = {};
-    is_conducted_ = false;
     is_from_record_ = false;
     break;
   case State::silent:
@@ -81,12 +82,9 @@ void ExciterWatch::heard(const ExciterAnnouncement& announcement, Instant now) {
   if (!announcement.is_driven && !is_of_driver) {
     return; // the last word of a run before
   }
-  if (!is_of_driver) {
-    is_conducted_ = false;
-    answers_in_run_ = true;
-  }
+  answers_in_run_ = answers_in_run_ || !is_of_driver;
   if (!is_of_driver || state_ == State::begins) {
-    run_ = {announcement.run, false, {}};
+    run_ = {announcement.run, false, {}, is_of_driver && run_.is_conducted};
   }
   const bool is_news = state_ != (announcement.is_driven ? State::driven : State::ended) ||
                        !is_among(announcement.settings, run_.settings);
@@ -109,23 +107,23 @@ void ExciterWatch::heard(const ExciterAnnouncement& announcement, Instant now) {
 void ExciterWatch::heard_run(const std::string& run, RunPhase phase, Instant now) {
   if (run == run_.run) {
     word_ = now;
-    is_conducted_ = phase != RunPhase::over;
-    if (is_conducted_ && idle_from_) {
+    run_.is_conducted = phase != RunPhase::over;
+    if (run_.is_conducted && idle_from_) {
       idle_from_ = now + watched_after;
     }
     return;
   }
   // What is driven, may be on or is about to be driven comes first.
-  const bool is_free =
-      state_ == State::idle || ((state_ == State::ended || state_ == State::begins) &&
-                                !must_be_off_ && (phase == RunPhase::running || !is_conducted_));
+  const bool is_free = state_ == State::idle ||
+                       ((state_ == State::ended || state_ == State::begins) && !must_be_off_ &&
+                        (phase == RunPhase::running || !run_.is_conducted));
   if (phase == RunPhase::over || !is_free) {
     return;
   }
   run_.run = run; // what was driven before is still known
   run_.has_ended = true;
   word_ = now;
-  is_conducted_ = true;
+  run_.is_conducted = true;
   is_from_record_ = false;
   answers_in_run_ = true;
   has_switched_off_ = false;
@@ -137,7 +135,7 @@ bool ExciterWatch::is_of_run(const OutputReading& reading) const {
     return state_ == State::silent; // it does not say with what it is on
   }
   return is_among(*reading.settings, run_.settings) ||
-         ((is_conducted_ || (state_ == State::silent && !is_from_record_)) &&
+         ((run_.is_conducted || (state_ == State::silent && !is_from_record_)) &&
           is_among(*reading.settings, planned_));
 }
 
@@ -205,7 +203,8 @@ void ExciterWatch::switched_off(const Expected<void>& outcome, Instant now) {
 }
 
 bool ExciterWatch::may_ask(Instant now) const {
-  const bool may_connect = state_ == State::begins && is_conducted_ && now - word_ <= word_limit;
+  const bool may_connect =
+      state_ == State::begins && run_.is_conducted && now - word_ <= word_limit;
   return state_ != State::idle && now >= next_question_ && !may_connect &&
          (answers_in_run_ || now - heard_ > unattended_limit_);
 }

@@ -10,9 +10,9 @@
 //                                                 2.5 s: off                   word
 //
 // The generator is asked every second in all states but idle; in begins, once no word has come for
-// 2.5 s: until then the conductor may be connecting to an instrument of one connection. Where
-// silent begins the output is switched off unasked. A guard that starts with the record of a driven
-// run begins in driven, heard now, and switches off only what is on with the recorded settings.
+// 2.5 s: until then the conductor may be connecting to an instrument of one connection. Where a
+// silence begins the output is switched off unasked. A guard that starts with the record of a run
+// goes on as if it heard it now, and switches off only what is on with settings of that run.
 //
 // "The run's" is what has the frequency and the voltage with which the generator was seen while the
 // run was heard (or as announced, where it was not seen); in a silence, and while the run is
@@ -44,6 +44,7 @@ struct DrivenRun {
   std::string run; // empty: none
   bool has_ended = false;
   std::vector<OutputSettings> settings; // newest last, at most ExciterWatch::max_settings
+  bool is_conducted = false;            // its Measurement was not over, and it may go on as planned
 
   friend bool operator==(const DrivenRun&, const DrivenRun&) = default;
 };
@@ -104,7 +105,6 @@ private:
   State state_ = State::idle;
   Instant heard_{};
   Instant word_{};              // the newest Measurement of the run
-  bool is_conducted_ = false;   // it was not over
   bool is_from_record_ = false; // not heard since the start
   bool was_seen_on_ = false;    // since then, with what the record names
   bool must_be_off_ = false;    // and is not known to be

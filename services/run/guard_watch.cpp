@@ -57,15 +57,26 @@ std::string GuardWatch::lack(Instant now) const {
 }
 
 std::string GuardWatch::deafness(const std::string& run, Instant now) const {
+  // The last word of one that has gone silent holds until another is heard: where the way there is
+  // lost, the way back may be lost a little later.
+  const Guard* deaf = nullptr;
+  bool is_heard_elsewhere = false;
   for (const auto& [service, guard] : guards_) {
-    if (guard.unheard == run && now - guard.heard <= limit &&
-        may_be_one_generator(guard.generator, generator_)) {
-      return fmt::format("the dyncal-guard on {} does not hear this run and has switched the "
-                         "exciter off, if it can: is the way from here to there open",
-                         guard.host);
+    if (!may_be_one_generator(guard.generator, generator_)) {
+      continue;
     }
+    const bool is_there = now - guard.heard <= limit;
+    if (guard.unheard == run && (deaf == nullptr || is_there)) {
+      deaf = &guard;
+    }
+    is_heard_elsewhere = is_heard_elsewhere || (is_there && guard.unheard != run);
   }
-  return "";
+  if (deaf == nullptr || (is_heard_elsewhere && now - deaf->heard > limit)) {
+    return "";
+  }
+  return fmt::format("the dyncal-guard on {} does not hear this run and has switched the exciter "
+                     "off, if it can: is the way from here to there open",
+                     deaf->host);
 }
 
 std::optional<std::string> GuardWatch::notice(Instant now) {

@@ -34,6 +34,7 @@ class GeneratorProxy:
         self.enter = enter
         self.fault = "sound"
         self.link = None
+        self.lock = threading.Lock()
         self.heard = []  # (monotonic s, connection, line)
         self.listener = call(lambda: socket.create_server((place[0], 0)))
         self.port = self.listener.getsockname()[1]
@@ -47,11 +48,12 @@ class GeneratorProxy:
 
     def ask_instrument(self, line):
         """Past the fault, over one connection."""
-        if self.link is None:
-            self.link = socket.create_connection(self.place, 10.0).makefile("rw")
-        self.link.write(line + "\n")
-        self.link.flush()
-        return self.link.readline().strip()
+        with self.lock:
+            if self.link is None:
+                self.link = socket.create_connection(self.place, 10.0).makefile("rw")
+            self.link.write(line + "\n")
+            self.link.flush()
+            return self.link.readline().strip()
 
     def accept(self):
         self.enter()

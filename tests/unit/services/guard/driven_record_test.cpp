@@ -8,7 +8,7 @@
 namespace dyncal::services {
 namespace {
 
-const DrivenRun driven{"r1", false, {{40.0, 0.8}, {80.0, std::nullopt}}};
+const DrivenRun driven{"r1", false, {{40.0, 0.8}, {80.0, std::nullopt}}, true};
 
 TEST(DrivenRecord, GivesBackWhatWasWritten) {
   const tests::TemporaryFolder folder;

@@ -199,6 +199,24 @@ TEST_F(ExciterWatchTest, LeavesAfterItsStartWhatItsRecordDoesNotName) {
   EXPECT_TRUE(is_on_);
 }
 
+// Both hosts lose their power as a run begins, before the guard has heard what is driven.
+TEST_F(ExciterWatchTest, SwitchesOffAfterItsStartWhatAConductedRunPlans) {
+  for (const bool has_ended : {true, false}) {
+    settings_ = of_next_step;
+    is_on_ = true;
+    restart({"r1", has_ended, {}, true});
+    pass(1900ms);
+    EXPECT_TRUE(is_on_) << "its conductor may be there";
+    pass(1600ms);
+    EXPECT_FALSE(is_on_) << has_ended;
+    settings_ = of_person;
+    is_on_ = true;
+    restart({"r1", has_ended, {}, true});
+    pass(60s);
+    EXPECT_TRUE(is_on_) << has_ended;
+  }
+}
+
 TEST_F(ExciterWatchTest, LeavesAHealthyRunAloneAfterItsStart) {
   restart({"r1", false, {of_step}});
   is_on_ = true;
