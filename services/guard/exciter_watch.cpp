@@ -32,7 +32,7 @@ bool is_among(const OutputSettings& settings, const std::vector<OutputSettings>&
 ExciterWatch::ExciterWatch(std::chrono::milliseconds unattended_limit,
                            std::vector<OutputSettings> planned, DrivenRun recorded, Instant now)
     : unattended_limit_(unattended_limit), planned_(std::move(planned)), run_(std::move(recorded)),
-      heard_(now), word_(now), is_from_record_(!run_.run.empty()), next_question_(now) {
+      heard_(now), is_from_record_(!run_.run.empty()), next_question_(now) {
   if (is_from_record_ && run_.has_ended) {
     step_to(run_.is_conducted ? State::begins : State::ended, now);
   } else if (is_from_record_) {
@@ -106,7 +106,7 @@ void ExciterWatch::heard(const ExciterAnnouncement& announcement, Instant now) {
 
 void ExciterWatch::heard_run(const std::string& run, RunPhase phase, Instant now) {
   if (run == run_.run) {
-    word_ = now;
+    heard_ = state_ == State::begins ? now : heard_;
     run_.is_conducted = phase != RunPhase::over;
     if (run_.is_conducted && idle_from_) {
       idle_from_ = now + watched_after;
@@ -122,7 +122,7 @@ void ExciterWatch::heard_run(const std::string& run, RunPhase phase, Instant now
   }
   run_.run = run; // what was driven before is still known
   run_.has_ended = true;
-  word_ = now;
+  heard_ = now;
   run_.is_conducted = true;
   is_from_record_ = false;
   answers_in_run_ = true;
@@ -204,7 +204,7 @@ void ExciterWatch::switched_off(const Expected<void>& outcome, Instant now) {
 
 bool ExciterWatch::may_ask(Instant now) const {
   const bool may_connect =
-      state_ == State::begins && run_.is_conducted && now - word_ <= word_limit;
+      state_ == State::begins && run_.is_conducted && now - heard_ <= word_limit;
   return state_ != State::idle && now >= next_question_ && !may_connect &&
          (answers_in_run_ || now - heard_ > unattended_limit_);
 }

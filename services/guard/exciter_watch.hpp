@@ -104,7 +104,6 @@ private:
   DrivenRun run_;
   State state_ = State::idle;
   Instant heard_{};
-  Instant word_{};              // the newest Measurement of the run
   bool is_from_record_ = false; // not heard since the start
   bool was_seen_on_ = false;    // since then, with what the record names
   bool must_be_off_ = false;    // and is not known to be

@@ -17,7 +17,7 @@ import threading
 
 from bench_laboratory import BenchLaboratory, Failure, wait_until
 
-PROGRAMS, SOURCE = map(pathlib.Path, sys.argv[1:3])
+PROGRAMS, SOURCE = (pathlib.Path(argument).resolve() for argument in sys.argv[1:3])
 CASE = SOURCE.parent / "shared" / "cases" / "43-generator-left-over"
 PROXY_PORT = 61010  # of the case
 LEFT = ("generator-offset=2", "generator-burst")
