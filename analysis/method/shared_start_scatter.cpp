@@ -2,59 +2,99 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <vector>
 
 namespace dyncal::analysis {
 namespace {
 
-constexpr double most_of_a_step = 7.0;
-constexpr double significant = 10.0; // chi-squared of one degree of freedom, s not below 0: 1e-3
-constexpr double as_likely = 1.0;    // one standard uncertainty of s
-constexpr double narrowest = 0.05;   // of the least u: less cannot be significant
-constexpr double step_factor = 1.1;  // of s: finer than any run can tell
+constexpr double most_of_a_step = 20.0; // more than what shows a scatter, less than one wild shot
+constexpr double significant = 10.0;    // chi-squared of one degree of freedom, s not below 0: 1e-3
+constexpr double probable_none = 0.5;
+constexpr double latency_of_scatter = 2.5; // see above
+constexpr double narrowest = 0.03;         // u*: less does not matter
+constexpr double widest = 30.0;            // of the noisiest or most scattered step
+constexpr double step_factor = 1.05;       // of s: finer than any run can tell
 
 bool counts(const StartEvidence& step) {
   return step.shots > 1 && step.u_s > 0.0;
 }
 
+// Values of s, even in the logarithm.
+struct Grid {
+  double resolved_s = 0.0; // u*
+  std::vector<double> scatters_s;
+};
+
+Grid grid_for(std::span<const StartEvidence> steps) {
+  double sharpness = 0.0;
+  double most_s = 0.0;
+  for (const StartEvidence& step : steps) {
+    sharpness += (static_cast<double>(step.shots) - 1.0) / std::pow(step.u_s, 4);
+    most_s = std::max({most_s, step.u_s, std::sqrt(step.squares_s2)});
+  }
+  Grid grid;
+  grid.resolved_s = std::pow(sharpness, -0.25);
+  for (double s = narrowest * grid.resolved_s; s < widest * most_s; s *= step_factor) {
+    grid.scatters_s.push_back(s);
+  }
+  return grid;
+}
+
 double evidence_of(const StartEvidence& step, double scatter_s) {
   const double u2 = step.u_s * step.u_s;
   const double ratio = scatter_s * scatter_s / u2;
-  const double evidence = step.squares_s2 / u2 * ratio / (1.0 + ratio) -
-                          (static_cast<double>(step.shots) - 1.0) * std::log1p(ratio);
-  return std::min(evidence, most_of_a_step);
+  return step.squares_s2 / u2 * ratio / (1.0 + ratio) -
+         (static_cast<double>(step.shots) - 1.0) * std::log1p(ratio);
 }
 
-double evidence_of(std::span<const StartEvidence> steps, double scatter_s) {
-  double sum = 0.0;
-  for (const StartEvidence& step : steps) {
-    sum += counts(step) ? evidence_of(step, scatter_s) : 0.0;
+// Adds what the step tells of every s against 0.
+void add_evidence(const StartEvidence& step, const Grid& grid, std::vector<double>& sum) {
+  std::vector<double> evidence;
+  std::transform(grid.scatters_s.begin(), grid.scatters_s.end(), std::back_inserter(evidence),
+                 [&](double s) { return evidence_of(step, s); });
+  const auto best = std::max_element(evidence.begin(), evidence.end());
+  const double floor = std::max(0.0, *best) - most_of_a_step;
+  const double of_none = std::max(0.0, floor);
+  for (auto one = evidence.begin(); one != evidence.end(); ++one) {
+    const double told = one < best ? std::max(*one, floor) : *one;
+    sum[static_cast<std::size_t>(one - evidence.begin())] += told - of_none;
   }
-  return sum;
+}
+
+// Root of the mean square of s, 0 among its values.
+double rms_of(const Grid& grid, const std::vector<double>& evidence) {
+  const double most = std::max(0.0, *std::max_element(evidence.begin(), evidence.end()));
+  double prior = 0.0, total = 0.0, squares = 0.0;
+  for (std::size_t i = 0; i < evidence.size(); ++i) {
+    const double s = grid.scatters_s[i];
+    const double weight = s / (1.0 + std::pow(s / grid.resolved_s, 2)); // s: of a logarithmic grid
+    const double likely = weight * std::exp(0.5 * (evidence[i] - most));
+    prior += weight;
+    total += likely;
+    squares += likely * s * s;
+  }
+  const double none = prior * probable_none / (1.0 - probable_none) * std::exp(-0.5 * most);
+  return std::sqrt(squares / (total + none));
 }
 
 } // namespace
 
 std::optional<SharedStartScatter> shared_start_scatter(std::span<const StartEvidence> steps) {
-  double least_s = 0.0;
-  double most_s = 0.0;
-  for (const StartEvidence& step : steps) {
-    if (counts(step)) {
-      least_s = least_s > 0.0 ? std::min(least_s, step.u_s) : step.u_s;
-      most_s = std::max({most_s, step.u_s, std::sqrt(step.squares_s2)});
-    }
-  }
-  double most = 0.0;
-  for (double s = narrowest * least_s; s > 0.0 && s < most_s; s *= step_factor) {
-    most = std::max(most, evidence_of(steps, s));
-  }
-  if (most < significant) {
+  std::vector<StartEvidence> counted;
+  std::copy_if(steps.begin(), steps.end(), std::back_inserter(counted), counts);
+  if (counted.empty()) {
     return std::nullopt;
   }
-  SharedStartScatter found;
-  for (double s = narrowest * least_s; s < most_s; s *= step_factor) {
-    found.scatter_s = evidence_of(steps, s) > most - as_likely ? s : found.scatter_s;
+  const Grid grid = grid_for(counted);
+  std::vector<double> evidence(grid.scatters_s.size(), 0.0);
+  for (const StartEvidence& step : counted) {
+    add_evidence(step, grid, evidence);
   }
-  found.u_latency_s = std::sqrt(4.0 / 3.0) * found.scatter_s;
+  SharedStartScatter found;
+  found.scatter_s = rms_of(grid, evidence);
+  found.u_latency_s = latency_of_scatter * found.scatter_s;
+  found.is_shown = *std::max_element(evidence.begin(), evidence.end()) >= significant;
   return found;
 }
 

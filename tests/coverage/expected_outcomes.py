@@ -14,6 +14,7 @@ from judgement import (
     COVERED_NO_FLAG,
     COVERED_NO_MORE,
     COVERED_OR_FLAGGED,
+    COVERED_WITH_BOUND,
     FLAGGED,
 )
 
@@ -22,10 +23,12 @@ EXPECTED = [
     Row("clean", RATE, COVERED_OR_FLAGGED),
     Row("clean, analogue", VALUE, COVERED_NO_FLAG),
     Row("clean, absolute time", VALUE, FLAGGED),  # nothing is known of the clocks
-    Row("clean, series", VALUE, COVERED_NO_FLAG),
+    Row("clean, series", MAGNITUDE, COVERED_NO_FLAG),
+    Row("clean, series", PHASE, COVERED_WITH_BOUND),
     Row("clean, series", RATE, COVERED),
     Row("clean, calibrated reference", VALUE, COVERED_NO_FLAG),
-    Row("clean, series, calibrated reference", VALUE, COVERED_NO_FLAG),
+    Row("clean, series, calibrated reference", MAGNITUDE, COVERED_NO_FLAG),
+    Row("clean, series, calibrated reference", PHASE, COVERED_WITH_BOUND),
     Row("clean, 0.4 Hz", VALUE, COVERED_NO_FLAG),
     Row("clean, 0.4 Hz, rates that fold the mains", VALUE, COVERED),
     Row("clean, series, harmonics fold", VALUE, COVERED),
@@ -38,7 +41,8 @@ EXPECTED = [
     Row("clean, regular stamps", VALUE, COVERED_NO_FLAG),
     Row("clean, regular stamps", RATE, COVERED_OR_FLAGGED),
     Row("clean, hardly any noise", VALUE, COVERED_NO_FLAG),
-    Row("clean, series with hardly any noise", VALUE, COVERED_NO_FLAG),
+    Row("clean, series with hardly any noise", MAGNITUDE, COVERED_NO_FLAG),
+    Row("clean, series with hardly any noise", PHASE, COVERED_WITH_BOUND),
     Row("clean, series with hardly any noise", RATE, COVERED),
     Row("mean of 1", MEAN, COVERED_NO_FLAG),
     # Two sweeps have one degree of freedom for what they share: as wide as the k that they state.

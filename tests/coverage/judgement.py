@@ -20,6 +20,8 @@ CHANCE = 1e-3
 FAR_OFF = 3.0
 # An interval so wide that it always holds the truth says nothing: U against the rms of the errors.
 WIDEST = 12.0
+# The same where nothing is wrong, but u holds a bound of what the data cannot exclude: 1.5 times 2.
+WIDEST_BOUND = 3.0
 # By how much U of a mean may exceed what Student's factor alone, as stated, makes of the errors.
 BEYOND_STUDENT = 1.2
 # Sync is always connected here.
@@ -29,6 +31,7 @@ LOSSES = ("lost", "not_trusted", "not_measured", "out_of_order")
 
 # What is wanted of the claims of a class.
 COVERED_NO_FLAG = "covered, no flag"  # nothing is wrong, and no person is bothered
+COVERED_WITH_BOUND = "covered, with a bound"  # nor is here, but u may be larger than errors say
 COVERED = "covered"  # flags are free
 COVERED_NO_MORE = "covered, no more"  # by as many as stated; for the scatter of repetitions
 COVERED_AS_STUDENT = "covered, as Student"  # of few repetitions: as wide as the k they state
@@ -226,13 +229,18 @@ class Tally:
             return finding or self._too_wide(WIDEST)
         if wanted == COVERED_AS_STUDENT:
             return self._too_wide(self.widest_mean())
+        if wanted == COVERED_WITH_BOUND:
+            return self._flagged_clean(n, chance) or self._too_wide(WIDEST_BOUND / least_rms(n))
         if too_many(self.covered, n, PROBABILITY, chance):
             return f"{self.covered} of {n} are covered: u is too large"
         if wanted == COVERED_NO_MORE:
             return ""
-        if too_few(n - self.warned, n, UNFLAGGED_CLAIMS, chance):
-            return f"{self.warned} of {n} carry a flag"
-        return self._too_wide(self.widest_mean() if self.few_repeats else 2.0 / least_rms(n))
+        widest = self.widest_mean() if self.few_repeats else 2.0 / least_rms(n)
+        return self._flagged_clean(n, chance) or self._too_wide(widest)
+
+    def _flagged_clean(self, n, chance):
+        flagged = too_few(n - self.warned, n, UNFLAGGED_CLAIMS, chance)
+        return f"{self.warned} of {n} carry a flag" if flagged else ""
 
     def widest_mean(self):
         """U against the rms of the errors, by the usual factor of those that the results state."""

@@ -20,6 +20,7 @@ from judgement import (
     COVERED_NO_FLAG,
     COVERED_NO_MORE,
     COVERED_OR_FLAGGED,
+    COVERED_WITH_BOUND,
     FLAGGED,
     Claim,
     Tally,
@@ -30,6 +31,7 @@ from judgement import (
 
 WANTED = (
     COVERED_NO_FLAG,
+    COVERED_WITH_BOUND,
     COVERED,
     COVERED_NO_MORE,
     COVERED_AS_STUDENT,
@@ -77,11 +79,11 @@ class TallyOfClaims(unittest.TestCase):
             self.assertNotEqual(Tally(claims).finding(wanted), "", wanted)
 
     def test_normal_errors_are_covered(self):
-        for wanted in (COVERED_NO_FLAG, COVERED, COVERED_OR_FLAGGED):
+        for wanted in (COVERED_NO_FLAG, COVERED_WITH_BOUND, COVERED, COVERED_OR_FLAGGED):
             self.assertEqual(Tally(normal_claims(360)).finding(wanted), "", wanted)
 
     def test_too_small_an_uncertainty_is_found(self):
-        for wanted in (COVERED_NO_FLAG, COVERED, COVERED_OR_FLAGGED):
+        for wanted in (COVERED_NO_FLAG, COVERED_WITH_BOUND, COVERED, COVERED_OR_FLAGGED):
             self.assertIn("not covered", Tally(normal_claims(72, 1.8)).finding(wanted))
 
     def test_too_large_an_uncertainty_is_found_where_nothing_is_wrong(self):
@@ -89,6 +91,14 @@ class TallyOfClaims(unittest.TestCase):
         self.assertIn("u is too large", Tally(normal_claims(360, 0.6)).finding(COVERED_NO_FLAG))
         self.assertIn("u is too large", Tally(normal_claims(360, 0.6)).finding(COVERED_NO_MORE))
         self.assertEqual(Tally(normal_claims(72, 0.6)).finding(COVERED), "")
+
+    def test_a_bound_may_widen_by_half_and_no_more(self):
+        self.assertEqual(Tally(normal_claims(360, 1 / 1.4)).finding(COVERED_WITH_BOUND), "")
+        self.assertIn(
+            "times the rms", Tally(normal_claims(360, 1 / 1.8)).finding(COVERED_WITH_BOUND)
+        )
+        claims = normal_claims(69) + normal_claims(3, flagged=True)
+        self.assertIn("carry a flag", Tally(claims).finding(COVERED_WITH_BOUND))
 
     def test_an_interval_that_holds_everything_is_found_everywhere(self):
         for wanted in (COVERED_NO_FLAG, COVERED, COVERED_NO_MORE, COVERED_OR_FLAGGED):

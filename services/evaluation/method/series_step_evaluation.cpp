@@ -130,10 +130,17 @@ analysis::Expected<EvaluatedSeries> evaluate_series(const analysis::SeriesStampi
   return EvaluatedSeries{std::move(*evaluated), start.latency, start.evidence};
 }
 
+double u_phase_of(const std::vector<analysis::Contribution>& budget) {
+  double u_phase_rad = 0.0;
+  for (const analysis::Contribution& row : budget) {
+    u_phase_rad = std::hypot(u_phase_rad, row.u_phase_rad);
+  }
+  return std::min(any_phase, u_phase_rad);
+}
+
 void add_value(const SeriesRoles& roles, const EvaluatedSeries& evaluated,
                const analysis::SeriesChannelResult& channel, StepResult& result) {
   double u_magnitude_rel = 0.0;
-  double u_phase_rad = 0.0;
   result.valid = true;
   result.magnitude = channel.mean.magnitude;
   result.phase_rad = channel.mean.phase_rad;
@@ -145,10 +152,9 @@ void add_value(const SeriesRoles& roles, const EvaluatedSeries& evaluated,
   result.budget = budget_of(channel);
   for (const analysis::Contribution& row : result.budget) {
     u_magnitude_rel = std::hypot(u_magnitude_rel, row.u_magnitude_rel);
-    u_phase_rad = std::hypot(u_phase_rad, row.u_phase_rad);
   }
   result.u_magnitude = u_magnitude_rel * channel.mean.magnitude;
-  result.u_phase_rad = std::min(any_phase, u_phase_rad);
+  result.u_phase_rad = u_phase_of(result.budget);
 }
 
 // What a reader of the result should know of its shots.
@@ -295,18 +301,21 @@ void add_shared_start(const analysis::SharedStartScatter& start, StepResult& res
   const bool undecided =
       std::any_of(result.flags.begin(), result.flags.end(),
                   [](const Flag& flag) { return flag.kind == ResultFlag::start_undecided; });
-  if (undecided || !result.valid) {
-    return; // by itself: its row is there
+  const auto row = std::find_if(result.budget.begin(), result.budget.end(), [](const auto& one) {
+    return one.kind == analysis::ContributionKind::series_start;
+  });
+  if (undecided || row == result.budget.end()) {
+    return; // by itself: its row is there; or no value
   }
-  const double w = 2.0 * std::numbers::pi * result.frequency_hz;
-  result.budget.push_back(
-      {.kind = analysis::ContributionKind::series_start, .u_phase_rad = w * start.u_latency_s});
-  result.u_phase_rad = std::min(any_phase, std::hypot(result.u_phase_rad, w * start.u_latency_s));
-  result.flags.push_back(flag_with_reason(
-      ResultFlag::start_undecided,
-      fmt::format("all steps together show that it scatters by {:.2g} us, which this one hides in "
-                  "its noise",
-                  microseconds * start.scatter_s)));
+  row->u_phase_rad = 2.0 * std::numbers::pi * result.frequency_hz * start.u_latency_s;
+  result.u_phase_rad = u_phase_of(result.budget);
+  if (start.is_shown) {
+    result.flags.push_back(flag_with_reason(
+        ResultFlag::start_undecided,
+        fmt::format("all steps together show that it scatters by {:.2g} us, which this one hides "
+                    "in its noise",
+                    microseconds * start.scatter_s)));
+  }
 }
 
 } // namespace dyncal::services

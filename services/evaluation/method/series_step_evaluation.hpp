@@ -44,7 +44,8 @@ struct SeriesStepOutput {
 
 [[nodiscard]] SeriesStepOutput evaluate_series_step(const SeriesStepInput& step);
 
-// What all steps show of the start, where this one by itself took it for fixed: row and flag.
+// What all steps together tell of a start that is not free, in place of what this one told by
+// itself, unless that is undecided; and the flag where they show that it scatters.
 void add_shared_start(const analysis::SharedStartScatter& start, StepResult& result);
 
 } // namespace dyncal::services

@@ -75,12 +75,13 @@ bool SeriesTimeStamping::settle(std::span<StepResult> results) const {
     steps.push_back(evidence);
   }
   const auto shared = analysis::shared_start_scatter(steps);
-  if (shared) {
-    for (StepResult& result : results) {
-      add_shared_start(*shared, result);
-    }
+  if (!shared) {
+    return false;
   }
-  return shared.has_value();
+  for (StepResult& result : results) {
+    add_shared_start(*shared, result);
+  }
+  return true;
 }
 
 std::vector<ClockReport> SeriesTimeStamping::clock_reports() const {

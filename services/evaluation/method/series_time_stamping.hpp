@@ -31,7 +31,8 @@ public:
   [[nodiscard]] bool is_complete(std::size_t step, const RunRecords& records) const override;
   [[nodiscard]] Evaluation evaluation(std::size_t step, const RunRecords& records) override;
   [[nodiscard]] bool can_run_ahead() const override { return false; } // rates, kind of start
-  // A start that scatters in all steps together is in u of each, with the flag that says so.
+  // By how much the start may scatter, as all steps together tell, is in u of each; with a flag
+  // where they show that it does.
   [[nodiscard]] bool settle(std::span<StepResult> results) const override;
   [[nodiscard]] std::vector<ClockReport> clock_reports() const override;
 
