@@ -20,6 +20,7 @@ namespace dyncal::services {
 namespace {
 
 constexpr double any_phase = std::numbers::pi / std::numbers::sqrt3; // nothing is known of it
+constexpr double arithmetic = 1e-9; // of a sample interval: shots without noise differ by less
 
 SeriesStepOutput without_result(const SeriesStepInput& input, const std::string& problem) {
   return {results_without_value(input.task.step(), input.task.recipe->dut(), problem),
@@ -54,9 +55,10 @@ JudgedStart start_latency(const analysis::SeriesStampingResult& result,
   for (const std::complex<double>& direction : directions) {
     offsets_s.push_back(std::arg(direction * std::conj(mean)) / angular_hz);
   }
-  const double u_s = std::sqrt(u2_s2);
+  const double sample_s = 1.0 / result.rate.real_rate_hz;
+  const double u_s = std::max(std::sqrt(u2_s2), arithmetic * sample_s);
   const analysis::StartLatency start =
-      analysis::judge_start_latency(offsets_s, u_s, 1.0 / result.rate.real_rate_hz, start_so_far);
+      analysis::judge_start_latency(offsets_s, u_s, sample_s, start_so_far);
   const double freedom = static_cast<double>(shots.size()) - 1.0;
   return {start, {shots.size(), freedom * start.scatter_s * start.scatter_s, u_s}};
 }

@@ -342,7 +342,7 @@ TEST_F(SeriesRun, APointOfOneRepetitionHasOneUncertainty) {
   const std::vector<FrequencyPoint>& points = output.transfer_functions.front().points;
   ASSERT_EQ(points.size(), 2U);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const StepResult& result = output.results.at(i);
+    const StepResult& result = output.settled.at(i); // all steps tell of the start
     std::vector<analysis::UncertaintyPart> magnitudes, phases;
     for (const analysis::Contribution& row : result.budget) {
       magnitudes.push_back({row.u_magnitude_rel, row.degrees_of_freedom});
