@@ -10,7 +10,7 @@ namespace {
 constexpr double first_fraction = 0.5;  // of the expected voltage
 constexpr double min_response = 0.05;   // of the one expected
 constexpr double rounding = 1.0 + 1e-9; // a limit may be reached
-constexpr double beyond_highest = 1.5;  // of the voltage of the highest level
+constexpr double beyond_highest = 1.5;  // of the highest level, and of its voltage
 constexpr double falling = 0.8;         // of the response before the voltage rose
 
 std::string number(double value) {
@@ -21,8 +21,8 @@ std::string number(double value) {
 
 } // namespace
 
-double plausible_voltage_v(double highest_level_m_s2, double level_per_volt) {
-  return beyond_highest * highest_level_m_s2 / level_per_volt;
+double plausible_level_m_s2(double highest_level_m_s2) {
+  return beyond_highest * highest_level_m_s2;
 }
 
 Expected<double> voltage_for_level(double level_m_s2, double level_per_volt,
@@ -84,10 +84,17 @@ Expected<bool> LevelControl::take(double measured_m_s2) {
                     " are expected: is the amplifier on, and the reference connected?");
   }
   if (measured_m_s2 > limits_.maximum_level_m_s2 * rounding) {
-    return fail(
-        ErrorCode::invalid_setting,
-        "the reference shows " + number(measured_m_s2) + " m/s^2 at " + number(voltage_v_) +
-            " V, above generator.maximum_level_m_s2 = " + number(limits_.maximum_level_m_s2));
+    return fail(ErrorCode::invalid_setting,
+                "the reference shows " + number(measured_m_s2) + " m/s^2 at " + number(voltage_v_) +
+                    " V, above generator.maximum_level_m_s2 = " +
+                    number(limits_.maximum_level_m_s2) + ": is generator.level_per_volt right?");
+  }
+  if (measured_m_s2 > limits_.plausible_level_m_s2 * rounding) {
+    return fail(ErrorCode::invalid_setting,
+                "the reference shows " + number(measured_m_s2) + " m/s^2 at " + number(voltage_v_) +
+                    " V, and the highest level is " +
+                    number(limits_.plausible_level_m_s2 / beyond_highest) +
+                    ": is generator.level_per_volt right?");
   }
   const double response = measured_m_s2 / voltage_v_;
   if (measured_at_v_ > 0.0 && voltage_v_ > measured_at_v_ && response < falling * level_per_volt_) {

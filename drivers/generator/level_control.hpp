@@ -12,10 +12,10 @@
 // per volt: a loop that believed it would drive without end.
 //
 // Fails: invalid_setting (a limit would be passed, or is: the reference shows more than the maximum
-// level), refused (the exciter does not follow: the reference shows less than a twentieth of what
-// is expected, or per volt less than 0.8 of what it showed before the voltage rose, or the level is
-// not within the tolerance after `corrections` changes). The caller then switches the output off.
-// Pure arithmetic; one thread.
+// or the plausible level), refused (the exciter does not follow: the reference shows less than a
+// twentieth of what is expected, or per volt less than 0.8 of what it showed before the voltage
+// rose, or the level is not within the tolerance after `corrections` changes). The caller then
+// switches the output off. Pure arithmetic; one thread.
 #pragma once
 
 #include <limits>
@@ -27,12 +27,14 @@ namespace dyncal::drivers::generator {
 struct LevelLimits {
   double maximum_voltage_v = std::numeric_limits<double>::infinity();
   double maximum_level_m_s2 = std::numeric_limits<double>::infinity();
-  // No level needs more while level_per_volt is about right, whatever the reference shows.
+  // There is no more, and no level needs more, while level_per_volt is about right, whatever the
+  // reference shows.
+  double plausible_level_m_s2 = std::numeric_limits<double>::infinity();
   double plausible_voltage_v = std::numeric_limits<double>::infinity();
 };
 
-// 1.5 times the voltage of the highest level.
-[[nodiscard]] double plausible_voltage_v(double highest_level_m_s2, double level_per_volt);
+// 1.5 times the highest.
+[[nodiscard]] double plausible_level_m_s2(double highest_level_m_s2);
 
 // The voltage for a level without any control. Fails when it, or the level, is above a limit.
 [[nodiscard]] Expected<double> voltage_for_level(double level_m_s2, double level_per_volt,

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/core.h>
-
 #include "services/contract/source_block.hpp"
 #include "services/contract/source_description.hpp"
 #include "services/contract/topics.hpp"
@@ -15,12 +13,24 @@ namespace dyncal::services {
 namespace {
 
 constexpr double kept_s = 20.0;
-constexpr double max_drift = 1e-4;         // of two clocks
-constexpr double max_part_at_range = 5e-4; // as a result is flagged (signal_integrity.hpp)
+constexpr double max_drift = 1e-4; // of two clocks
+constexpr double min_hum_hz = 4.0; // a second is enough to hear it
 constexpr std::size_t max_samples = std::size_t{1} << 22U;
 
 std::int64_t ns(double seconds) {
   return std::llround(seconds * 1e9);
+}
+
+std::map<std::string, analysis::Frequency>
+listened_to(const std::vector<std::string>& frequencies_hz) {
+  std::map<std::string, analysis::Frequency> frequencies;
+  for (const std::string& text : frequencies_hz) {
+    const analysis::Frequency frequency = *analysis::Frequency::parse(text); // the file was checked
+    if (frequency.hz() >= min_hum_hz) {
+      frequencies.emplace(text, frequency);
+    }
+  }
+  return frequencies;
 }
 
 } // namespace
@@ -73,57 +83,48 @@ void LevelMeter::take(double bench_time_s) {
   record_.forget_before(newest_ns - ns(kept_s));
 }
 
-double LevelMeter::part_at_range(std::size_t channel, const TimeInterval& window) const {
-  const drivers::ChannelDescription& described = record_.description().channels[channel];
-  if (!(described.maximum > described.minimum)) {
-    return 0.0;
-  }
-  const double half = 0.5 * described.resolution;
-  const auto stamps = record_.stamps_ns();
-  const auto values = record_.column(channel);
-  std::size_t all = 0, at_range = 0;
-  for (std::size_t i = 0; i < stamps.size(); ++i) {
-    if (stamps[i] >= window.begin_ns && stamps[i] <= window.end_ns) {
-      ++all;
-      at_range +=
-          values[i] <= described.minimum + half || values[i] >= described.maximum - half ? 1 : 0;
-    }
-  }
-  return all > 0 ? static_cast<double>(at_range) / static_cast<double>(all) : 0.0;
-}
-
-Expected<std::optional<double>> LevelMeter::level_after(double bench_time_s,
-                                                        const analysis::Frequency& frequency,
-                                                        double agreement_rel) const {
+std::optional<TimeInterval> LevelMeter::window_after(double bench_time_s, double window_s) const {
   const auto stamps = record_.stamps_ns();
   if (stamps.empty() || !acs_minus_bench_ns_ || !record_.described()) {
-    return std::optional<double>{};
+    return std::nullopt;
   }
-  const auto channel = record_.channel(reference_.channel);
-  if (!channel) {
-    return std::optional<double>{};
+  const TimeInterval window{stamps.back() - ns(window_s), stamps.back()};
+  const bool is_full =
+      window.begin_ns >= ns(bench_time_s) + *acs_minus_bench_ns_ + ns(level_transport_s);
+  return is_full && record_.lost_in(window).all() == 0 ? std::optional(window) : std::nullopt;
+}
+
+Expected<LevelReading> LevelMeter::level_after(double bench_time_s,
+                                               const analysis::Frequency& frequency,
+                                               double agreement_rel) const {
+  const auto channel = record_.described() ? record_.channel(reference_.channel) : std::nullopt;
+  const auto window = window_after(bench_time_s, level_window_s(frequency.hz()));
+  if (!channel || !window) {
+    return LevelReading{.lacking = "do its samples come, and is settling_s long enough?"};
   }
-  const std::int64_t window_ns = ns(level_window_s(frequency.hz()));
-  const std::int64_t begin_ns = stamps.back() - window_ns;
-  if (begin_ns < ns(bench_time_s) + *acs_minus_bench_ns_ + ns(level_transport_s) ||
-      record_.lost_in({begin_ns, stamps.back()}).all() > 0) {
-    return std::optional<double>{};
+  return read_level(record_, *channel, *window, frequency, agreement_rel);
+}
+
+std::map<std::string, double>
+LevelMeter::quiet_levels_after(double bench_time_s,
+                               const std::vector<std::string>& frequencies_hz) const {
+  std::map<std::string, double> levels;
+  const auto channel = record_.described() ? record_.channel(reference_.channel) : std::nullopt;
+  for (const auto& [text, frequency] : listened_to(frequencies_hz)) {
+    const auto window = window_after(bench_time_s, level_window_s(frequency.hz()));
+    if (channel && window) {
+      levels[text] = level_in(record_, *channel, *window, frequency).value_or(0.0);
+    }
   }
-  if (const double part = part_at_range(*channel, {begin_ns, stamps.back()});
-      part > max_part_at_range) {
-    return fail(ErrorCode::device,
-                fmt::format("{} is at an end of its range in {:.2g} % of its samples, so that it "
-                            "shows less than there is; choose a wider range, or a lower level",
-                            reference_.text(), 100.0 * part));
+  return levels;
+}
+
+double listening_s(const std::vector<std::string>& frequencies_hz) {
+  double window_s = 0.0;
+  for (const auto& [text, frequency] : listened_to(frequencies_hz)) {
+    window_s = std::max(window_s, level_window_s(frequency.hz()));
   }
-  const std::int64_t middle_ns = begin_ns + window_ns / 2;
-  const auto whole = level_in(record_, *channel, {begin_ns, stamps.back()}, frequency);
-  const auto first = level_in(record_, *channel, {begin_ns, middle_ns - 1}, frequency);
-  const auto second = level_in(record_, *channel, {middle_ns, stamps.back()}, frequency);
-  if (!whole || !first || !second || std::abs(*second - *first) > agreement_rel * *whole) {
-    return std::optional<double>{};
-  }
-  return whole;
+  return window_s + level_transport_s + level_slack_s;
 }
 
 } // namespace dyncal::services

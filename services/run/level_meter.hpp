@@ -13,20 +13,24 @@
 // which is too small by at most level_transport_s. Against longer travel, and a level that still
 // moves, the two halves of the window must show the same level within the agreement asked for.
 //
-// A window with samples at an end of the range that the channel's description states shows less
-// than there is: it is refused (device).
+// What a window has to show: level_reading.hpp. The quiet level, from before the output is on, is
+// hum: added to the motion, or taken from it, it would let the loop drive too much.
 //
 // While the object exists its blocks must be taken: call take() at least every second. One thread.
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "analysis/base/frequency.hpp"
 #include "services/bench/bench_file.hpp"
 #include "services/bus/bus.hpp"
 #include "services/evaluation/record/source_record.hpp"
+#include "services/run/level_reading.hpp"
 
 namespace dyncal::services {
 
@@ -40,17 +44,22 @@ public:
   // Takes what has come; `bench_time_s` is the bench's time now.
   void take(double bench_time_s);
 
-  // Nothing while there is no full window of samples from after `bench_time_s`, or while its halves
-  // differ by more than `agreement_rel`.
-  [[nodiscard]] Expected<std::optional<double>> level_after(double bench_time_s,
-                                                            const analysis::Frequency& frequency,
-                                                            double agreement_rel) const;
+  // No level while there is no full window of samples from after `bench_time_s`.
+  [[nodiscard]] Expected<LevelReading> level_after(double bench_time_s,
+                                                   const analysis::Frequency& frequency,
+                                                   double agreement_rel) const;
+  // The sines that samples from after `bench_time_s` show, the output being off. None where there
+  // is no window, and at frequencies below 4 Hz: mains do not hum there.
+  [[nodiscard]] std::map<std::string, double>
+  quiet_levels_after(double bench_time_s, const std::vector<std::string>& frequencies_hz) const;
 
 private:
   LevelMeter(ChannelName reference, bus::Reader<wire::SourceDescription> descriptions,
              bus::Reader<wire::SampleBlock> samples);
 
-  [[nodiscard]] double part_at_range(std::size_t channel, const TimeInterval& window) const;
+  // The newest, where it is whole and begins after `bench_time_s`.
+  [[nodiscard]] std::optional<TimeInterval> window_after(double bench_time_s,
+                                                         double window_s) const;
 
   ChannelName reference_;
   bus::Reader<wire::SourceDescription> descriptions_;
@@ -60,5 +69,8 @@ private:
   std::optional<std::int64_t> acs_minus_bench_ns_;
   double taken_s_ = 0.0;
 };
+
+// How long quiet_levels_after() needs samples for, in bench time.
+[[nodiscard]] double listening_s(const std::vector<std::string>& frequencies_hz);
 
 } // namespace dyncal::services

@@ -3,11 +3,6 @@
 #include "services/evaluation/record/channel_level.hpp"
 
 namespace dyncal::services {
-namespace {
-
-constexpr double slack_s = 0.5; // to look, to set, and for samples that come late
-
-} // namespace
 
 int level_corrections(int repetition) {
   return repetition > 1 ? 1 : 3;
@@ -19,7 +14,7 @@ double planned_settling_s(const BenchFile& bench, double frequency_hz, int repet
     return settling_s;
   }
   const double measurement_s =
-      settling_s + level_transport_s + level_window_s(frequency_hz) + slack_s;
+      settling_s + level_transport_s + level_window_s(frequency_hz) + level_slack_s;
   return settling_s + (1 + level_corrections(repetition)) * measurement_s;
 }
 

@@ -15,6 +15,8 @@ namespace dyncal::services {
 
 // Longest way of a sample from the instrument to a reader on DDS.
 inline constexpr double level_transport_s = 0.3;
+// To look, to set, and for samples that come late.
+inline constexpr double level_slack_s = 0.5;
 
 [[nodiscard]] int level_corrections(int repetition);
 

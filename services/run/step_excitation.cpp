@@ -21,6 +21,7 @@ constexpr auto confirmation_slice = 200ms;
 constexpr double off_s = 0.3; // between two steps
 constexpr double shot_slice_s = 0.25;
 constexpr double slice_s = 0.4;     // bench time between two looks at the network
+constexpr double max_hum = 0.2;     // of a level: so far would the exciter be from it
 constexpr double edge_frames = 4.0; // excitation_window.hpp: up to two frames are lost at each edge
 
 // Time beyond settling and duration for which a step is excited, see
@@ -91,10 +92,10 @@ drivers::generator::LevelLimits StepExcitation::limits() const {
       bench_.generator.maximum_level_m_s2.value_or(limits.maximum_level_m_s2);
   const auto& levels = bench_.excitation.levels_m_s2;
   if (bench_.generator.maximum_level_m_s2 || !levels.empty()) {
-    limits.plausible_voltage_v = drivers::generator::plausible_voltage_v(
+    limits.plausible_level_m_s2 = drivers::generator::plausible_level_m_s2(
         bench_.generator.maximum_level_m_s2 ? *bench_.generator.maximum_level_m_s2
-                                            : *std::max_element(levels.begin(), levels.end()),
-        bench_.generator.level_per_volt);
+                                            : *std::max_element(levels.begin(), levels.end()));
+    limits.plausible_voltage_v = limits.plausible_level_m_s2 / bench_.generator.level_per_volt;
   }
   return limits;
 }
@@ -123,6 +124,7 @@ Expected<void> StepExcitation::begin() {
 
 void StepExcitation::end() {
   meter_.reset();
+  quiet_levels_.reset(); // hum may have gone when steps are repeated
 }
 
 Error StepExcitation::reported(const drivers::Error& error) {
@@ -240,6 +242,9 @@ Expected<double> StepExcitation::switch_on(const wire::PlannedStep& step, double
 // The same, and the level within its tolerance before the planned settling is over.
 Expected<double> StepExcitation::switch_on_to_level(const wire::PlannedStep& step,
                                                     const std::stop_token& stop) {
+  if (const auto quiet = refuse_hum(step, stop); !quiet || stop.stop_requested()) {
+    return quiet.map([] { return 0.0; });
+  }
   auto loop = LevelControl::start(target_of(step), limits());
   if (!loop) {
     return fail(of_step(step, ErrorCode::bad_argument, loop.error().message));
@@ -276,6 +281,29 @@ Expected<double> StepExcitation::switch_on_to_level(const wire::PlannedStep& ste
   }
 }
 
+Expected<void> StepExcitation::refuse_hum(const wire::PlannedStep& step,
+                                          const std::stop_token& stop) {
+  if (!quiet_levels_) {
+    const auto began = generator().clock_now_s();
+    if (!began) {
+      return fail(reported(began.error()));
+    }
+    hooks_.show("listening for hum");
+    const auto held = hold_until(*began + listening_s(bench_.excitation.frequencies_hz), stop);
+    if (!held || !*held) {
+      return held.map([](bool) {});
+    }
+    quiet_levels_ = meter_->quiet_levels_after(*began, bench_.excitation.frequencies_hz);
+  }
+  const double quiet_m_s2 = (*quiet_levels_)[step.frequency_text_hz()];
+  return quiet_m_s2 <= max_hum * step.level_m_s2()
+             ? Expected<void>{}
+             : fail(fault_of_step(fmt::format(
+                   "{} shows {:.3g} m/s^2 at this frequency while the output is off, and {:.3g} "
+                   "are planned: it hums, and no level can be set by it",
+                   bench_.method.reference.text(), quiet_m_s2, step.level_m_s2())));
+}
+
 // Nothing if a stop was requested.
 Expected<std::optional<double>> StepExcitation::measure_level(double changed_s, double deadline_s,
                                                               const std::stop_token& stop) {
@@ -289,20 +317,21 @@ Expected<std::optional<double>> StepExcitation::measure_level(double changed_s, 
       return fail(reported(now.error()));
     }
     meter_->take(*now);
-    const auto level =
+    const auto reading =
         meter_->level_after(changed_s + bench_.excitation.settling_s, frequency_of(step_),
                             0.5 * *bench_.generator.level_tolerance_rel);
-    if (!level) {
+    if (!reading) {
       known_responses_.erase(step_.frequency_text_hz());
-      return fail(fault_of_step(level.error().message));
+      return fail(fault_of_step(reading.error().message));
     }
-    if (*level) {
-      return level;
+    if (reading->level_m_s2) {
+      return reading->level_m_s2;
     }
     if (*now > deadline_s) {
-      return fail(fault_of_step(fmt::format(
-          "{} shows no steady level {:.1f} s after it was set; is settling_s long enough?",
-          bench_.method.reference.text(), *now - changed_s)));
+      known_responses_.erase(step_.frequency_text_hz());
+      return fail(fault_of_step(
+          fmt::format("{} shows no steady level {:.1f} s after it was set; {}",
+                      bench_.method.reference.text(), *now - changed_s, reading->lacking)));
     }
     clock_.wait(*wake_up_, clock_.now() + look_interval);
     if (const auto alive = hooks_.keep_alive(); !alive) {

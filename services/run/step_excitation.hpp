@@ -104,6 +104,8 @@ private:
   Expected<double> switch_on(const wire::PlannedStep& step, double voltage_v,
                              const std::stop_token& stop);
   Expected<double> switch_on_to_level(const wire::PlannedStep& step, const std::stop_token& stop);
+  // Before the output is on; listens before the first step after begin().
+  Expected<void> refuse_hum(const wire::PlannedStep& step, const std::stop_token& stop);
   Expected<std::optional<double>> measure_level(double changed_s, double deadline_s,
                                                 const std::stop_token& stop);
   Expected<void> hold_until_shots_are_taken(const std::stop_token& stop);
@@ -130,7 +132,9 @@ private:
   std::stop_token stop_;                          // likewise
   std::optional<LevelMeter> meter_;               // with a level tolerance, between begin and end
   std::map<std::string, double> known_responses_; // m/s^2 per V by frequency, from earlier steps
-  std::optional<ShotCounter> shots_;              // series time stamping only
+  // m/s^2 by frequency that the reference shows while nothing is excited, once it was listened to.
+  std::optional<std::map<std::string, double>> quiet_levels_;
+  std::optional<ShotCounter> shots_; // series time stamping only
 };
 
 } // namespace dyncal::services

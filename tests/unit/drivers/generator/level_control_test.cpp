@@ -106,7 +106,7 @@ TEST(LevelControl, AReferenceThatEndsAtItsRangeNeverDrivesFarBeyondTheHighestLev
     double largest_v = 0.0;
     const auto outcome = control(
         {.level_m_s2 = 50.0, .tolerance_rel = 0.01, .level_per_volt = 50.0},
-        {.maximum_level_m_s2 = 120.0, .plausible_voltage_v = plausible_voltage_v(120.0, 50.0)},
+        {.maximum_level_m_s2 = 120.0, .plausible_voltage_v = 3.6},
         [&](double v) {
           largest_v = std::max(largest_v, v);
           return std::min(gain * v, range);
@@ -124,7 +124,7 @@ TEST(LevelControl, AnExciterOfAnotherGainThanStatedReachesItsLevel) {
     const double gain = 50.0 * factor(random);
     const auto outcome = control(
         {.level_m_s2 = 50.0, .tolerance_rel = 0.01, .level_per_volt = 50.0},
-        {.maximum_level_m_s2 = 60.0, .plausible_voltage_v = plausible_voltage_v(60.0, 50.0)},
+        {.maximum_level_m_s2 = 60.0, .plausible_voltage_v = 1.8},
         [&](double v) { return gain * v; });
     ASSERT_TRUE(outcome.done) << outcome.done.error().message;
     EXPECT_NEAR(gain * outcome.voltage_v, 50.0, 0.5);
@@ -134,7 +134,7 @@ TEST(LevelControl, AnExciterOfAnotherGainThanStatedReachesItsLevel) {
 TEST(LevelControl, AnExciterFarLazierThanStatedIsRefusedByTheKeyThatSaysSo) {
   const auto outcome =
       control({.level_m_s2 = 50.0, .level_per_volt = 50.0},
-              {.maximum_level_m_s2 = 60.0, .plausible_voltage_v = plausible_voltage_v(60.0, 50.0)},
+              {.maximum_level_m_s2 = 60.0, .plausible_voltage_v = 1.8},
               [](double v) { return 15.0 * v; });
   ASSERT_FALSE(outcome.done);
   EXPECT_THAT(outcome.done.error().message, HasSubstr("is generator.level_per_volt right"));

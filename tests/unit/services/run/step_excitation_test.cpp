@@ -237,6 +237,8 @@ protected:
   static constexpr double rate_hz = 2000.0;
   double gain_ = 4.0;
   bool level_moves_ = false; // the exciter never comes to rest
+  double hum_m_s2_ = 0.0;    // at the frequency, whether the output is on or not
+  double hum_turns_ = 0.5;   // against the motion: it hides what there is
   double range_m_s2_ = 0.0;  // of the reference, as it states; 0: it states none and has none
   std::uint64_t block_ = 0;
   std::uint64_t sample_ = 0;
@@ -280,7 +282,8 @@ protected:
       const double t_s = static_cast<double>(sample_) / rate_hz;
       const double drift = level_moves_ ? 1.0 + 0.5 * t_s : 1.0;
       const double level = instrument_.on ? instrument_.amplitude_v * gain_ * drift : 0.0;
-      const double value = level * std::sin(2.0 * std::numbers::pi * 40.0 * t_s);
+      const double value = level * std::sin(2.0 * std::numbers::pi * 40.0 * t_s) +
+                           hum_m_s2_ * std::sin(2.0 * std::numbers::pi * (40.0 * t_s + hum_turns_));
       block.values().push_back(range_m_s2_ > 0.0 ? std::clamp(value, -range_m_s2_, range_m_s2_)
                                                  : value);
     }
@@ -297,7 +300,8 @@ TEST_F(LevelTest, IsBroughtToTheWantedOneBeforeTheStepIsSteady) {
   ASSERT_TRUE(excite());
   EXPECT_EQ(instrument_.settings[1], "1.0 V"); // half of what should do
   EXPECT_NEAR(instrument_.amplitude_v * gain_, 10.0, 0.1);
-  EXPECT_EQ(phases_.front(), "setting the level");
+  EXPECT_THAT(phases_, testing::Contains("setting the level"));
+  EXPECT_EQ(phases_.front(), "listening for hum");
   EXPECT_THAT(announced_, ElementsAre(wire::EXCITATION_SETTLING, wire::EXCITATION_STEADY,
                                       wire::EXCITATION_DONE));
 }
@@ -310,7 +314,7 @@ TEST_F(LevelTest, FailsJustAfterThePlannedSettlingWhenNoLevelIsSeen) {
               HasSubstr("step 1, 40 Hz: acs/reference shows no steady level"));
   EXPECT_THAT(excited.error().message, HasSubstr("is settling_s long enough?"));
   EXPECT_TRUE(fault_may_pass_);
-  const double planned_s = planned_settling_s(bench_, 40.0, 1);
+  const double planned_s = listening_s({"40"}) + planned_settling_s(bench_, 40.0, 1);
   EXPECT_GT(instrument_.now_s(), planned_s);
   EXPECT_LE(instrument_.now_s(), planned_s + 0.05);
   EXPECT_FALSE(instrument_.on);
@@ -327,7 +331,8 @@ TEST_F(LevelTest, FailsWhenTheLevelNeverComesToRest) {
 
 TEST_F(LevelTest, IsFoundWithASourceThatComesJustBeforeThePlannedSettlingIsOver) {
   gain_ = 10.0; // half of the voltage is enough at once
-  const auto settling = std::chrono::duration<double>(planned_settling_s(bench_, 40.0, 1));
+  const auto settling =
+      std::chrono::duration<double>(listening_s({"40"}) + planned_settling_s(bench_, 40.0, 1));
   clock_.at(std::chrono::duration_cast<std::chrono::nanoseconds>(settling) - 1200ms,
             [this] { play_reference(); });
   const auto excited = excite();
@@ -363,6 +368,25 @@ TEST_F(LevelTest, IsReachedWithinTheRangeOfTheReference) {
   play_reference();
   ASSERT_TRUE(excite());
   EXPECT_NEAR(instrument_.amplitude_v * gain_, 10.0, 0.1);
+}
+
+TEST_F(LevelTest, IsNotSetByAReferenceThatHumsAtTheFrequency) {
+  hum_m_s2_ = 6.0;
+  play_reference();
+  const auto excited = excite();
+  ASSERT_FALSE(excited);
+  EXPECT_THAT(excited.error().message, HasSubstr("acs/reference shows 6 m/s^2 at this frequency "
+                                                 "while the output is off, and 10 are planned"));
+  EXPECT_TRUE(fault_may_pass_);
+  EXPECT_THAT(instrument_.settings, testing::Not(testing::Contains("on")));
+}
+
+TEST_F(LevelTest, IsSetBesideHumThatIsSmall) {
+  hum_m_s2_ = 0.5;
+  play_reference();
+  const auto excited = excite();
+  ASSERT_TRUE(excited) << excited.error().message;
+  EXPECT_NEAR(instrument_.amplitude_v * gain_, 10.5, 0.15);
 }
 
 TEST_F(LevelTest, HoldsNoSourceUpBetweenSteps) {
