@@ -1,10 +1,13 @@
 #include "services/program/last_words.hpp"
 
 #include <csignal>
+#include <cstdlib>
 #include <new>
 #include <stdexcept>
 #include <system_error>
 #include <thread>
+
+#include <sys/resource.h>
 
 #include <gtest/gtest.h>
 
@@ -29,9 +32,29 @@ TEST(LastWords, NameTheRemedyWhereNoThreadCanBeMade) {
               testing::ExitedWithCode(1), "^dyncal-acs: no further thread .*TasksMax");
 }
 
+// As Cyclone DDS does.
+TEST(LastWords, NameTheRemedyWhereALibraryAbortsWithoutMemory) {
+  const auto abort_without_memory = [] {
+    set_last_words("dyncal-acs");
+    const rlimit none{0, 0};
+    setrlimit(RLIMIT_AS, &none);
+    std::abort();
+  };
+  EXPECT_EXIT(abort_without_memory(), testing::ExitedWithCode(1),
+              "^dyncal-acs: out of memory; .*MemoryMax");
+}
+
 TEST(LastWords, LeaveADumpOfWhatIsAnErrorOfOurs) {
   EXPECT_EXIT(throw_in_thread(std::logic_error("two of one name")),
               testing::KilledBySignal(SIGABRT), "^dyncal-acs: two of one name");
+}
+
+TEST(LastWords, LeaveADumpWhereALibraryAbortsForAnotherReason) {
+  const auto abort_with_all_it_needs = [] {
+    set_last_words("dyncal-acs");
+    std::abort();
+  };
+  EXPECT_EXIT(abort_with_all_it_needs(), testing::KilledBySignal(SIGABRT), "^$");
 }
 
 } // namespace
