@@ -1,6 +1,8 @@
 // Texts of others (names in files, what instruments and programs on the network say of themselves)
 // as they may be written into JSON and onto a terminal. Whoever writes Latin-1, "Br\xfcel", or
-// anything else that is not UTF-8 (RFC 3629) costs no result and steers no terminal.
+// anything else that is not UTF-8 (RFC 3629) costs no result and steers no terminal; and whoever
+// writes a book, forges no line and hides none. one_line() stands at every door to people: log,
+// last line of a program, tables, page.
 //
 // Plain functions, any thread.
 #pragma once
@@ -68,6 +70,32 @@ namespace dyncal::services {
     }
   }
   return shown;
+}
+
+// Longer than any sentence of ours.
+inline constexpr std::size_t max_line_bytes = 1000;
+
+// The same, and not longer than max_bytes: of more, the beginning and, as a sentence of ours often
+// ends with the remedy, the end. REQUIRES: max_bytes >= 32
+[[nodiscard]] inline std::string one_line(std::string_view text,
+                                          std::size_t max_bytes = max_line_bytes) {
+  constexpr std::string_view left_out = " [...] ";
+  std::string shown = printable(text);
+  if (shown.size() <= max_bytes) {
+    return shown;
+  }
+  const auto continues_letter = [&](std::size_t at) {
+    return (static_cast<unsigned char>(shown[at]) & 0xc0U) == 0x80U;
+  };
+  std::size_t begin = (max_bytes - left_out.size()) * 2 / 3;
+  std::size_t end = shown.size() - (max_bytes - left_out.size() - begin);
+  while (begin > 0 && continues_letter(begin)) {
+    --begin;
+  }
+  while (end < shown.size() && continues_letter(end)) {
+    ++end;
+  }
+  return shown.replace(begin, end - begin, left_out);
 }
 
 } // namespace dyncal::services

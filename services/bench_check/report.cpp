@@ -28,7 +28,7 @@ std::string as_text(const Findings& findings) {
   std::string text;
   for (const Finding& finding : findings) {
     const BenchProblem problem{finding.file, finding.line, finding.key, finding.sentence};
-    text += fmt::format("{}\n", printable(problem.text(to_string(finding.severity))));
+    text += fmt::format("{}\n", one_line(problem.text(to_string(finding.severity))));
   }
   return text + fmt::format("{}, {}, {}\n", counted(count(findings, Severity::error), "error"),
                             counted(count(findings, Severity::warning), "warning"),

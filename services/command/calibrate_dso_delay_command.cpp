@@ -16,6 +16,7 @@
 #include "services/device_error.hpp"
 #include "services/json_text.hpp"
 #include "services/output/output_file.hpp"
+#include "services/printable_text.hpp"
 #include "services/program/program.hpp"
 #include "services/run/output_guard.hpp"
 
@@ -156,7 +157,7 @@ Expected<Delays> measure(const CalibrateDsoDelayCommand& command,
 
 void print(const CalibrateDsoDelayCommand& command, const Delays& delays) {
   const analysis::TriggerDelay& delay = delays.mean;
-  fmt::print("{}\nby {} at {} Hz, {} shots ({} failed)\n", delays.instrument, command.by,
+  fmt::print("{}\nby {} at {} Hz, {} shots ({} failed)\n", one_line(delays.instrument), command.by,
              command.frequency_hz, delay.shots, delays.failures);
   fmt::print(
       "delay of the trigger output   {:10.3f} ns   u {:.3f} ns   scatter of one shot {:.3f} ns\n",

@@ -12,6 +12,7 @@
 #include "services/command/work_progress.hpp"
 #include "services/error.hpp"
 #include "services/json_text.hpp"
+#include "services/printable_text.hpp"
 #include "services/program/program.hpp"
 #include "services/report/result_file.hpp"
 
@@ -124,8 +125,9 @@ void print_table(const std::vector<ComparedPoint>& points) {
       channel = point.first_channel;
       fmt::print("{}{}\n{:>12} {:>14} {:>9} {:>16} {:>9}\n",
                  channel == points.front().first_channel ? "" : "\n",
-                 point.second_channel == channel ? channel
-                                                 : channel + " and " + point.second_channel,
+                 one_line(point.second_channel == channel
+                              ? channel
+                              : channel + " and " + point.second_channel),
                  "f / Hz", "d|H|", "E_n", "d arg H / rad", "E_n");
     }
     fmt::print("{:>12g} {:>14.3e} {:>9.2f} {:>16.3e} {:>9.2f}{}\n", point.frequency_hz,

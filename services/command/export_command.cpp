@@ -8,6 +8,7 @@
 #include "services/command/share_line.hpp"
 #include "services/command/work_progress.hpp"
 #include "services/exchange/export_recording.hpp"
+#include "services/printable_text.hpp"
 #include "services/program/program.hpp"
 
 namespace dyncal::services {
@@ -18,8 +19,9 @@ void print(const ExportedFigures& figures, const std::filesystem::path& to) {
     spdlog::warn("{}", warning);
   }
   for (const ExportedFigures::Source& source : figures.sources) {
-    fmt::print("{}: {} channels, {} samples, {} lost, {} session{}\n", source.name, source.channels,
-               source.samples, source.lost, source.sessions, source.sessions == 1 ? "" : "s");
+    fmt::print("{}: {} channels, {} samples, {} lost, {} session{}\n", one_line(source.name),
+               source.channels, source.samples, source.lost, source.sessions,
+               source.sessions == 1 ? "" : "s");
     if (source.left_out > 0) {
       spdlog::warn("source '{}': {} blocks were left out, their sizes contradict each other",
                    source.name, source.left_out);

@@ -17,6 +17,7 @@
 #include "analysis/uncertainty/found_resolution.hpp"
 #include "services/command/work_progress.hpp"
 #include "services/json_text.hpp"
+#include "services/printable_text.hpp"
 #include "services/program/program.hpp"
 #include "services/replay/series_file.hpp"
 #include "services/report/rounding.hpp"
@@ -224,7 +225,7 @@ void print_table(const Fit& fit) {
     const RoundedValue amplitude = round_by_uncertainty(one.amplitude(), one.u_amplitude());
     const RoundedValue phase = round_by_uncertainty(one.phase_rad(), one.u_phase_rad());
     const RoundedValue offset = round_by_uncertainty(one.offset, std::sqrt(one.covariance[5]));
-    fmt::print("{:>20} {:>16} {:>10} {:>16} {:>10} {:>14} {:>10} {:>10}\n", fit.names[i],
+    fmt::print("{:>20} {:>16} {:>10} {:>16} {:>10} {:>14} {:>10} {:>10}\n", one_line(fit.names[i]),
                amplitude.value, amplitude.u, phase.value, phase.u, offset.value, offset.u,
                one.samples);
   }
@@ -232,7 +233,7 @@ void print_table(const Fit& fit) {
     if (fit.shortening_rel[i] > 0.0) {
       fmt::print("{}: its stamps scatter or its phase wanders, which had shortened the sine by "
                  "{:.2g} %; corrected\n",
-                 fit.names[i], 100.0 * fit.shortening_rel[i]);
+                 one_line(fit.names[i]), 100.0 * fit.shortening_rel[i]);
     }
   }
 }

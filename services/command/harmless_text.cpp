@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "services/printable_text.hpp"
+
 namespace dyncal::services {
 namespace {
 
@@ -17,7 +19,8 @@ bool is_one_column(std::uint32_t letter) {
 
 } // namespace
 
-std::string harmless(std::string_view text) {
+std::string harmless(std::string_view text_of_others) {
+  const std::string text = one_line(text_of_others);
   std::string shown;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const auto byte = static_cast<unsigned char>(text[i]);
@@ -30,7 +33,7 @@ std::string harmless(std::string_view text) {
     const std::uint32_t letter =
         pair ? ((byte & 0x1fU) << 6U) | (static_cast<unsigned char>(text[i + 1]) & 0x3fU) : 0U;
     if (pair && is_one_column(letter)) {
-      shown += text.substr(i, 2);
+      shown.append(text, i, 2);
     } else {
       shown += '?';
     }

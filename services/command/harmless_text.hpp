@@ -8,8 +8,7 @@
 
 namespace dyncal::services {
 
-// '?' in place of control characters, of letters that are not one column wide, and of what is not
-// UTF-8.
+// One line (printable_text.hpp), and '?' in place of letters that are not one column wide.
 [[nodiscard]] std::string harmless(std::string_view text);
 
 // The first `columns` of a text that harmless() made, with ".." at the end of what was longer;

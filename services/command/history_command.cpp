@@ -11,6 +11,7 @@
 #include "services/contract/unit.hpp"
 #include "services/json_text.hpp"
 #include "services/output/output_file.hpp"
+#include "services/printable_text.hpp"
 #include "services/program/program.hpp"
 #include "services/report/figures/drift.hpp"
 #include "services/store/history.hpp"
@@ -90,8 +91,9 @@ std::string en_text(std::optional<double> en) {
 
 void print_line(const HistoryLine& line, const History& history) {
   const std::string unit = short_form(line.values.back().point.unit);
-  fmt::print("\n{} at {} Hz, magnitude in {}\n", line.channel, line.frequency_text_hz,
-             unit.empty() ? "a unit that is not known" : unit);
+  fmt::print("\n{} at {} Hz, magnitude in {}\n", one_line(line.channel),
+             one_line(line.frequency_text_hz),
+             unit.empty() ? "a unit that is not known" : one_line(unit));
   fmt::print("{:<20} {:<12} {:>13} {:>10} {:>10} {:>7} {:>11} {:>9} {:>9} {:>7}\n", "begin (UTC)",
              "state", "|H|", "U", "d|H| / %", "E_n", "arg H / deg", "U / deg", "d / deg", "E_n");
   for (const HistoryValue& value : line.values) {
@@ -99,18 +101,18 @@ void print_line(const HistoryLine& line, const History& history) {
     const RecordedPoint& point = value.point;
     fmt::print("{:<20} {:<12} {:>13.6g} {:>10.2g} {:>10.3f} {:>7} {:>11.4f} {:>9.2g} {:>9.4f} "
                "{:>7}{}{}\n",
-               day_and_time(calibration), calibration.run.state, point.magnitude,
-               point.expanded_magnitude, 100.0 * value.deviation_magnitude_rel,
+               one_line(day_and_time(calibration)), one_line(calibration.run.state),
+               point.magnitude, point.expanded_magnitude, 100.0 * value.deviation_magnitude_rel,
                en_text(value.en_magnitude), degrees * point.phase_rad,
                degrees * point.expanded_phase_rad, degrees * value.deviation_phase_rad,
                en_text(value.en_phase), value.agrees() ? "" : "  disagrees with the one before",
-               point.flags.empty() ? "" : "  " + point.flags);
+               point.flags.empty() ? "" : "  " + one_line(point.flags));
   }
 }
 
 void print_tables(const History& history) {
   fmt::print("{}: {} calibrations, deviations from the first, E_n against the one before (k = 2)\n",
-             history.sensor, history.calibrations.size());
+             one_line(history.sensor), history.calibrations.size());
   std::size_t compared = 0;
   std::size_t agreeing = 0;
   for (const HistoryLine& line : history.lines) {

@@ -36,17 +36,17 @@ ProgressLine::~ProgressLine() {
 void ProgressLine::show(const RunProgress& progress) {
   if (!progress.request.empty()) {
     end();
-    fmt::print(stream_, "{}\n", printable(progress.request));
+    fmt::print(stream_, "{}\n", one_line(progress.request));
     std::fflush(stream_);
     return;
   }
   if (!progress.notice.empty()) {
     end();
-    fmt::print(stream_, "{}\n", printable(progress.notice));
+    fmt::print(stream_, "{}\n", one_line(progress.notice));
     std::fflush(stream_);
     return;
   }
-  const std::string text = printable(describe(progress));
+  const std::string text = one_line(describe(progress));
   if (text == last_text_) {
     return;
   }

@@ -8,6 +8,7 @@
 
 #include "services/byte_count.hpp"
 #include "services/command/work_progress.hpp"
+#include "services/printable_text.hpp"
 #include "services/program/program.hpp"
 #include "services/recording/recording_reader.hpp"
 #include "services/recording/repair.hpp"
@@ -18,7 +19,7 @@ namespace {
 
 void print_findings(const recording::ScanReport& report, const std::filesystem::path& path) {
   for (const recording::Damage& damage : report.damages) {
-    fmt::print("{}\n", to_string(damage, path));
+    fmt::print("{}\n", one_line(to_string(damage, path)));
   }
   fmt::print("{}: {} messages in {} chunks can be read; {} places are damaged, {} chunks lost\n",
              path.string(), report.messages,
@@ -124,26 +125,26 @@ int run_recording_info(const RecordingCommand& command) {
       command, {.message = [&](const recording::MessageInFile& message) { contents.add(message); },
                 .attachment =
                     [&](const recording::Attachment& attachment) {
-                      beside += fmt::format("attachment {} ({} bytes)\n", attachment.name,
+                      beside += fmt::format("attachment {} ({} bytes)\n", one_line(attachment.name),
                                             attachment.data.size());
                     },
                 .metadata =
                     [&](const recording::Metadata& metadata) {
-                      beside += metadata.name + "\n";
+                      beside += one_line(metadata.name) + "\n";
                       for (const auto& [key, value] : metadata.entries) {
-                        beside += fmt::format("  {} = {}\n", key, value);
+                        beside += fmt::format("  {}\n", one_line(key + " = " + value));
                       }
                     }});
   if (!report) {
     return report_error(report.error());
   }
-  fmt::print("{}written by {}\n", beside, report->library);
+  fmt::print("{}written by {}\n", beside, one_line(report->library));
   if (report->messages > 0) {
     fmt::print("from {} to {}, {:.1f} s\n", time_text(contents.first), time_text(contents.last),
                static_cast<double>(contents.last - contents.first) * 1e-9);
   }
   for (const auto& [topic, count] : contents.topics) {
-    fmt::print("{:<20} {:>9} messages {:>12.3f} MB\n", topic, count.messages,
+    fmt::print("{:<20} {:>9} messages {:>12.3f} MB\n", one_line(topic), count.messages,
                static_cast<double>(count.bytes) * 1e-6);
   }
   print_findings(*report, command.file);

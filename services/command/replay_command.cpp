@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include "services/printable_text.hpp"
 #include "services/program/watched_network.hpp"
 
 namespace dyncal::services {
@@ -40,7 +41,8 @@ Expected<ReplayFigures> replay(const ReplayCommand& command, const std::stop_tok
   if (!player) {
     return fail(player.error());
   }
-  fmt::print("replaying {} as bench '{}'\n", command.wish.recording.string(), player->bench());
+  fmt::print("replaying {} as bench '{}'\n", command.wish.recording.string(),
+             one_line(player->bench()));
   return player->play(stop);
 }
 

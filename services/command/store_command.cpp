@@ -6,6 +6,7 @@
 #include "services/command/work_progress.hpp"
 #include "services/contract/run_identity.hpp"
 #include "services/json_text.hpp"
+#include "services/printable_text.hpp"
 #include "services/program/program.hpp"
 
 namespace dyncal::services {
@@ -67,9 +68,10 @@ void print_table(const std::vector<StoredRun>& runs) {
              "steps", "sources");
   for (const StoredRun& run : runs) {
     fmt::print("{:<20} {:<16} {:<26} {:<12} {:>9}  {}\n",
-               run.began_utc.empty() ? "-" : run.began_utc.substr(0, 19) + "Z", run.bench,
-               RunIdentity::parse(run.run).name, run.state,
-               fmt::format("{}/{}", run.measured_steps, run.planned_steps), sensors_text(run));
+               run.began_utc.empty() ? "-" : one_line(run.began_utc.substr(0, 19)) + "Z",
+               one_line(run.bench), one_line(RunIdentity::parse(run.run).name), one_line(run.state),
+               fmt::format("{}/{}", run.measured_steps, run.planned_steps),
+               one_line(sensors_text(run)));
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include "services/certificate/verification.hpp"
 #include "services/command/work_progress.hpp"
+#include "services/printable_text.hpp"
 #include "services/program/program.hpp"
 
 namespace dyncal::services {
@@ -23,7 +24,7 @@ int run_verify(const VerifyCommand& command) {
   }
   for (const Finding& finding : *findings) {
     fmt::print("{:<10} {}: {}\n", to_string(finding.question), finding.holds ? "ok" : "FAILED",
-               finding.sentence);
+               one_line(finding.sentence));
   }
   const auto first = std::find_if(findings->begin(), findings->end(),
                                   [](const Finding& finding) { return !finding.holds; });

@@ -117,6 +117,18 @@ ordered_json participants_json(const LaboratoryView& view) {
   return participants;
 }
 
+// Every text, whoever wrote it.
+void shorten(ordered_json& json) {
+  if (json.is_string()) {
+    json = one_line(json.get_ref<const std::string&>());
+  }
+  if (json.is_structured()) {
+    for (ordered_json& part : json) {
+      shorten(part);
+    }
+  }
+}
+
 } // namespace
 
 Severity worst(const Findings& findings) {
@@ -143,7 +155,7 @@ std::string as_text(const Findings& findings) {
                         ok                                      ? "ok"
                         : finding.severity == Severity::warning ? "WARNING"
                                                                 : "PROBLEM",
-                        finding.check, printable(finding.sentence));
+                        finding.check, one_line(finding.sentence));
   }
   return text + (warnings + problems == 0
                      ? "nothing is wrong\n"
@@ -158,17 +170,19 @@ ordered_json as_json(const Findings& findings, const LaboratoryView& view) {
                     {"severity", to_string(finding.severity)},
                     {"sentence", finding.sentence}});
   }
-  return {{"status", to_string(worst(findings))},
-          {"domain", view.domain},
-          {"seconds", view.seconds},
-          {"host", view.own.host},
-          {"software", view.own.software},
-          {"findings", std::move(list)},
-          {"programs", programs_json(view)},
-          {"clocks", clocks_json(view)},
-          {"losses", losses_json(view)},
-          {"sources", sources_json(view)},
-          {"participants", participants_json(view)}};
+  ordered_json all{{"status", to_string(worst(findings))},
+                   {"domain", view.domain},
+                   {"seconds", view.seconds},
+                   {"host", view.own.host},
+                   {"software", view.own.software},
+                   {"findings", std::move(list)},
+                   {"programs", programs_json(view)},
+                   {"clocks", clocks_json(view)},
+                   {"losses", losses_json(view)},
+                   {"sources", sources_json(view)},
+                   {"participants", participants_json(view)}};
+  shorten(all);
+  return all;
 }
 
 } // namespace dyncal::services::doctor

@@ -1,4 +1,5 @@
 #include "services/live/bounded_results.hpp"
+#include "services/printable_text.hpp"
 
 namespace dyncal::services::live {
 namespace {
@@ -13,7 +14,7 @@ void shorten(List& list, std::size_t most) {
 void bound(std::vector<Flag>& flags, const Limits& limits) {
   shorten(flags, limits.channels);
   for (Flag& flag : flags) {
-    flag.sentence = bounded(flag.sentence);
+    flag.sentence = one_line(flag.sentence);
   }
 }
 
@@ -21,17 +22,17 @@ void bound(std::vector<Flag>& flags, const Limits& limits) {
 
 void bound(StepResult& result, const Limits& limits) {
   for (std::string* text : {&result.frequency_text_hz, &result.problem, &result.unit}) {
-    *text = bounded(*text);
+    *text = one_line(*text);
   }
   shorten(result.fits, limits.channels);
   shorten(result.budget, limits.channels);
   shorten(result.signals, limits.channels);
   shorten(result.samples, limits.channels);
   for (analysis::Contribution& row : result.budget) {
-    row.subject = bounded(row.subject);
+    row.subject = one_line(row.subject);
   }
   for (analysis::ChannelFit& fit : result.fits) {
-    fit.channel = bounded(fit.channel);
+    fit.channel = one_line(fit.channel);
   }
   bound(result.flags, limits);
 }
@@ -39,13 +40,13 @@ void bound(StepResult& result, const Limits& limits) {
 void bound(TransferFunction& function, const Limits& limits) {
   shorten(function.points, limits.rows);
   for (FrequencyPoint& point : function.points) {
-    point.frequency_text_hz = bounded(point.frequency_text_hz);
+    point.frequency_text_hz = one_line(point.frequency_text_hz);
   }
   if (function.group_delay) {
     function.group_delay->phase_covariance = {}; // its square: nobody here needs it
   }
-  function.unit = bounded(function.unit);
-  function.group_delay_problem = bounded(function.group_delay_problem);
+  function.unit = one_line(function.unit);
+  function.group_delay_problem = one_line(function.group_delay_problem);
   bound(function.flags, limits);
 }
 

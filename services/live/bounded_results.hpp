@@ -1,5 +1,5 @@
 // Shortens what came from the network to what is held of it: lists to their limits, texts to
-// max_text_bytes. Plain functions; any thread.
+// max_line_bytes (printable_text.hpp). Plain functions; any thread.
 #pragma once
 
 #include "services/evaluation/result/clock_report.hpp"

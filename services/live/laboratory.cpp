@@ -11,8 +11,25 @@
 #include "services/evaluation/result/transfer_function_message.hpp"
 #include "services/live/bounded_results.hpp"
 #include "services/live/changes.hpp"
+#include "services/printable_text.hpp"
 
 namespace dyncal::services::live {
+namespace {
+
+// What was heard of longest ago makes way, if it is gone.
+template <class Held>
+bool drop_gone(std::map<std::string, Held>& held, bus::Clock::Instant now) {
+  const auto oldest = std::min_element(held.begin(), held.end(), [](const auto& a, const auto& b) {
+    return a.second.heard < b.second.heard;
+  });
+  if (oldest == held.end() || now - oldest->second.heard <= gone_limit) {
+    return false;
+  }
+  held.erase(oldest);
+  return true;
+}
+
+} // namespace
 
 const Bench* Laboratory::bench(const std::string& name) const {
   const auto found = benches_.find(name);
@@ -39,25 +56,19 @@ Bench* Laboratory::bench_of(const std::string& name) {
 }
 
 bool Laboratory::make_room_for_bench() {
-  const auto oldest =
-      std::min_element(benches_.begin(), benches_.end(), [](const auto& a, const auto& b) {
-        return a.second.heard < b.second.heard;
-      });
-  if (oldest == benches_.end() || clock_.now() - oldest->second.heard <= gone_limit) {
-    return false;
-  }
-  benches_.erase(oldest);
-  ++number_;
-  return true;
+  const bool made = drop_gone(benches_, clock_.now());
+  number_ += made ? 1 : 0;
+  return made;
 }
 
 Source* Laboratory::source_of(Bench& bench, const std::string& name) {
-  const auto found = bench.sources.find(name);
-  if (found == bench.sources.end() && bench.sources.size() >= limits_.sources) {
-    ++left_out_.sources;
-    return nullptr;
+  if (!bench.sources.contains(name) && bench.sources.size() >= limits_.sources) {
+    ++left_out_.sources; // this one, or the one that makes way
+    if (!drop_gone(bench.sources, clock_.now())) {
+      return nullptr;
+    }
   }
-  Source& source = found == bench.sources.end() ? bench.sources[name] : found->second;
+  Source& source = bench.sources[name];
   source.name = name;
   source.heard = clock_.now();
   source.heard_utc_ns = clock_.utc_now_ns();
@@ -268,10 +279,11 @@ void Laboratory::take(const wire::ServiceStatus& message) {
 
 void Laboratory::take_service(Bench& bench, const wire::ServiceStatus& message) {
   const std::string name = message.service().to_string();
-  const auto known = bench.services.find(name);
-  if (known == bench.services.end() && bench.services.size() >= limits_.services) {
-    ++left_out_.services;
-    return;
+  if (!bench.services.contains(name) && bench.services.size() >= limits_.services) {
+    ++left_out_.services; // this one, or the one that makes way
+    if (!drop_gone(bench.services, clock_.now())) {
+      return;
+    }
   }
   Service& service = bench.services[name];
   const std::string message_before = service.message;
@@ -280,15 +292,15 @@ void Laboratory::take_service(Bench& bench, const wire::ServiceStatus& message) 
              .health = message.health() == wire::HEALTH_OK       ? Health::ok
                        : message.health() == wire::HEALTH_FAILED ? Health::failed
                                                                  : Health::waiting,
-             .message = bounded(message.message()),
-             .software = bounded(message.software()),
-             .dds = bounded(message.dds()),
-             .host = bounded(message.host()),
+             .message = one_line(message.message()),
+             .software = one_line(message.software()),
+             .dds = one_line(message.dds()),
+             .host = one_line(message.host()),
              .process_id = message.process_id(),
-             .recording = bounded(message.recording()),
+             .recording = one_line(message.recording()),
              .messages_stored = message.messages_stored(),
              .messages_not_stored = message.messages_not_stored(),
-             .guarded_generator = bounded(message.guarded_generator()),
+             .guarded_generator = one_line(message.guarded_generator()),
              .heard = clock_.now(),
              .heard_utc_ns = clock_.utc_now_ns()};
   if (service.is_recorder() && !service.message.empty() && service.message != message_before) {
@@ -332,7 +344,7 @@ void Laboratory::work() {
 }
 
 void Laboratory::note(Bench& bench, Severity severity, const std::string& text) {
-  bench.events.push_back({clock_.utc_now_ns(), bench.name, severity, bounded(text)});
+  bench.events.push_back({clock_.utc_now_ns(), bench.name, severity, one_line(text)});
   if (bench.events.size() > limits_.events) {
     bench.events.pop_front();
   }

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "services/live/run_json.hpp"
+#include "services/printable_text.hpp"
 #include "services/report/json_number.hpp"
 #include "services/version.hpp"
 
@@ -217,7 +218,7 @@ struct ProgramNews {
 
 void add_news(const std::string& bench, const Condition& condition, bool is_heard,
               std::int64_t heard_utc_ns, ProgramNews& news) {
-  if (news.bench.find(bench) == std::string::npos && news.bench.size() < max_text_bytes) {
+  if (news.bench.find(bench) == std::string::npos && news.bench.size() < max_line_bytes) {
     news.bench += news.bench.empty() ? bench : ", " + bench;
   }
   if (condition.severity > news.severity) {

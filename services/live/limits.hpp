@@ -4,8 +4,6 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <string>
-#include <string_view>
 
 namespace dyncal::services::live {
 
@@ -21,7 +19,7 @@ inline constexpr std::chrono::seconds loss_limit{30};
 struct Limits {
   std::size_t benches = 64;
   std::size_t sources = 32;          // of a bench
-  std::size_t services = 16;         // of a bench: analyses and recorders
+  std::size_t services = 16;         // of a bench: analyses, recorders, guards
   std::size_t runs = 8;              // of a bench
   std::size_t results_of_run = 4096; // channels times steps
   std::size_t results = 16'384;      // of all benches
@@ -31,18 +29,13 @@ struct Limits {
   std::size_t events = 200;          // of a bench
 };
 
-inline constexpr std::size_t max_text_bytes = 1000;
-
 // What had no room.
 struct LeftOut {
-  std::uint64_t benches = 0; // messages of benches that are not held
-  std::uint64_t sources = 0;
-  std::uint64_t services = 0;
-  std::uint64_t runs = 0; // that were dropped or not taken
+  std::uint64_t benches = 0;  // messages of benches that are not held
+  std::uint64_t sources = 0;  // messages, and sources that made way
+  std::uint64_t services = 0; // likewise
+  std::uint64_t runs = 0;     // that were dropped or not taken
   std::uint64_t results = 0;
 };
-
-// No longer than max_text_bytes, and not within a letter of UTF-8.
-[[nodiscard]] std::string bounded(std::string_view text);
 
 } // namespace dyncal::services::live

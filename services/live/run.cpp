@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "services/contract/evaluation_method_message.hpp"
+#include "services/printable_text.hpp"
 
 namespace dyncal::services::live {
 namespace {
@@ -70,7 +71,7 @@ std::vector<Step> steps_of(const wire::Measurement& measurement, const std::vect
       break;
     }
     Step step{.step = planned.step(),
-              .frequency_text_hz = bounded(planned.frequency_text_hz()),
+              .frequency_text_hz = one_line(planned.frequency_text_hz()),
               .level_m_s2 = planned.level_m_s2(),
               .repetition = planned.repetition(),
               .settling_s = planned.settling_s(),
@@ -226,22 +227,22 @@ std::size_t Run::flagged_results() const {
 
 void Run::take(const wire::Measurement& measurement, const Limits& limits, Instant at) {
   announced = state_of(measurement.state());
-  message = bounded(measurement.message());
+  message = one_line(measurement.message());
   planned_utc_ns = measurement.planned_utc_ns();
   const std::vector<Step> before = plan ? std::move(plan->steps) : std::vector<Step>{};
   plan = Plan{.method =
                   from_wire(measurement.method()).value_or(EvaluationMethod::sample_timestamping),
-              .reference = bounded(measurement.reference()),
-              .sync_acs = bounded(measurement.sync_acs()),
-              .sync_dau = bounded(measurement.sync_dau()),
-              .sync_dso = bounded(measurement.sync_dso()),
+              .reference = one_line(measurement.reference()),
+              .sync_acs = one_line(measurement.sync_acs()),
+              .sync_dau = one_line(measurement.sync_dau()),
+              .sync_dso = one_line(measurement.sync_dso()),
               .dut = {},
-              .recipe_sha256 = bounded(measurement.recipe_sha256()),
-              .conductor = bounded(measurement.conductor()),
+              .recipe_sha256 = one_line(measurement.recipe_sha256()),
+              .conductor = one_line(measurement.conductor()),
               .steps = steps_of(measurement, before, limits)};
   for (const std::string& channel : measurement.dut()) {
     if (plan->dut.size() < limits.channels) {
-      plan->dut.push_back(bounded(channel));
+      plan->dut.push_back(one_line(channel));
     }
   }
   conductor_heard = at;
@@ -258,7 +259,7 @@ void Run::take(const wire::Excitation& excitation, Instant at) {
   now->begin_utc_ns = excitation.window_begin_utc_ns();
   now->end_utc_ns = excitation.window_end_utc_ns();
   now->step.step = excitation.step();
-  now->step.frequency_text_hz = bounded(excitation.frequency_text_hz());
+  now->step.frequency_text_hz = one_line(excitation.frequency_text_hz());
   now->step.level_m_s2 = excitation.level_m_s2();
   now->step.repetition = excitation.repetition();
   now->step.state = state_of(excitation.state());
@@ -296,7 +297,7 @@ void Run::take(const wire::ServiceStatus& status, Instant at) {
   analysis = AnalysisReport{.service = service,
                             .state = state_of(status.arm()),
                             .health = health_of(status.health()),
-                            .message = bounded(status.message()),
+                            .message = one_line(status.message()),
                             .results = status.results_published(),
                             .published_utc_ns = status.published_utc_ns(),
                             .heard = at};

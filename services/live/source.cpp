@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include "services/contract/source_description.hpp"
+#include "services/printable_text.hpp"
 
 namespace dyncal::services::live {
 namespace {
@@ -49,19 +50,19 @@ void Source::take(const wire::SourceDescription& described, const Limits& limits
   session = described.session();
   kind = from_wire(described.kind());
   description = from_message(described);
-  software = bounded(described.software());
-  host = bounded(described.host());
+  software = one_line(described.software());
+  host = one_line(described.host());
   process_id = described.process_id();
   auto& channels = description->channels;
   channels.resize(std::min(channels.size(), limits.channels));
   for (drivers::ChannelDescription& channel : channels) {
-    channel.name = bounded(channel.name);
-    channel.quantity = bounded(channel.quantity);
-    channel.unit = bounded(channel.unit);
+    channel.name = one_line(channel.name);
+    channel.quantity = one_line(channel.quantity);
+    channel.unit = one_line(channel.unit);
   }
   for (std::string* text :
        {&description->device, &description->serial, &description->firmware, &description->driver}) {
-    *text = bounded(*text);
+    *text = one_line(*text);
   }
 }
 
@@ -81,13 +82,13 @@ void Source::take(const wire::SourceStatus& status, const Limits& limits, Instan
             .clock_uncertainty_s = status.clock_uncertainty_s()};
   for (const wire::NamedCount& cause : status.causes()) {
     if (counts.causes.size() < limits.channels) {
-      counts.add_cause(bounded(cause.name()), cause.value());
+      counts.add_cause(one_line(cause.name()), cause.value());
     }
   }
   dropped_in_service = status.dropped_in_service();
   buffer_fill = status.buffer_fill();
   matched_readers = status.matched_readers();
-  message = bounded(status.message());
+  message = one_line(status.message());
   if (continues && lost() > lost_before) {
     lost_more = now;
   }

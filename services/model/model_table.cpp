@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include "services/contract/unit.hpp"
+#include "services/printable_text.hpp"
 #include "services/report/rounding.hpp"
 
 namespace dyncal::services {
@@ -31,7 +32,7 @@ std::string head(const ChannelModel& model) {
     low = std::min(low, value.point.frequency_hz);
     high = std::max(high, value.point.frequency_hz);
   }
-  std::string text = fmt::format("{}: {} values from {:g} to {:g} Hz\n", measured.channel,
+  std::string text = fmt::format("{}: {} values from {:g} to {:g} Hz\n", one_line(measured.channel),
                                  measured.values.size(), low, high);
   std::map<std::string, std::vector<std::string>> by_reason;
   for (const ValueLeftOut& value : measured.left_out) {

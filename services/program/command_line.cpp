@@ -11,6 +11,7 @@
 #include <fmt/core.h>
 
 #include "services/nearest_name.hpp"
+#include "services/printable_text.hpp"
 #include "services/program/completion.hpp"
 #include "services/program/man_page.hpp"
 
@@ -209,7 +210,7 @@ Expected<bool> parse_command_line(CLI::App& app, int argc, const char* const* ar
 std::optional<int> read_command_line(CLI::App& app, int argc, const char* const* argv) {
   const auto parsed = parse_command_line(app, argc, argv);
   if (!parsed) {
-    fmt::print(stderr, "{}: {}\n", app.get_name(), parsed.error().message);
+    fmt::print(stderr, "{}: {}\n", app.get_name(), one_line(parsed.error().message));
     return wrong_command_line;
   }
   return *parsed ? std::nullopt : std::optional(0);

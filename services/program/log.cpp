@@ -28,7 +28,7 @@ constexpr const char* pattern = "%Y-%m-%dT%H:%M:%S.%e %n %l: %v";
 class PrintableLines : public spdlog::formatter {
 public:
   void format(const spdlog::details::log_msg& line, spdlog::memory_buf_t& text) override {
-    const std::string shown = printable({line.payload.data(), line.payload.size()});
+    const std::string shown = one_line({line.payload.data(), line.payload.size()});
     spdlog::details::log_msg shown_line = line;
     shown_line.payload = shown;
     pattern_.format(shown_line, text);

@@ -112,7 +112,7 @@ void wait_for_stop(const std::stop_token& stop) {
 int report_error(const Error& error) {
   finish_log();
   const std::string& program = spdlog::default_logger()->name();
-  fmt::print(stderr, "{}: {}\n", program.empty() ? "dyncal" : program, printable(error.message));
+  fmt::print(stderr, "{}: {}\n", program.empty() ? "dyncal" : program, one_line(error.message));
   return error.code == ErrorCode::interrupted    ? interrupted_status
          : error.code == ErrorCode::bad_argument ? 2
                                                  : 1;

@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include "services/contract/unit.hpp"
+#include "services/printable_text.hpp"
 #include "services/report/expanded_uncertainty.hpp"
 #include "services/report/flag_legend.hpp"
 #include "services/report/rounding.hpp"
@@ -46,13 +47,9 @@ Row point_row(const FrequencyPoint& point, const std::vector<Flag>& flags) {
       round_by_uncertainty(point.mean.magnitude, magnitude_uncertainty(point.mean).u);
   const RoundedValue phase =
       round_by_uncertainty(point.mean.phase_rad, phase_uncertainty(point.mean).u);
-  return {point.frequency_text_hz,
-          magnitude.value,
-          magnitude.u,
-          phase.value,
-          phase.u,
-          std::to_string(point.mean.repetitions),
-          flag_names(flags)};
+  return {
+      one_line(point.frequency_text_hz),      magnitude.value,  magnitude.u, phase.value, phase.u,
+      std::to_string(point.mean.repetitions), flag_names(flags)};
 }
 
 // u is that of k = 1: from few repetitions, U needs more than 2 u.
@@ -88,18 +85,18 @@ std::string group_delay_line(const TransferFunction& function) {
   }
   return function.group_delay_problem.empty()
              ? ""
-             : fmt::format("  no group delay: {}\n", function.group_delay_problem);
+             : fmt::format("  no group delay: {}\n", one_line(function.group_delay_problem));
 }
 
 std::string unit_text(const std::string& unit) {
   if (unit.empty()) {
     return ", unit not known: state the units of sensor and reference in the bench file";
   }
-  return unit == R"(\one)" ? "" : ", in " + short_form(unit);
+  return unit == R"(\one)" ? "" : ", in " + one_line(short_form(unit));
 }
 
 std::string channel_table(const RunOutcome& outcome, const TransferFunction& function) {
-  std::string text = fmt::format("\n{}{}\n", function.channel, unit_text(function.unit));
+  std::string text = fmt::format("\n{}{}\n", one_line(function.channel), unit_text(function.unit));
   std::vector<Row> rows{{"f / Hz", "|H|", "u(|H|)", "arg H / rad", "u / rad", "n", "flags"}};
   bool any_flags = false;
   for (const FrequencyPoint& point : function.points) {
@@ -131,7 +128,8 @@ std::string series_clock_line(const RunOutcome& outcome, const ClockReport& repo
   const RoundedValue rate = round_by_uncertainty(clock.mean_rate_hz, u_rate_hz);
   return fmt::format(
       "\nSample rate of {}: {} Hz, u = {} Hz, nominal {:g} Hz; its series start {}\n",
-      report.source, rate.value, rate.u, clock.nominal_rate_hz, fmt::join(starts, " or "));
+      one_line(report.source), rate.value, rate.u, clock.nominal_rate_hz,
+      one_line(fmt::format("{}", fmt::join(starts, " or "))));
 }
 
 std::string clock_line(const ClockReport& report) {
@@ -139,22 +137,23 @@ std::string clock_line(const ClockReport& report) {
   const RoundedValue mean =
       round_by_uncertainty(clock.mean_interval_s * 1e6, clock.u_mean_interval_s * 1e6);
   const std::vector<std::string> flags = sentences_of(report.flags);
-  return fmt::format(
-      "\nSample clock of {}: mean interval {} us, sd {:.1f} ns, spread "
-      "{:.0f} ns, {} intervals, {} events, {} samples lost{}{}\n",
-      report.source,
-      clock.u_mean_interval_s > 0.0 ? fmt::format("{} us, u = {}", mean.value, mean.u)
-                                    : fmt::format("{:.5f}", clock.mean_interval_s * 1e6),
-      clock.sd_s * 1e9, (clock.maximum_s - clock.minimum_s) * 1e9, clock.intervals,
-      clock.event_count, clock.lost, flags.empty() ? "" : "; ", fmt::join(flags, "; "));
+  return fmt::format("\nSample clock of {}: mean interval {} us, sd {:.1f} ns, spread "
+                     "{:.0f} ns, {} intervals, {} events, {} samples lost{}{}\n",
+                     one_line(report.source),
+                     clock.u_mean_interval_s > 0.0
+                         ? fmt::format("{} us, u = {}", mean.value, mean.u)
+                         : fmt::format("{:.5f}", clock.mean_interval_s * 1e6),
+                     clock.sd_s * 1e9, (clock.maximum_s - clock.minimum_s) * 1e9, clock.intervals,
+                     clock.event_count, clock.lost, flags.empty() ? "" : "; ",
+                     one_line(fmt::format("{}", fmt::join(flags, "; "))));
 }
 
 // The steps without a result, each reason once.
 std::vector<std::string> problem_lines(const RunOutcome& outcome) {
   std::vector<std::string> lines;
   for (const StepResult& result : outcome.results) {
-    std::string line =
-        fmt::format("step {}, {} Hz: {}", result.step, result.frequency_text_hz, result.problem);
+    std::string line = one_line(
+        fmt::format("step {}, {} Hz: {}", result.step, result.frequency_text_hz, result.problem));
     if (!result.valid && std::find(lines.begin(), lines.end(), line) == lines.end()) {
       lines.push_back(std::move(line));
     }
@@ -182,7 +181,7 @@ std::string pause_lines(const RunOutcome& outcome) {
   for (const RunPause& pause : outcome.pauses) {
     text += fmt::format("{}  {:.0f} s: {}\n", text.empty() ? "\nPaused:\n" : "",
                         static_cast<double>(pause.ended_utc_ns - pause.began_utc_ns) * 1e-9,
-                        pause.reason);
+                        one_line(pause.reason));
   }
   return text;
 }
@@ -226,7 +225,7 @@ std::string legend(const RunOutcome& outcome) {
   }
   std::string text;
   for (const FlagMeaning& meaning : flag_legend(flags)) {
-    text += (text.empty() ? "\nFlags:\n" : "") + wrapped(legend_line(meaning));
+    text += (text.empty() ? "\nFlags:\n" : "") + wrapped(one_line(legend_line(meaning)));
   }
   if (!text.empty()) {
     text += "  What no flag can tell: what-it-cannot-see.md of the guide\n";
@@ -251,7 +250,7 @@ std::string result_table(const RunOutcome& outcome) {
     if (responds(function)) {
       text += channel_table(outcome, function);
     } else {
-      quiet.push_back(function.channel);
+      quiet.push_back(one_line(function.channel));
     }
   }
   if (!quiet.empty()) {

@@ -9,6 +9,7 @@
 
 #include "services/contract/run_identity.hpp"
 #include "services/output/output_file.hpp"
+#include "services/printable_text.hpp"
 #include "services/report/result_json.hpp"
 #include "services/report/result_table.hpp"
 #include "services/report/run_figures.hpp"
@@ -91,8 +92,8 @@ Expected<void> check_outputs(const std::optional<std::filesystem::path>& json,
 Expected<void> show_outcome(const RunOutcome& outcome,
                             const std::optional<std::filesystem::path>& json,
                             const FigureFiles& figures) {
-  fmt::print("bench {}, run {}{}\n", outcome.bench, RunIdentity::parse(outcome.run).name,
-             result_table(outcome));
+  fmt::print("bench {}, run {}{}\n", one_line(outcome.bench),
+             one_line(RunIdentity::parse(outcome.run).name), result_table(outcome));
   if (json) {
     if (const auto written = write_results(outcome, *json); !written) {
       return fail(written.error());

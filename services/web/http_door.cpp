@@ -30,7 +30,7 @@ constexpr const char* content_policy =
 
 // For a log line: what a visitor wrote, without anything that steers a terminal.
 std::string harmless(std::string_view text) {
-  return printable(text.substr(0, 120));
+  return one_line(text, 120);
 }
 
 // With parameters or without (RFC 9110, 8.3.1).

@@ -30,6 +30,35 @@ TEST(PrintableText, ShowsNothingThatSteersATerminal) {
   EXPECT_EQ(printable("a\xc2\x9bK"), "a?K"); // U+009B is ESC [
 }
 
+TEST(OneLine, LeavesASentenceAsItIs) {
+  const std::string sentence(max_line_bytes, 'x');
+  EXPECT_EQ(one_line(sentence), sentence);
+  EXPECT_EQ(one_line("Brüel & Kjær\n"), "Brüel & Kjær?");
+}
+
+TEST(OneLine, KeepsBeginningAndEndOfATextThatIsTooLong) {
+  const std::string shown = one_line("who: " + std::string(100'000, '\n') + "; end it there");
+  EXPECT_LE(shown.size(), max_line_bytes);
+  EXPECT_EQ(shown.substr(0, 8), "who: ???");
+  EXPECT_EQ(shown.substr(shown.size() - 17), "???; end it there");
+  EXPECT_NE(shown.find(" [...] "), std::string::npos);
+}
+
+TEST(OneLine, CutsNoLetter) {
+  for (const std::string letter : {"ä", "加", "𝜑", "\xff"}) {
+    for (std::size_t ahead = 0; ahead < 4; ++ahead) {
+      std::string text(ahead, 'a');
+      while (text.size() < 5000) {
+        text += letter;
+      }
+      const std::string shown = one_line(text, 64);
+      EXPECT_LE(shown.size(), 64U);
+      EXPECT_GE(shown.size(), 50U);
+      EXPECT_EQ(valid_utf8(shown), shown);
+    }
+  }
+}
+
 TEST(JsonText, WritesTextsThatAreNotUtf8) {
   const nlohmann::ordered_json json{{"city", "M\xfcnchen"}};
   EXPECT_EQ(json_text(json), "{\"city\":\"M\xef\xbf\xbdnchen\"}");

@@ -27,5 +27,11 @@ TEST(HarmlessText, InColumns) {
   EXPECT_EQ(in_columns("abc", 1), ".");
 }
 
+TEST(HarmlessText, OfA100KilobytesIsOneShortLine) {
+  const std::string shown = harmless(std::string(100'000, '\n') + "\x1b[2J");
+  EXPECT_LE(shown.size(), 1000U);
+  EXPECT_EQ(shown.find_first_of("\n\x1b"), std::string::npos);
+}
+
 } // namespace
 } // namespace dyncal::services

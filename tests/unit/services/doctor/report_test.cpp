@@ -1,5 +1,7 @@
 #include "services/doctor/report.hpp"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -29,6 +31,18 @@ TEST(DoctorReport, ShowsWhatWasForgedAsOneHarmlessLine) {
   const Finding forged{Severity::ok, "programs", "a\x1b[2J\nok\xff: dyncal 0.2.0"};
   EXPECT_EQ(as_text({forged}),
             "ok       programs    a?[2J?ok\xef\xbf\xbd: dyncal 0.2.0\nnothing is wrong\n");
+}
+
+TEST(DoctorReport, ShowsATextOf100KilobytesAsOneShortLine) {
+  const Finding forged{Severity::ok, "programs", std::string(100'000, '\n') + "dyncal 0.2.0"};
+  const std::string text = as_text({forged});
+  EXPECT_LT(text.size(), 1100U);
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2);
+  LaboratoryView view;
+  view.programs = {{{std::string(100'000, '\x1b'), std::string(100'000, 'h'), 3, "", ""}, 1, {}}};
+  const auto json = as_json({forged}, view);
+  EXPECT_LT(json.dump().size(), 5000U);
+  EXPECT_EQ(json["findings"][0]["sentence"].get<std::string>().find('\n'), std::string::npos);
 }
 
 TEST(DoctorReport, HasAllOfItAsJson) {

@@ -5,6 +5,7 @@
 #include "services/bus/memory/memory_network.hpp"
 #include "services/contract/topics.hpp"
 #include "services/live/laboratory_readers.hpp"
+#include "services/printable_text.hpp"
 #include "tests/unit/services/live/messages.hpp"
 
 namespace dyncal::services::live {
@@ -334,6 +335,70 @@ TEST_F(LiveLaboratoryTest, HoldsNoMoreOfABenchThanItsLimits) {
   EXPECT_EQ(small.left_out().services, 48U);
   EXPECT_GT(small.left_out().results, 0U);
   EXPECT_EQ(small.left_out().runs, 49U);
+}
+
+// Services have the number of their process in their names: each restart brings a new one.
+TEST_F(LiveLaboratoryTest, LetsServicesAndSourcesThatAreGoneMakeWay) {
+  const Limits limits;
+  const auto service_of = [](const std::string& name) {
+    wire::ServiceStatus service;
+    service.bench("acc-1");
+    service.service(name);
+    return service;
+  };
+  for (std::size_t i = 0; i < limits.sources; ++i) {
+    laboratory_.take(service_of("analysis@lab-1:" + std::to_string(i)));
+    laboratory_.take(status_of("acc-1", "dau-" + std::to_string(i)));
+  }
+  const std::uint64_t first_left_out = limits.sources - limits.services;
+  EXPECT_EQ(laboratory_.left_out().services, first_left_out);
+  pass(59s);
+  laboratory_.take(service_of("early"));
+  laboratory_.take(status_of("acc-1", "early"));
+  EXPECT_FALSE(bench().services.contains("early")) << "none is gone";
+  EXPECT_FALSE(bench().sources.contains("early"));
+  laboratory_.take(service_of("analysis@lab-1:1"));
+  laboratory_.take(status_of("acc-1", "dau-1"));
+  pass(2s);
+  laboratory_.take(service_of("late"));
+  laboratory_.take(status_of("acc-1", "late"));
+  EXPECT_TRUE(bench().services.contains("late"));
+  EXPECT_TRUE(bench().sources.contains("late"));
+  EXPECT_TRUE(bench().services.contains("analysis@lab-1:1")) << "heard 2 s ago";
+  EXPECT_TRUE(bench().sources.contains("dau-1"));
+  EXPECT_EQ(bench().services.size(), limits.services);
+  EXPECT_EQ(bench().sources.size(), limits.sources);
+  EXPECT_EQ(laboratory_.left_out().services, first_left_out + 2);
+  EXPECT_EQ(laboratory_.left_out().sources, 2U);
+}
+
+// Of 100 kB, with lines of its own and what steers a terminal.
+TEST_F(LiveLaboratoryTest, HoldsATextOfOthersAsOneShortLine) {
+  std::string hostile;
+  while (hostile.size() < 100'000) {
+    hostile += "\x1b[2Jdone\r\nerror: \xff";
+  }
+  wire::ServiceStatus guard;
+  guard.bench("acc-1");
+  guard.service("guard");
+  guard.guarded_generator("10.0.0.9:5025");
+  guard.message(hostile);
+  guard.host(hostile);
+  laboratory_.take(guard);
+  auto run = measurement_of("acc-1", "r1", wire::MEASUREMENT_RUNNING);
+  run.message(hostile);
+  laboratory_.take(run);
+  std::vector<std::string> texts{bench().services.at("guard").message,
+                                 bench().services.at("guard").host, bench().runs.at("r1").message};
+  for (const Event& event : bench().events) {
+    texts.push_back(event.text);
+  }
+  EXPECT_GE(texts.size(), 4U);
+  for (const std::string& text : texts) {
+    EXPECT_LE(text.size(), max_line_bytes);
+    EXPECT_EQ(text.find_first_of("\r\n\x1b\xff"), std::string::npos);
+    EXPECT_FALSE(text.empty());
+  }
 }
 
 TEST_F(LiveLaboratoryTest, RefusesNamesThatNoBenchHas) {

@@ -38,6 +38,35 @@ TEST(ResultTable, TellsWhenTwiceUIsNotEnough) {
   EXPECT_THAT(result_table(outcome), HasSubstr("k up to 4.00 (|H|) and 2.00 (arg H)"));
 }
 
+// Of 100 kB each, with lines of its own and what steers a terminal.
+TEST(ResultTable, ShowsTextsOfOthersInItsOwnLinesOnly) {
+  const std::string sound = result_table(example_outcome());
+  std::string hostile;
+  while (hostile.size() < 100'000) {
+    hostile += "\x1b[2J\r\nok";
+  }
+  RunOutcome outcome = example_outcome();
+  for (StepResult& result : outcome.results) {
+    result.problem += hostile;
+    for (Flag& flag : result.flags) {
+      flag.sentence += hostile;
+    }
+  }
+  for (TransferFunction& function : outcome.transfer_functions) {
+    function.unit += hostile;
+  }
+  for (ClockReport& report : outcome.clock_reports) {
+    report.source += hostile;
+  }
+  outcome.bench += hostile;
+  outcome.pauses.push_back({0, 1, hostile});
+  const std::string table = result_table(outcome);
+  EXPECT_LT(table.size(), sound.size() + 10'000);
+  EXPECT_EQ(table.find_first_of("\x1b\r"), std::string::npos);
+  EXPECT_EQ(table.find("\nok"), std::string::npos);
+  EXPECT_THAT(table, HasSubstr("[...]"));
+}
+
 TEST(ResultTable, ShowsSmallMagnitudes) {
   RunOutcome outcome = example_outcome();
   for (FrequencyPoint& point : outcome.transfer_functions.front().points) {
