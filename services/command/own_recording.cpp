@@ -42,14 +42,15 @@ private:
   std::jthread timer_; // its end ends the wait
 };
 
-Expected<RunOutcome> evaluate(const RunOutcome& outcome, const std::filesystem::path& folder,
-                              const std::stop_token& stop) {
+Expected<RecordedRunOutcome> evaluate(const RunOutcome& outcome,
+                                      const std::filesystem::path& folder,
+                                      const std::stop_token& stop) {
   auto opened = open_recording(folder, nullptr, stop);
   if (!opened) {
     return fail(opened.error());
   }
-  return evaluate_recording(opened->reader, {.run = outcome.run, .recipe = {}}, stop)
-      .map([](RecordedRunOutcome evaluated) { return std::move(evaluated.outcome); });
+  return evaluate_recording(opened->reader,
+                            {.run = outcome.run, .recipe = {}, .whole_or_none = true}, stop);
 }
 
 OwnRecordingCheck differing(const OutcomeAgreement& agreement, bool may_lack,
@@ -82,7 +83,7 @@ OwnRecordingCheck check_own_recording(const RunOutcome& outcome,
   const auto limit = limit_of(outcome);
   std::stop_source end;
   const std::stop_callback by_user(stop, [&end] { end.request_stop(); });
-  Expected<RunOutcome> again = [&] {
+  const auto again = [&] {
     const TimeLimit time_limit(end, limit);
     return evaluate(outcome, run_folder, end.get_token());
   }();
@@ -96,7 +97,8 @@ OwnRecordingCheck check_own_recording(const RunOutcome& outcome,
   if (!again) {
     return {not_held(again.error().message)};
   }
-  const OutcomeAgreement agreement = hold_against(outcome, *again);
+  may_lack = may_lack || again->source_restarted;
+  const OutcomeAgreement agreement = hold_against(outcome, again->outcome);
   if (!agreement.difference.empty() || (agreement.missing > 0 && !may_lack)) {
     return differing(agreement, may_lack, run_folder);
   }
@@ -105,8 +107,9 @@ OwnRecordingCheck check_own_recording(const RunOutcome& outcome,
   }
   const double took_s = std::chrono::duration<double>(Clock::now() - began).count();
   const std::string rest =
-      agreement.missing == 0 ? ""
-                             : fmt::format("; it lacks samples of the other {}", agreement.missing);
+      agreement.missing == 0
+          ? ""
+          : fmt::format("; of the other {} it has fewer samples, or none", agreement.missing);
   return {fmt::format("the recording of the run, evaluated once more, gives the same {} values "
                       "({:.1f} s){}",
                       agreement.values - agreement.missing, took_s, rest)};

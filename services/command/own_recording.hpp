@@ -5,9 +5,9 @@
 //
 // Everything of the run is kept and shown before, and its bench is free. It takes at most a tenth
 // of the run's time, or `least_limit`, whichever is longer; then it is given up, which is said. Of
-// a recording that is not whole, or of a run that was resumed, whose program died with what it had
-// not written yet, values may be missing: they are counted, and not taken for differences.
-// Evaluates in threads of its own, and waits for them.
+// a recording that is not whole, of a run that was resumed, whose program died with what it had not
+// written yet, and where a source restarted, values may be missing or of fewer samples: they are
+// counted, and not taken for differences. Evaluates in threads of its own, and waits for them.
 #pragma once
 
 #include <chrono>

@@ -62,13 +62,23 @@ std::string value_difference(const StepResult& published, const StepResult& agai
                                           published.frequency_text_hz, published.step, difference);
 }
 
+bool has_fewer_samples(const StepResult& again, const StepResult& published) {
+  return std::any_of(again.samples.begin(), again.samples.end(), [&](const SourceSamples& source) {
+    return std::any_of(published.samples.begin(), published.samples.end(),
+                       [&](const SourceSamples& one) {
+                         return one.source == source.source && source.used < one.used;
+                       });
+  });
+}
+
 const StepResult* find_same(const std::vector<StepResult>& results, const StepResult& wanted) {
   const auto found = std::find_if(results.begin(), results.end(), [&](const StepResult& one) {
     return one.channel == wanted.channel && one.step == wanted.step &&
            one.repetition == wanted.repetition;
   });
   const bool is_whole = found != results.end() && found->valid &&
-                        found->attempt == wanted.attempt && found->lost <= wanted.lost;
+                        found->attempt == wanted.attempt && found->lost <= wanted.lost &&
+                        !has_fewer_samples(*found, wanted);
   return is_whole ? &*found : nullptr;
 }
 

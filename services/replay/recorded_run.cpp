@@ -364,6 +364,11 @@ Expected<RecordedRunOutcome> evaluate_recording(recording::RecordingReader& read
   }
   RecordedRunOutcome result;
   result.live_results = index->live_results;
+  for (const std::string& name : recipe->sources()) {
+    const auto source = index->sources.find(name);
+    result.source_restarted = result.source_restarted || (source != index->sources.end() &&
+                                                          source->second.sessions.size() > 1);
+  }
   result.outcome = outcome_of(*recipe);
   result.outcome.adc_file = wish.recipe ? std::nullopt : adc_file_of(index->plan);
   result.warnings = warnings_of(*index, *recipe, reader.path());
@@ -390,6 +395,9 @@ Expected<RecordedRunOutcome> evaluate_recording(recording::RecordingReader& read
                    .walked = [&](std::uint64_t /*bytes*/) { return !stop.stop_requested(); }});
   if (!walked && walked.error().code != ErrorCode::interrupted) {
     return fail(walked.error());
+  }
+  if (wish.whole_or_none && stop.stop_requested()) {
+    return fail(ErrorCode::interrupted, "interrupted");
   }
   const bool aborted = stop.stop_requested() || index->newest.state() != wire::MEASUREMENT_DONE;
   if (const auto finished = evaluating.finish(aborted); !finished) {

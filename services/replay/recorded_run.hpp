@@ -29,11 +29,13 @@ struct RecordedRunWish {
   std::string run;              // empty: the one that is there
   std::optional<Recipe> recipe; // another one than the recorded
   SharedWorkCount count{};      // of megabytes read, then of its steps and results
+  bool whole_or_none = false;   // a stop makes it fail (interrupted), not give what there is
 };
 
 struct RecordedRunOutcome {
   RunOutcome outcome;
   std::uint64_t live_results = 0; // that the live analysis gave
+  bool source_restarted = false;  // one of the recipe's, within the recording
   std::vector<std::string> warnings;
 };
 
