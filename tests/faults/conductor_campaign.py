@@ -5,8 +5,8 @@
                           [--seed 1] [--slack-s 0]
 
 PROGRAMS is the folder of the built programs. Bench (instruments, sources, guard), analysis and two
-operators are on a host each, with vendors that are drawn. In each draw `dyncal run --run R1` dies at
-a drawn instant: SIGKILL, SIGHUP, Ctrl-C, or its terminal is closed. Then one of these is drawn:
+operators are on a host each, with vendors that are drawn. In each draw `dyncal run --run R1` dies
+at a drawn instant: SIGKILL, SIGHUP, Ctrl-C, or its terminal is closed. Then one of these is drawn:
 
 - the same command again at once, on the same or the other host; with the same sensor and bench
   file, with another sensor, or with a bench file whose recipe turns the phase by 0.25 rad and more;
@@ -56,6 +56,7 @@ NEXT = (
     "resume, other sensor",
     "resume, other recipe",
 )
+IN_USE = r"in use by run '\w+' of \S+:\d+"
 HAS_ENDED = "has ended at the analysis service"
 NOTHING_THERE = ("nothing was measured", "no analysis service holds run")
 
@@ -286,7 +287,7 @@ def begins(arguments, vendors, count):
             laboratory.operator = OTHER_OPERATOR
             began_s = time.monotonic()
             other = laboratory.conduct("--run", "other", folder="others")
-            if other.wait() == 0 or not re.search(r"in use by run '\w+' of \S+:\d+", other.errors()):
+            if other.wait() == 0 or not re.search(IN_USE, other.errors()):
                 raise Failure(f"not refused: {other.errors()[-300:]}")
             took["refused"].append(time.monotonic() - began_s)
             laboratory.operator = "operator"
