@@ -3,7 +3,8 @@
 //
 //   older_source DDS DOMAIN BENCH SOURCE SECONDS
 //
-// Lives for SECONDS after a reader has it; exit status 0 then.
+// Says "described" on standard error once a reader has it, and lives for SECONDS more.
+#include <cstdio>
 #include <cstdlib>
 #include <thread>
 
@@ -58,6 +59,7 @@ int describe(char** words) {
   if (!writer->wait_for_acknowledgments(10s) || writer->matched_readers() == 0) {
     return 1;
   }
+  std::fputs("described\n", stderr);
   std::this_thread::sleep_for(std::chrono::duration<double>(std::atof(words[5]))); // as long
   return 0;
 }

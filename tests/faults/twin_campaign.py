@@ -20,20 +20,33 @@ import pathlib
 import random
 import shutil
 import signal
+import subprocess
 import sys
 import tempfile
 import time
 
-from bench_laboratory import VENDORS, BenchLaboratory, Failure, free_udp_port
+from bench_laboratory import VENDORS, BenchLaboratory, Failure, free_udp_port, wait_until
 from kill_campaign import expect_off, judge, undisturbed_result
 
 FIRST_STEP_S = 15.0
 NAMES_IT = ("two services", "send as source", "no channel", "describes itself", "goes on")
+SEEN = ("that described itself as this source has gone", "two services")
 OTHER_PRESET = "bma280"
 
 
 class DescribedLaboratory(BenchLaboratory):
     """A live bench that another program takes for its own."""
+
+    def wait_for_source(self):
+        """Others have found it by then; so has the analysis, which is there for longer."""
+        words = [self.programs / "dyncal", "list", "--domain", self.domain, "--seconds", 4]
+        command = [*map(str, words), "--dds", self.vendors["dyncal"]]
+
+        def is_listed():
+            listed = subprocess.run(command, check=True, capture_output=True, text=True)
+            return "source dau  running" in listed.stdout
+
+        wait_until(is_listed, "source dau in `dyncal list`", 60.0)
 
     def start_twin(self, vendor):
         """A second dyncal-dau of the same source, with a unit and a bench file of its own."""
@@ -60,6 +73,7 @@ def other_program(laboratory, kind, chance):
         other = laboratory.start_twin(vendor)
     else:
         other = laboratory.start_older(vendor, 60.0)
+        other.wait_for_text("described")
     time.sleep(lives_s)  # drawn
     if not other.runs():
         raise Failure(f"the other program has failed: {other.errors()[-300:]}")
@@ -101,12 +115,15 @@ def draw(arguments, number, undisturbed):
     folder = pathlib.Path(tempfile.mkdtemp(prefix="dyncal-twin-"))
     try:
         with DescribedLaboratory(arguments.programs, folder, vendors) as laboratory:
+            laboratory.wait_for_source()
             if in_run:
                 disturbed_run(laboratory, kind, chance, undisturbed)
             else:
                 other_program(laboratory, kind, chance)
             time.sleep(pause_s)  # drawn
             first_s = whole_run(laboratory, undisturbed, arguments.slack_s)
+            if not any(one in laboratory.services["dyncal-analysis"].errors() for one in SEEN):
+                raise Failure("the analysis has not seen the other program")
     except Failure as failure:
         print(f"{what}: {failure} (logs in {folder})", flush=True)
         return False
