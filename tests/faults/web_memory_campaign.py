@@ -80,7 +80,8 @@ def play(players, web, port, arguments):
         now = figures(web.process.pid)
         at_first = now.resident_mb if number == first else at_first
         if number % max(1, arguments.runs // 10) == 0:
-            print(f"    {number} runs: {now.resident_mb:.1f} MB, at most {now.peak_mb:.1f}", flush=True)
+            took = f"{now.resident_mb:.1f} MB, at most {now.peak_mb:.1f} MB"
+            print(f"    {number} runs: {took}", flush=True)
         if now.peak_mb > arguments.max_mb:
             raise Failure(f"dyncal-web took {now.peak_mb:.1f} MB at run {number}")
     growth_kb = 1024.0 * (now.resident_mb - at_first) / max(1, arguments.runs - first)
