@@ -108,6 +108,32 @@ TEST(Excitation, ALevelThatIsNotReachedIsTriedAgainAndThenNamed) {
   EXPECT_EQ(bench.ask_generator(":OUTPut1?"), "OFF");
 }
 
+// What the reference shows is not believed where it would drive the exciter ever further.
+class BadReference : public testing::TestWithParam<std::pair<std::string, std::string>> {};
+
+INSTANTIATE_TEST_SUITE_P(
+    Excitation, BadReference,
+    testing::Values(std::pair("hum=0.6,at=reference,frequency=40",
+                              "acs/reference shows .* at this frequency while the output is off"),
+                    std::pair("over-range=12,at=reference",
+                              "acs/reference is at an end of its range")));
+
+TEST_P(BadReference, IsRefusedByName) {
+  const auto& [fault, refusal] = GetParam();
+  const auto folder = fresh_folder("excitation-" + fault.substr(0, fault.find('=')));
+  LiveBenchSettings settings = settings_with("level_per_volt = 50.0\nlevel_tolerance_rel = 0.05\n");
+  settings.bench_arguments.insert(settings.bench_arguments.end(), {"--fault", fault});
+  settings.excitation = "frequencies_hz = [\"40\"]\nlevel = 20.0\nsettling_s = 0.4\n"
+                        "duration_s = 1.5\nattempts = 2\n";
+  LiveBench bench(folder, settings);
+  ProgramRun& run = bench.start({"run", bench.bench_file()});
+  EXPECT_EQ(run.wait(patience).value_or(0), 1);
+  EXPECT_THAT(run.errors(), testing::ContainsRegex("step 1, 40 Hz: " + refusal));
+  EXPECT_EQ(bench.ask_generator(":OUTPut1?"), "OFF");
+  const double amplitude_v = 0.5 * std::stod(bench.ask_generator(":SOURce1:VOLTage?"));
+  EXPECT_LE(amplitude_v, 1.5 * 20.0 / 50.0);
+}
+
 // Without a level tolerance and without any limit in the bench file.
 TEST(Excitation, AnAmplifierThatIsTurnedUpStopsTheRunWithinTheFirstStep) {
   const auto folder = fresh_folder("excitation-turned-up");
