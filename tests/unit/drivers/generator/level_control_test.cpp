@@ -104,13 +104,12 @@ TEST(LevelControl, AReferenceThatEndsAtItsRangeNeverDrivesFarBeyondTheHighestLev
     const double gain = 50.0 * factor(random);
     const double range = 50.0 * end(random);
     double largest_v = 0.0;
-    const auto outcome = control(
-        {.level_m_s2 = 50.0, .tolerance_rel = 0.01, .level_per_volt = 50.0},
-        {.maximum_level_m_s2 = 120.0, .plausible_voltage_v = 3.6},
-        [&](double v) {
-          largest_v = std::max(largest_v, v);
-          return std::min(gain * v, range);
-        });
+    const auto outcome =
+        control({.level_m_s2 = 50.0, .tolerance_rel = 0.01, .level_per_volt = 50.0},
+                {.maximum_level_m_s2 = 120.0, .plausible_voltage_v = 3.6}, [&](double v) {
+                  largest_v = std::max(largest_v, v);
+                  return std::min(gain * v, range);
+                });
     refused += outcome.done ? 0 : 1;
     EXPECT_LE(largest_v, 1.5 * 120.0 / 50.0);
   }
@@ -122,20 +121,19 @@ TEST(LevelControl, AnExciterOfAnotherGainThanStatedReachesItsLevel) {
   std::uniform_real_distribution<double> factor(0.7, 2.3);
   for (int draw = 0; draw < 200; ++draw) {
     const double gain = 50.0 * factor(random);
-    const auto outcome = control(
-        {.level_m_s2 = 50.0, .tolerance_rel = 0.01, .level_per_volt = 50.0},
-        {.maximum_level_m_s2 = 60.0, .plausible_voltage_v = 1.8},
-        [&](double v) { return gain * v; });
+    const auto outcome =
+        control({.level_m_s2 = 50.0, .tolerance_rel = 0.01, .level_per_volt = 50.0},
+                {.maximum_level_m_s2 = 60.0, .plausible_voltage_v = 1.8},
+                [&](double v) { return gain * v; });
     ASSERT_TRUE(outcome.done) << outcome.done.error().message;
     EXPECT_NEAR(gain * outcome.voltage_v, 50.0, 0.5);
   }
 }
 
 TEST(LevelControl, AnExciterFarLazierThanStatedIsRefusedByTheKeyThatSaysSo) {
-  const auto outcome =
-      control({.level_m_s2 = 50.0, .level_per_volt = 50.0},
-              {.maximum_level_m_s2 = 60.0, .plausible_voltage_v = 1.8},
-              [](double v) { return 15.0 * v; });
+  const auto outcome = control({.level_m_s2 = 50.0, .level_per_volt = 50.0},
+                               {.maximum_level_m_s2 = 60.0, .plausible_voltage_v = 1.8},
+                               [](double v) { return 15.0 * v; });
   ASSERT_FALSE(outcome.done);
   EXPECT_THAT(outcome.done.error().message, HasSubstr("is generator.level_per_volt right"));
   EXPECT_LE(outcome.voltage_v, 1.8);
