@@ -1,5 +1,10 @@
 #include "services/evaluation/method/series_time_stamping.hpp"
 
+#include <algorithm>
+#include <string>
+
+#include <fmt/core.h>
+
 #include "services/evaluation/method/series_clock.hpp"
 #include "services/evaluation/method/series_step_evaluation.hpp"
 #include "services/evaluation/method/step_results.hpp"
@@ -11,6 +16,38 @@ namespace {
 StepAttempt attempt_at(std::size_t step, const RunRecords& records) {
   const StepOrder& order = records.excitation().order();
   return {order.step(step).step, order.attempt(step)};
+}
+
+bool has_shots_that_disagree(const StepResult& result) {
+  return std::any_of(result.flags.begin(), result.flags.end(),
+                     [](const Flag& flag) { return flag.kind == ResultFlag::shots_disagree; });
+}
+
+// What changes within the series of most steps, as the sensor's clock does, changes in all of them,
+// also where the noise or a low frequency hides it. Chance shows it in one step of 10 000.
+bool add_disagreement_of_most(std::span<StepResult> results) {
+  struct Count {
+    std::size_t steps = 0, disagree = 0;
+  };
+  std::map<std::string, Count> of_channel;
+  for (const StepResult& result : results) {
+    Count& count = of_channel[result.channel];
+    count.steps += result.valid ? 1 : 0;
+    count.disagree += result.valid && has_shots_that_disagree(result) ? 1 : 0;
+  }
+  bool added = false;
+  for (StepResult& result : results) {
+    const Count& count = of_channel[result.channel];
+    if (result.valid && !has_shots_that_disagree(result) && 2 * count.disagree > count.steps) {
+      result.flags.push_back(
+          {ResultFlag::shots_disagree,
+           fmt::format("{}: {}: they do in {} of {} steps, and here it is hidden in their noise",
+                       result.channel, to_string(ResultFlag::shots_disagree), count.disagree,
+                       count.steps)});
+      added = true;
+    }
+  }
+  return added;
 }
 
 } // namespace
@@ -67,8 +104,9 @@ std::vector<StepResult> SeriesTimeStamping::evaluate(std::size_t step, const Run
 }
 
 bool SeriesTimeStamping::settle(std::span<StepResult> results) const {
+  const bool disagree = add_disagreement_of_most(results);
   if (start_ == analysis::StartKind::uniform) {
-    return false; // its scatter is known, and in u
+    return disagree; // its scatter is known, and in u
   }
   std::vector<analysis::StartEvidence> steps;
   for (const auto& [place, evidence] : starts_) {
@@ -76,7 +114,7 @@ bool SeriesTimeStamping::settle(std::span<StepResult> results) const {
   }
   const auto shared = analysis::shared_start_scatter(steps);
   if (!shared) {
-    return false;
+    return disagree;
   }
   for (StepResult& result : results) {
     add_shared_start(*shared, result);

@@ -32,7 +32,7 @@ public:
   [[nodiscard]] Evaluation evaluation(std::size_t step, const RunRecords& records) override;
   [[nodiscard]] bool can_run_ahead() const override { return false; } // rates, kind of start
   // By how much the start may scatter, as all steps together tell, is in u of each; with a flag
-  // where they show that it does.
+  // where they show that it does. What changes within the series of most steps is flagged in all.
   [[nodiscard]] bool settle(std::span<StepResult> results) const override;
   [[nodiscard]] std::vector<ClockReport> clock_reports() const override;
 
