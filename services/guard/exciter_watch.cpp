@@ -162,7 +162,9 @@ void ExciterWatch::answered(const Expected<OutputReading>& answer, Instant now) 
   if (!answer) {
     ++failures_;
     answers_in_run_ = answers_in_run_ && state_ != State::driven;
-    if (state_ == State::silent && failures_ >= failures_of_silence) {
+    const bool may_drive =
+        state_ == State::silent || (state_ == State::begins && run_.is_conducted);
+    if (may_drive && failures_ >= failures_of_silence) {
       may_be_on_ = answer.error().message;
     }
     return;

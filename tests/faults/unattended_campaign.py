@@ -13,7 +13,7 @@ TCP, or with the very ON of the step, before or after the guard has heard of it.
 half of the draws, at any time around that, and is back after up to 10 s. The generator is sound,
 ignores OFF, answers late, or falls mute. Held: from the moment when nobody attends and the guard is
 there, the output is off after 2.1 s where the guard heard the run, 3.5 s where it has to ask (and
-what a late generator takes to answer), and stays off for --watch-s; or MAY BE ON is said of a
+what a late or mute generator is waited for), and stays off for --watch-s; or MAY BE ON is said of a
 generator that ignores OFF or is mute.
 
 Held packets: the path fails with ON in flight, and is back after 5 or 18 s. That ON never arrives.
@@ -51,6 +51,8 @@ from guarded_laboratory import GuardedLaboratory, SchedulingDelay
 HEARD_S = 2.1  # idl/README.md, deploy/README.md
 ASKED_S = 3.5
 QUESTIONS = 3  # of a guard, each of which a late generator answers late
+UNANSWERED_S = 4.0  # two questions, before a guard says that a mute generator may be on
+HEARD = "watching over run"
 WITHIN_S = 4.0
 LOOK_S = 0.05
 MAY_BE_ON = "MAY BE ON"
@@ -190,7 +192,7 @@ def unattended(arguments, number):
             wait_until(laboratory.output_is_on, "the output to be on")
             began_s = time.monotonic()
             if drawn["death"] not in WITH_ON:
-                guard.wait_for_text("watching over run", 10.0)
+                guard.wait_for_text(HEARD, 10.0)
                 began_s = time.monotonic()
             events = [
                 (drawn["dies_s"], lambda: die(laboratory, run, drawn["death"])),
@@ -216,8 +218,10 @@ def unattended(arguments, number):
                 if not has_own_guard:  # a process beside the conductor's, on a sound path
                     since_s = max(since_s, time.monotonic())
                     row.kind, limit_s = "asked", ASKED_S
-            if fault == "late" and row.kind == "asked":
-                limit_s += QUESTIONS * LATE_S
+            if drawn["death"] == "with-on" and HEARD not in laboratory.guard_words():
+                row.kind, limit_s = "asked", ASKED_S  # its word was still on its way
+            if row.kind == "asked":
+                limit_s += {"late": QUESTIONS * LATE_S, "mute": UNANSWERED_S}.get(fault, 0.0)
             row.took_s = output.expect_off(limit_s, since_s, arguments.watch_s, delay)
             row.figures = off_after(row.took_s)
             own = re.findall(r"for ([\d.]+) s while its exciter was", words())

@@ -308,6 +308,23 @@ TEST_F(ExciterWatchTest, SwitchesOffWhatARunSwitchesOnWithoutBeingHeard) {
   }
 }
 
+TEST_F(ExciterWatchTest, SaysThatARunMayHaveBegunWhoseGeneratorDoesNotAnswer) {
+  watch_.heard_run("r1", RunPhase::running, now_);
+  answers_ = false;
+  pass(2500ms);
+  EXPECT_EQ(watch_.may_be_on(), "");
+  pass(1100ms);
+  EXPECT_EQ(watch_.may_be_on(), "no answer");
+  EXPECT_EQ(attempts_, 0) << "it may be a person's";
+  answers_ = true;
+  pass(1100ms);
+  EXPECT_EQ(watch_.may_be_on(), "");
+  watch_.heard_run("r1", RunPhase::over, now_);
+  answers_ = false;
+  pass(10s);
+  EXPECT_EQ(watch_.may_be_on(), "");
+}
+
 TEST_F(ExciterWatchTest, LeavesWhatIsPlannedToAPersonOnceTheRunIsOver) {
   watch_.heard_run("r1", RunPhase::running, now_);
   drive();
