@@ -126,9 +126,12 @@ void ExciterGuard::take_messages() {
       watched_run_ = name;
       spdlog::info("bench {}: watching over run {}", exciter_.bench, name);
     }
-    watch_.heard(
-        {.run = name, .is_driven = is_driven(excitation), .settings = settings_of(excitation)},
-        clock_.now());
+    const bool is_broken_off = excitation.state() == wire::EXCITATION_ABORTED;
+    watch_.heard({.run = name,
+                  .is_driven = is_driven(excitation),
+                  .settings = settings_of(excitation),
+                  .is_in_hand = !is_driven(excitation) || !is_broken_off},
+                 clock_.now());
   });
   endpoints_.measurement.take([&](const wire::Measurement& measurement) {
     if (measurement.bench().to_string() == exciter_.bench) {

@@ -82,6 +82,9 @@ void ExciterWatch::heard(const ExciterAnnouncement& announcement, Instant now) {
   if (!announcement.is_driven && !is_of_driver) {
     return; // the last word of a run before
   }
+  if (!announcement.is_in_hand && is_of_driver && state_ != State::begins) {
+    return; // that it has lost hold of the generator is no sign that somebody attends
+  }
   answers_in_run_ = answers_in_run_ || !is_of_driver;
   if (!is_of_driver || state_ == State::begins) {
     run_ = {announcement.run, false, {}, is_of_driver && run_.is_conducted};

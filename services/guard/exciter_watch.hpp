@@ -53,6 +53,8 @@ struct ExciterAnnouncement {
   std::string run;
   bool is_driven = false;
   OutputSettings settings; // without a voltage where a closed loop finds it
+  // False: the step was broken off, and the conductor does not know whether the output is off.
+  bool is_in_hand = true;
 };
 
 enum class RunPhase { planned, running, over };

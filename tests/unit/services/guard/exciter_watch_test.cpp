@@ -92,6 +92,21 @@ TEST_F(ExciterWatchTest, AsksEverySecondWhileItIsDriven) {
   EXPECT_TRUE(is_on_);
 }
 
+TEST_F(ExciterWatchTest, TakesAConductorThatHasLostHoldOfItsGeneratorForNoneWhoAttends) {
+  drive();
+  pass(1500ms);
+  watch_.heard({"r1", true, of_step, false}, now_);
+  pass(600ms);
+  EXPECT_FALSE(is_on_);
+  watch_.heard({"r1", true, of_step, false}, now_); // once more, for a late joiner
+  EXPECT_EQ(watch_.state(), State::silent);
+  restart();
+  is_on_ = true;
+  watch_.heard({"r1", true, of_step, false}, now_); // the first word that this guard hears
+  pass(2100ms);
+  EXPECT_FALSE(is_on_);
+}
+
 TEST_F(ExciterWatchTest, SwitchesOffWhatAnUnheardConductorSwitchesOnAgain) {
   drive();
   pass(2s);
