@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "analysis/sine/kernel/sine_kernel.hpp"
 #include "analysis/sine/sine_solve.hpp"
@@ -91,6 +92,26 @@ private:
   std::vector<std::vector<PhasorBlock>> result_;
 };
 
+// A phasor that rises by P' a second in a block of whole periods is fitted as
+//
+//   P + conj(P') e^{-2 i w t} / (2 i w)     t: the end of the block after the phase origin
+//
+// P' is half the difference of the neighbours.
+void take_slopes_out(const Frequency& frequency, std::int64_t first_ns, double block_ns,
+                     std::vector<PhasorBlock>& blocks) {
+  const std::vector<PhasorBlock> fitted = blocks;
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    const PhasorBlock& before = fitted[k > 0 ? k - 1 : 0];
+    const PhasorBlock& behind = fitted[std::min(k + 1, fitted.size() - 1)];
+    const std::complex<double> slope =
+        (behind.phasor - before.phasor) / (behind.centre_s - before.centre_s);
+    const auto end_ns = first_ns + std::llround(fitted[k].centre_s * 1e9 + 0.5 * block_ns);
+    const double turns = frequency.reduced_turns(end_ns);
+    blocks[k].phasor -= std::conj(slope) * std::polar(1.0, -4.0 * std::numbers::pi * turns) /
+                        std::complex<double>(0.0, 2.0 * frequency.angular());
+  }
+}
+
 } // namespace
 
 BlockDivision divide_into_blocks(const Frequency& frequency,
@@ -138,7 +159,14 @@ std::vector<std::vector<PhasorBlock>> phasors_in_blocks(const Frequency& frequen
                      (k - 0.5) * division.block_ns * 1e-9);
     first = last;
   }
-  return static_cast<double>(blocks.count()) < min_blocks ? none : blocks.take();
+  if (static_cast<double>(blocks.count()) < min_blocks) {
+    return none;
+  }
+  auto result = blocks.take();
+  for (std::vector<PhasorBlock>& channel : result) {
+    take_slopes_out(frequency, stamps_ns.front() - phase_origin_ns, division.block_ns, channel);
+  }
+  return result;
 }
 
 } // namespace dyncal::analysis

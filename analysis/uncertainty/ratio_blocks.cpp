@@ -19,6 +19,10 @@ constexpr double significant_gain = 29.5;
 // A split that leaves most of the scatter where it was describes something else: hum that beats, a
 // knock.
 constexpr double min_explained = 0.4;
+// Group delays of a sensor that are tried: what the exciter does, it shows as much later.
+constexpr double longest_delay_s = 0.05;
+constexpr int delays = 8;
+constexpr double likely = 0.01; // of the largest weight
 
 // d_k for one offset.
 struct Difference {
@@ -62,12 +66,15 @@ public:
     const double lowest = std::ceil((-alignment.reach_s - alignment.offset_s) / alignment.period_s);
     const double highest =
         std::floor((alignment.reach_s - alignment.offset_s) / alignment.period_s);
+    const double longest_s = std::min(longest_delay_s, alignment.period_s);
     for (double n = lowest; n <= highest; n += 1.0) {
       const double offset_s = alignment.offset_s + n * alignment.period_s;
-      Difference difference = at(offset_s);
-      if (difference.values.size() >= min_blocks) {
-        difference.weight = std::max(1e-3, 1.0 - std::abs(offset_s) / alignment.reach_s);
-        all.push_back(std::move(difference));
+      for (int part = 0; part < delays; ++part) {
+        Difference difference = at(offset_s - longest_s * part / delays);
+        if (difference.values.size() >= min_blocks) {
+          difference.weight = std::max(1e-3, 1.0 - std::abs(offset_s) / alignment.reach_s);
+          all.push_back(std::move(difference));
+        }
       }
     }
     const double margin_s = 0.5 * spacing_s(denominator_);
@@ -251,6 +258,12 @@ std::optional<RatioInBlocks> compare_in_blocks(BlockSeries numerator, BlockSerie
   if (wanders) {
     add_correction(all, numerator.shortening - denominator.shortening, result);
     result.change = comparison.change_in(*best);
+    const bool by_offset = std::any_of(all.begin(), all.end(), [&](const Difference& one) {
+      return one.weight > likely && !comparison.change_in(one);
+    });
+    if (by_offset) { // nothing has changed there
+      result.change.reset();
+    }
   }
   return result;
 }

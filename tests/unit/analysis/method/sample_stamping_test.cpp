@@ -235,9 +235,25 @@ TEST(SampleStamping, HarmonicsThatAreFoundCostNoUncertainty) {
   EXPECT_NEAR(b->points[0].magnitude, a->points[0].magnitude, a->points[0].u_magnitude);
 }
 
+// The sensor shows the rise 8.1 ms after the reference: no change of the sensor, and no error.
 TEST(SampleStamping, StaysHonestWhileTheExciterStillSettles) {
-  // Of the scatter of a few blocks, u has few degrees of freedom.
-  expect_within(5.0, {.dut_noise = 1e-3, .settling_rel = 0.003});
+  for (const double settling_rel : {0.003, 0.03}) {
+    const Bench bench{.dut_noise = 1e-3, .settling_rel = settling_rel};
+    expect_within(4.5, bench); // once in 10^5 claims
+    int covered = 0;
+    constexpr int runs = 100;
+    for (unsigned seed = 101; seed <= 100 + runs; ++seed) {
+      const auto result = evaluate_sample_stamping(input_for(simulate(bench, seed), bench));
+      ASSERT_TRUE(result.has_value());
+      const TransferPoint& point = result->points.front();
+      covered += std::abs(point.magnitude - bench.magnitude) <= 2.0 * point.u_magnitude ? 1 : 0;
+      covered +=
+          std::abs(wrap_phase(point.phase_rad - true_phase(bench))) <= 2.0 * point.u_phase_rad ? 1
+                                                                                               : 0;
+      EXPECT_FALSE(result->findings.points.front().change) << settling_rel << " " << seed;
+    }
+    EXPECT_GE(covered, 0.9545 * 2 * runs - 3.0 * std::sqrt(0.0455 * 0.9545 * 2 * runs));
+  }
 }
 
 TEST(SampleStamping, AChannelThatIsNotExcitedHasNoPhaseAndNoFalseMagnitude) {
