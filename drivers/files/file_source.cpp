@@ -107,7 +107,15 @@ Expected<SourceDescription> FileSource::describe() {
                 settings_.path.string() + ": no samples below the names of the columns");
   }
   first_ = std::move(*first);
-  return reader_->description();
+  return description();
+}
+
+SourceDescription FileSource::description() const {
+  SourceDescription description = reader_->description();
+  if (settings_.u_stamp_s > 0.0) {
+    description.stamp_uncertainty_s = settings_.u_stamp_s;
+  }
+  return description;
 }
 
 std::size_t FileSource::block_samples() const {
@@ -135,7 +143,7 @@ Expected<void> FileSource::run(SampleSink& sink) {
   const auto started = std::chrono::steady_clock::now();
   const std::size_t samples = block_samples();
   sink.begin_session();
-  sink.describe(reader_->description());
+  sink.describe(description());
   SampleCounts counts;
   std::optional<std::uint64_t> next_sample;
   SampleBlock block = first_;

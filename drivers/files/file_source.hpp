@@ -31,7 +31,8 @@ struct FileSettings {
   std::map<std::string, std::string> channels; // name in the file -> name of the channel
   std::map<std::string, std::string> units;    // name of the channel -> D-SI
   TimeBase time_base = TimeBase::utc;
-  std::string group{}; // the sensor's in an HDF5 file with several; "": the only one
+  std::string group{};    // the sensor's in an HDF5 file with several; "": the only one
+  double u_stamp_s = 0.0; // standard uncertainty of the stamps in their time base; 0: not known
 };
 
 // Reads one format; FileSource does the pacing.
@@ -58,6 +59,7 @@ public:
 
 private:
   [[nodiscard]] std::size_t block_samples() const;
+  [[nodiscard]] SourceDescription description() const; // REQUIRES: describe()
   // Returns false if a stop was requested.
   [[nodiscard]] bool wait_for_due_time(const SampleBlock& block,
                                        std::chrono::steady_clock::time_point started) const;

@@ -54,6 +54,7 @@ Expected<std::unique_ptr<drivers::SampleSource>> make_driver(const SourceSetting
   file.units = settings.units;
   file.time_base = settings.time_base;
   file.group = played.group;
+  file.u_stamp_s = played.u_stamp_s;
   if (played.sample_rate_hz) {
     file.sample_rate = drivers::sample_rate_from_hz(*played.sample_rate_hz);
     if (!file.sample_rate) {

@@ -34,6 +34,10 @@ FileSourceSettings read_file_source(TomlTable& table, NamedFiles& files) {
     table.refuse("sample_rate_hz", "must be positive, in Hz");
   }
   file.group = table.text("group", "");
+  file.u_stamp_s = table.number("u_stamp_s", 0.0, "seconds");
+  if (!(file.u_stamp_s >= 0.0 && file.u_stamp_s <= 1.0)) {
+    table.refuse("u_stamp_s", "must be from 0 to 1, in seconds");
+  }
   return file;
 }
 

@@ -4,6 +4,7 @@
 //   play = "at-once"         or "real-time", or a factor: 10.0 is ten times faster than real time
 //   sample_rate_hz = 20000   where the file has no time column
 //   group = "0x1fe40000_MPU_9250"   the sensor of an HDF5 file that has several
+//   u_stamp_s = 1e-7         standard uncertainty of its stamps, of UTC or of the clock they share
 #pragma once
 
 #include <filesystem>

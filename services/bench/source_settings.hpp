@@ -31,6 +31,7 @@ struct FileSourceSettings {               // driver = "file"
   double play_speed = 0.0;                // times real time; 0: at once
   std::optional<double> sample_rate_hz{}; // of a file without a time column
   std::string group{};                    // the sensor's in an HDF5 file with several
+  double u_stamp_s = 0.0;                 // of its stamps in their time base; 0: not stated
 };
 
 // Where the time of a sample on CAN comes from; drivers/can/stream_settings.hpp explains them.

@@ -23,6 +23,8 @@ class BenchSettings:
     sensor_rate_hz: float = 1003.05
     sensor_rate_scatter_rel: float = 2e-4  # from calibration to calibration
     regular_stamps: bool = False  # exact ones, as a program writes that knows only the rate
+    own_clock: bool = False  # the sensor stamps by itself, beside the DAU that records sync
+    u_stamp_s: float = 0.0  # of the sensor's clock, stated and drawn for each step; 0: not stated
 
     generator_error_rel: float = 1e-6  # half width of a rectangle
     acs_rate_error_rel: float = 5e-7

@@ -35,6 +35,9 @@ STANDARD_GRAVITY = 9.80665
 RAMP_S = 0.02
 FAULT_SEED = 77
 ACS_SEED = 78
+CLOCK_SEED = 79
+SYNC_RATE_HZ = 2000.0
+U_CLOCK_OF_SYNC_S = 1e-9  # stated of the clocks that the sensor's is compared with
 
 
 @dataclasses.dataclass
@@ -98,6 +101,7 @@ class Calibration:
             text: settings.u_acs_delay_s * of_acs.standard_normal()
             for text in settings.frequencies
         }
+        self.clock_rng = np.random.default_rng([CLOCK_SEED, *np.atleast_1d(seed)])
         self.steps = self._plan()
         self.end_s = self.steps[-1].end_s + settings.pause_s
         self.lost = collections.Counter()
@@ -271,10 +275,30 @@ class Calibration:
         intervals_s += mean_s - np.mean(intervals_s)
         return np.cumsum(intervals_s)
 
-    def _write_dau(self, folder):
+    def _clock_offset_ns(self, times_s):
+        """Of the clock that stamps the sensor; one for each step where it counts."""
+        if not self.settings.u_stamp_s:
+            return 150.0 * self.rng.standard_normal()
+        half_pause_s = 0.5 * self.settings.pause_s
+        borders_s = [step.end_s + half_pause_s for step in self.steps[:-1]]
+        of_steps = 1e9 * self.settings.u_stamp_s * self.clock_rng.standard_normal(len(self.steps))
+        return of_steps[np.searchsorted(borders_s, times_s)]
+
+    def _write_sync_alone(self, folder):
+        """The DAU of a sensor that stamps by itself: on the same time scale, at another rate."""
+        times_s = np.arange(0.0, self.end_s, 1.0 / SYNC_RATE_HZ)
+        sync = ADC_GAIN * self._sync(times_s, 5.0, ADC_DELAY_S)
+        columns = {
+            "t_ns": np.round(times_s * 1e9).astype(np.int64) + DAU_EPOCH_NS,
+            "sync": disturbances.resolved(sync, ADC_GAIN * ADC_STEP_V),
+        }
+        bench_files.write_record(folder / "dau.npy", columns)
+
+    def _write_sensor(self, folder):
+        """With sync, or where the sensor stamps by itself without it."""
         s = self.settings
         times_s = self._sensor_instants()
-        offset_ns = 150.0 * self.rng.standard_normal()
+        offset_ns = self._clock_offset_ns(times_s)
         captured_ns = times_s * 1e9 + offset_ns + 10.0 * self.rng.standard_normal(times_s.size)
         if s.regular_stamps:
             captured_ns, tick_ns = times_s * 1e9, 1.0
@@ -282,7 +306,7 @@ class Calibration:
             tick_ns = DAU_TICK_NS
         ticks_ns = np.round(np.round(captured_ns / tick_ns) * tick_ns).astype(np.int64)
         columns = {"t_ns": ticks_ns + DAU_EPOCH_NS, "dos": self._sensor(times_s)}
-        if s.method == "sample-timestamping":
+        if s.method == "sample-timestamping" and not s.own_clock:
             sync = ADC_GAIN * self._sync(times_s, 5.0, ADC_DELAY_S)
             columns["sync"] = disturbances.resolved(sync, ADC_GAIN * ADC_STEP_V)
         if s.records_sample_numbers:
@@ -295,7 +319,8 @@ class Calibration:
             faults = s.disordered_stamps * len(self.steps)
             columns["t_ns"] = disturbances.disordered_stamps(columns["t_ns"], faults, self.rng)
         columns = self.fault.dau_record(times_s[kept], columns)
-        bench_files.write_record(folder / "dau.npy", columns)
+        name = "sensor.npy" if s.own_clock else "dau.npy"
+        bench_files.write_record(folder / name, columns)
 
     def _count_lost(self, times_s, arrives):
         for step in self.steps:
@@ -370,6 +395,8 @@ class Calibration:
         acs = {"driver": "file", "path": "acs.npy", "units": {"ref": metres, "sync": "V"}}
         dau = {"driver": "file", "path": "dau.npy", "time_base": "utc"}
         dau["units"] = {"dos": metres, "sync": "V"}
+        if s.u_stamp_s:
+            dau["u_stamp_s"] = s.u_stamp_s
         method = {"kind": s.method, "reference": "acs/ref"}
         sources = {"sources.acs": acs}
         if s.method == "analogue":
@@ -378,12 +405,20 @@ class Calibration:
         elif s.method == "absolute-time":
             acs["units"] = {"ref": metres}
             acs["time_base"] = "utc"
+            if s.u_stamp_s:
+                acs["u_stamp_s"] = U_CLOCK_OF_SYNC_S
             dau["units"] = {"dos": metres}
             sources["sources.dau"] = dau
             method["dut"] = ["dau/dos"]
         elif s.method == "sample-timestamping":
             sources["sources.dau"] = dau
             method.update(sync_dau="dau/sync", dut=["dau/dos"])
+            if s.own_clock:
+                sources["sources.sensor"] = {**dau, "path": "sensor.npy", "units": {"dos": metres}}
+                sources["sources.dau"] = {**dau, "units": {"sync": "V"}}
+                if s.u_stamp_s:
+                    sources["sources.dau"]["u_stamp_s"] = U_CLOCK_OF_SYNC_S
+                method["dut"] = ["sensor/dos"]
         else:
             dso = {"driver": "oscilloscope", "path": "dso", "channels": {"CH1": "sync"}}
             sources["sources.dso"] = dso
@@ -433,7 +468,9 @@ class Calibration:
         """Writes everything; returns the truth. The same seed writes the same bytes."""
         self._write_acs(folder)
         if self.settings.method in ("sample-timestamping", "absolute-time"):
-            self._write_dau(folder)
+            self._write_sensor(folder)
+            if self.settings.own_clock:
+                self._write_sync_alone(folder)
         elif self.settings.method == "series-timestamping":
             self._write_shots(folder)
         self._write_bench_file(folder)

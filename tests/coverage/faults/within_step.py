@@ -12,7 +12,7 @@ import numpy as np
 from class_presets import LITTLE_NOISE, LOW_FREQUENCIES, bench
 from expected_row import VALUE, Row
 from faults.fault import Fault
-from judgement import COVERED, COVERED_OR_FLAGGED, FLAGGED
+from judgement import COVERED, COVERED_NO_FLAG, COVERED_OR_FLAGGED, FLAGGED
 
 KNOCK_S = 0.01
 SLEW_S = 0.5
@@ -69,11 +69,12 @@ class Changing(Fault):
 
 
 class SlewingClock(Fault):
-    """The DAU's clock is brought to another time within half a second of every step."""
+    """The sensor's clock is brought to another time within half a second of every step. Where it
+    returns it is right again before the next step: else it is off by more than is stated of it."""
 
-    def __init__(self, calibration, rng, by_s):
+    def __init__(self, calibration, rng, by_s, returns=False):
         super().__init__(calibration, rng)
-        self.by_s = by_s
+        self.by_s, self.returns = by_s, returns
         self.at = rng.uniform(0.3, 0.5)
 
     def dau_record(self, times_s, columns):
@@ -82,6 +83,8 @@ class SlewingClock(Fault):
             begin_s, end_s = step.evaluated_s(self.settings)
             since_s = times_s - (begin_s + self.at * (end_s - begin_s))
             late_s += self.by_s * np.clip(since_s / SLEW_S, 0.0, 1.0)
+            if self.returns:
+                late_s -= self.by_s * (times_s > step.end_s)
         stamps_ns = columns["t_ns"] + np.round(1e9 * late_s).astype(np.int64)
         return {**columns, "t_ns": stamps_ns}
 
@@ -200,21 +203,29 @@ TWO_KNOCKS = {
     for where in ("sensor", "reference")
     for size in (0.02, 0.5, 50.0)
 }
-# The same of other methods; in the classes above the sensor's clock is another one.
+# The same of other methods; in the classes above the DAU's clock stamps sync and the sensor. Where
+# the sensor's clock counts, its uncertainty is stated: else every result has a flag for that alone.
+METHODS = {
+    "analogue": {"method": "analogue"},
+    "absolute-time": {"method": "absolute-time", "u_stamp_s": 2e-7},
+    "own clock": {"own_clock": True, "u_stamp_s": 2e-7},
+}
+KNOCK = {"size_rel": 0.5, "where": "sensor"}
 OF_METHODS = {
-    f"{method}: {name}": (kind, {**QUIET, "method": method}, options)
-    for method in ("analogue", "absolute-time")
-    for name, kind, options in (
-        ("gain changes by 0.005 %", Changing, {"gain_rel": 5e-5}),
-        ("gain changes by 2 %", Changing, {"gain_rel": 0.02}),
-        ("sensor 1 ms later", Changing, {"late_s": 1e-3}),
-        ("knocked twice by 0.5 amplitudes", TwoKnocks, {"size_rel": 0.5, "where": "sensor"}),
+    f"{method}: {name}": (kind, {**QUIET, **settings}, options, wanted)
+    for method, settings in METHODS.items()
+    for name, kind, options, wanted in (
+        ("nothing happens", Fault, {}, COVERED_NO_FLAG),
+        ("gain changes by 0.005 %", Changing, {"gain_rel": 5e-5}, COVERED_OR_FLAGGED),
+        ("gain changes by 2 %", Changing, {"gain_rel": 0.02}, FLAGGED),
+        ("sensor 1 ms later", Changing, {"late_s": 1e-3}, FLAGGED),
+        ("knocked by 0.5 amplitudes", Knock, KNOCK, COVERED_OR_FLAGGED),
+        ("knocked twice by 0.5 amplitudes", TwoKnocks, KNOCK, COVERED_OR_FLAGGED),
+        ("clock slews by 1 us", SlewingClock, {"by_s": 1e-6, "returns": True}, COVERED_OR_FLAGGED),
+        ("clock slews by 10 us", SlewingClock, {"by_s": 1e-5, "returns": True}, COVERED_OR_FLAGGED),
+        ("clock slews by 2 ms", SlewingClock, {"by_s": 2e-3, "returns": True}, FLAGGED),
     )
-} | {
-    f"absolute-time: clock slews by {by}": (
-        SlewingClock, {**QUIET, "method": "absolute-time"}, options
-    )
-    for by, options in (("10 us", {"by_s": 1e-5}), ("2 ms", {"by_s": 2e-3}))
+    if method != "analogue" or kind is not SlewingClock
 }
 NOISES = {
     "three periods, 1/f noise of 1 %": (SLOW, {"noise_rel": 0.01, "power": 1.0}),
@@ -232,7 +243,7 @@ CLASSES = {
     **{name: with_fault(TwoKnocks, QUIET, **options) for name, options in TWO_KNOCKS.items()},
     **{
         name: with_fault(kind, preset, **options)
-        for name, (kind, preset, options) in OF_METHODS.items()
+        for name, (kind, preset, options, _) in OF_METHODS.items()
     },
     **{
         name: with_fault(ColouredNoise, preset, **options)
@@ -244,6 +255,7 @@ EXPECTED = [
     *(Row(name, VALUE, wanted) for name, (_, wanted) in CHANGING.items()),
     *(
         Row(name, VALUE, COVERED_OR_FLAGGED)
-        for name in (*SLEWS, *KNOCKS, *TWO_KNOCKS, *OF_METHODS, *NOISES)
+        for name in (*SLEWS, *KNOCKS, *TWO_KNOCKS, *NOISES)
     ),
+    *(Row(name, VALUE, wanted) for name, (*_, wanted) in OF_METHODS.items()),
 ]

@@ -12,6 +12,18 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
+TEST(FileSource, DescribesTheUncertaintyOfItsStampsThatIsStated) {
+  const TemporaryFile file("two.csv", "t_ns,z\n0,1.0\n1000000,2.0\n");
+  FileSettings settings = settings_for(file);
+  for (const double u_stamp_s : {0.0, 2e-7}) {
+    settings.u_stamp_s = u_stamp_s;
+    FileSource source(settings);
+    const auto description = source.describe();
+    ASSERT_TRUE(description) << description.error().message;
+    EXPECT_EQ(description->stamp_uncertainty_s, u_stamp_s);
+  }
+}
+
 TEST(FileSource, PlaysARegularSeriesWithAClock) {
   std::string text = "t_ns,reference,sync\n";
   for (int i = 0; i < 10'000; ++i) {
