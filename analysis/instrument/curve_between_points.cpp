@@ -13,29 +13,61 @@ constexpr double better = 0.8;         // times the misses of the straight line 
 constexpr double unknown_growth = 3.0; // of a table of three points; 1 / f grows by 2 an octave
 constexpr double below_both = 2.0;     // 1 / f lies as far again below the line over the logarithm
 constexpr double most_growth = 4.0;    // of one that falls as 1 / f^2
+constexpr double turns_back = 1.5;     // times what points that far apart still show of a wave
 constexpr double least_span = 0.4;     // of a slope, in steps ahead: octaves have a half
 constexpr double well_predicted_rad = 1.0; // then a slope is believed over more than half a turn
 constexpr double most_step_rad = 0.75 * std::numbers::pi; // that nothing else predicts
 
-// Divided: half the curvature about the points first, first + 1, first + 2.
-double second_difference(std::span<const double> x, std::span<const double> y, std::size_t first) {
+// Divided, with its sign: half the curvature about the points first, first + 1, first + 2.
+double bend(std::span<const double> x, std::span<const double> y, std::size_t first) {
   const double left = (y[first + 1] - y[first]) / (x[first + 1] - x[first]);
   const double right = (y[first + 2] - y[first + 1]) / (x[first + 2] - x[first + 1]);
-  return std::abs(right - left) / (x[first + 2] - x[first]);
+  return (right - left) / (x[first + 2] - x[first]);
 }
 
-// Sum of how far inner points lie from the line through their neighbours.
+double second_difference(std::span<const double> x, std::span<const double> y, std::size_t first) {
+  return std::abs(bend(x, y, first));
+}
+
+// How far the point first + 1 lies above the line through its neighbours.
+double rise_above_neighbours(std::span<const double> x, std::span<const double> y,
+                             std::size_t first) {
+  return -bend(x, y, first) * (x[first + 1] - x[first]) * (x[first + 2] - x[first + 1]);
+}
+
 double misses(std::span<const double> x, std::span<const double> y) {
   double sum = 0.0;
   for (std::size_t i = 0; i + 2 < x.size(); ++i) {
-    sum += second_difference(x, y, i) * (x[i + 1] - x[i]) * (x[i + 2] - x[i + 1]);
+    sum += std::abs(rise_above_neighbours(x, y, i));
   }
   return sum;
 }
 
-// At an end, from the second difference beside it and the next one.
+// At an end, from the second difference beside it and the next one. A point of inflection beside
+// the end shows no curvature, and that of the next is taken.
 double at_end(double beside, double next) {
+  if (next > most_growth * beside) {
+    return next;
+  }
   return beside * (next > 0.0 ? std::clamp(beside / next, 1.0, most_growth) : 1.0);
+}
+
+// Where points near the interval lie above and below the line through their neighbours, the curve
+// turns back between its points, and the nearest second differences may miss the turn: the largest
+// of those, one farther on either side too, in an interval as long as theirs. Else 0.
+double missed_at_a_turn(std::span<const double> x, std::span<const double> y, std::size_t i,
+                        double weight) {
+  const std::size_t last = x.size() - 3;
+  const std::size_t first = i > last ? last - std::min<std::size_t>(last, 2) : i < 2 ? 0 : i - 2;
+  const std::size_t behind = std::min(last, i == 0 ? 2 : i + 1) + 1;
+  double below = 0.0, above = 0.0;
+  for (std::size_t j = first; j < behind; ++j) {
+    const double rise = rise_above_neighbours(x, y, j);
+    below = std::max(below, -rise);
+    above = std::max(above, rise);
+  }
+  return below > 0.0 && above > 0.0 ? turns_back * std::max(below, above) * weight * (1.0 - weight)
+                                    : 0.0;
 }
 
 double half_curvature(std::span<const double> x, std::span<const double> y, std::size_t i) {
@@ -85,8 +117,10 @@ CurveValue curve_between_points(std::span<const double> frequencies_hz,
   result.weight = (at - x[i]) / (x[i + 1] - x[i]);
   const double rise = values[i + 1] - values[i];
   result.value = values[i] + result.weight * rise;
-  result.missed = x.size() > 2 ? half_curvature(x, values, i) * (at - x[i]) * (x[i + 1] - at)
-                               : below_both * std::abs((log_weight - result.weight) * rise);
+  result.missed = x.size() > 2
+                      ? std::max(half_curvature(x, values, i) * (at - x[i]) * (x[i + 1] - at),
+                                 missed_at_a_turn(x, values, i, result.weight))
+                      : below_both * std::abs((log_weight - result.weight) * rise);
   return result;
 }
 
