@@ -8,8 +8,10 @@
 
 #include <fmt/core.h>
 
+#include "analysis/base/phasor.hpp"
 #include "services/evaluation/method/unstated_uncertainty.hpp"
 #include "services/evaluation/shared_phase_uncertainty.hpp"
+#include "services/evaluation/sweep_delay.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -101,6 +103,24 @@ BudgetAtFrequency budget_of(const FrequencyPoint& point,
   return {point.frequency_hz, (*found)->budget};
 }
 
+// Of the repetitions of the chosen points.
+std::vector<SweepPhase> phases_of_sweeps(const std::vector<FrequencyPoint>& points,
+                                         const std::vector<std::size_t>& chosen,
+                                         const std::vector<const StepResult*>& results) {
+  std::vector<SweepPhase> phases;
+  for (const std::size_t i : chosen) {
+    const FrequencyPoint& point = points[i];
+    for (const StepResult* result : results) {
+      if (result->frequency_hz == point.frequency_hz && result->level_m_s2 == point.level_m_s2) {
+        phases.push_back({result->repetition, point.frequency_hz,
+                          analysis::wrap_phase(result->phase_rad - point.mean.phase_rad),
+                          repetition_of(*result).u_random_phase_rad});
+      }
+    }
+  }
+  return phases;
+}
+
 } // namespace
 
 void TransferSummary::add(const StepResult& result) {
@@ -116,7 +136,9 @@ void TransferSummary::add_group_delay(const std::vector<const StepResult*>& resu
   std::vector<BudgetAtFrequency> budgets;
   std::transform(chosen.begin(), chosen.end(), std::back_inserter(budgets),
                  [&](std::size_t i) { return budget_of(function.points[i], results); });
-  const SharedPhaseUncertainty shared = shared_phase_uncertainty(budgets);
+  SharedPhaseUncertainty shared = shared_phase_uncertainty(budgets);
+  shared.common.delay_s = std::hypot(
+      shared.common.delay_s, u_delay_of_sweeps(phases_of_sweeps(function.points, chosen, results)));
   std::vector<analysis::PhasePoint> phases;
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     const FrequencyPoint& point = function.points[chosen[i]];
