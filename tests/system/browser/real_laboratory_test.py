@@ -90,11 +90,11 @@ class RealLaboratory(unittest.TestCase):
         return cls.start([DYNCAL_WEB, "--listen", f"127.0.0.1:{cls.port}", "--domain", str(DOMAIN),
                           "--runs", str(cls.folder / "runs")], "web")
 
-    def start_demo(self, preset, name, speed="4"):
+    def start_demo(self, preset, name, speed="4", more=()):
         output = self.folder / name
         return self.start([DYNCAL, "demo", "--preset", preset, "--speed", speed, "--repetitions",
                            "1", "--domain", str(DOMAIN), "--output", str(output), "--folder",
-                           str(self.folder / "runs")], name)
+                           str(self.folder / "runs"), *more], name)
 
     def open(self, view=""):
         deadline = time.monotonic() + chromium.PATIENCE_S
@@ -133,6 +133,37 @@ class RealLaboratory(unittest.TestCase):
             compared += self.compare(result)
         print(f"\n{compared} numbers of 3 benches are equal on the page and in the result files")
         self.assertGreater(compared, 300)
+        self.assert_quiet(page)
+        page.close()
+
+    def test_5_flag_of_a_switch_is_shown_at_its_value(self):
+        """Of the virtual bench's switches, knocks on the sensor: the flag stands beside the number
+        of its step, in sight, and in the list of flags."""
+        demo = self.start_demo("mpu9250-paper", "switch", more=["--fault", "knock=5,at=sensor"])
+        demo.process.wait(RUN_S)  # its status is that of deviations, which are not judged here
+        result = json.loads((self.folder / "switch" / "result.json").read_text())
+        flag = "disturbance_cut_out"
+        flagged = [p for p in result["points"] if flag in p["flag_names"]]
+        self.assertGreater(len(flagged), 0, self.log_of("switch"))
+        page = self.open(f"run/{result['bench']}")
+        channel = flagged[0]["channel"]
+        page.wait_for(f"[...document.querySelectorAll('option')].map(o => o.value)"
+                      f".includes({channel!r})")
+        page.value(f"(s => {{ s.value = {channel!r}; s.dispatchEvent(new Event('change')); }})"
+                   "([...document.querySelectorAll('select')].find(s => [...s.options].some("
+                   f"o => o.value === {channel!r})))")
+        for point in [p for p in flagged if p["channel"] == channel]:
+            row = f"document.querySelector('[data-step=\"{point['step']}\"]')"
+            page.wait_for(f"{row} && {row}.textContent.includes({flag!r})")
+            number, flags, height = page.value(
+                f"(r => [Number(r.cells[5].title.split(' ')[0]), r.cells[10].innerText, "
+                f"r.cells[10].getBoundingClientRect().height])({row})")
+            self.assertEqual(number, point["magnitude"])
+            self.assertIn(f"▲ {flag}", flags)
+            self.assertGreater(height, 0)
+        self.assertIn("disturbance", page.value(text_of("[data-panel=flags]")))
+        if picture := os.environ.get("DYNCAL_PAGE_PICTURE"):
+            page.picture(picture)
         self.assert_quiet(page)
         page.close()
 
