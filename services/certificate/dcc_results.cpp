@@ -59,6 +59,9 @@ void add_channel(XmlElement results, const CertifiedChannel& channel, bool force
   add_text(result, "dcc:name", result_name(channel.channel));
   std::string description =
       "Complex transfer function over frequency, means over the repetitions. " + sign_convention();
+  if (const std::string advice = advice_on_repetitions(channel.values); !advice.empty()) {
+    description += " " + advice;
+  }
   if (forced) {
     description = "THIS CERTIFICATE WAS FORCED, see the first statement. " + description;
   }

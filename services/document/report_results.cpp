@@ -272,6 +272,9 @@ std::string channel_section(const ReportContents& contents, const std::string& c
                        "shows it, on the page \"what this measurement cannot see\" of the guide "
                        "(what-it-cannot-see.md).");
   html += value_table(contents, values);
+  if (const std::string advice = advice_on_repetitions(values); !advice.empty()) {
+    html += element("p", advice);
+  }
   html += missing_values(result, channel);
   html += delay_sentence(result, channel);
   html += channel_figures(transfer_data(result, channel, values), number);

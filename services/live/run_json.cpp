@@ -1,5 +1,6 @@
 #include "services/live/run_json.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <nlohmann/json.hpp>
@@ -64,13 +65,17 @@ Json mean_json(const FrequencyPoint& point) {
 
 Json transfer_json(const Run& run, const TransferFunction& function) {
   Json points = Json::array();
+  double largest_k = 0.0;
   for (const FrequencyPoint& point : function.points) {
+    largest_k =
+        std::max({largest_k, magnitude_uncertainty(point.mean).k, phase_uncertainty(point.mean).k});
     points.push_back(mean_json(point));
     points.back()["flags"] = flags_json(flags_of(run, function, point));
   }
   Json json{{"channel", function.channel},
             {"unit", function.unit},
             {"lost", function.lost},
+            {"advice", advice_on_repetitions(largest_k)},
             {"flags", flags_json(function.flags)},
             {"group_delay_s", nullptr},
             {"u_group_delay_s", nullptr},

@@ -8,6 +8,9 @@
 namespace dyncal::services {
 namespace {
 
+// Student's factor of four degrees of freedom: five repetitions show their scatter well enough.
+constexpr double large_k = 2.87;
+
 template <class UncertaintyOf>
 ExpandedUncertainty of_budget(double u, const StepResult& result, UncertaintyOf u_of) {
   std::vector<analysis::UncertaintyPart> parts;
@@ -44,6 +47,12 @@ ExpandedUncertainty magnitude_uncertainty(const analysis::RepetitionMean& mean) 
 
 ExpandedUncertainty phase_uncertainty(const analysis::RepetitionMean& mean) {
   return of_mean(mean.u_phase_rad, mean.phase);
+}
+
+std::string advice_on_repetitions(double largest_k) {
+  return largest_k > large_k ? "So few repetitions hardly show how much they scatter, which makes "
+                               "k large: repeat more often, five times or more."
+                             : "";
 }
 
 } // namespace dyncal::services

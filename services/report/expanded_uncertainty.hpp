@@ -7,6 +7,8 @@
 // functions, any thread.
 #pragma once
 
+#include <string>
+
 #include "services/evaluation/result/step_result.hpp"
 #include "services/evaluation/result/transfer_function.hpp"
 
@@ -23,5 +25,9 @@ struct ExpandedUncertainty {
 [[nodiscard]] ExpandedUncertainty phase_uncertainty(const StepResult& result);
 [[nodiscard]] ExpandedUncertainty magnitude_uncertainty(const analysis::RepetitionMean& mean);
 [[nodiscard]] ExpandedUncertainty phase_uncertainty(const analysis::RepetitionMean& mean);
+
+// Of means whose largest coverage factor is `largest_k`: one sentence on what makes it large, and
+// what to do; empty where it is not. The same words in table, page, report and certificate.
+[[nodiscard]] std::string advice_on_repetitions(double largest_k);
 
 } // namespace dyncal::services

@@ -64,15 +64,10 @@ std::string coverage_line(const TransferFunction& function) {
   if (std::max(max_magnitude, max_phase) < notable_k) {
     return "";
   }
-  // Student's factor of four degrees of freedom: five repetitions show their scatter well enough.
-  constexpr double large_k = 2.87;
-  const bool few = std::max(max_magnitude, max_phase) > large_k;
+  const std::string advice = advice_on_repetitions(std::max(max_magnitude, max_phase));
   return fmt::format("  U = k u covers 95.45 % with k up to {:.2f} (|H|) and {:.2f} (arg H); the "
-                     "result file has k of every point{}\n",
-                     max_magnitude, max_phase,
-                     few ? ";\n  so few repetitions hardly show how much they scatter: repeat more "
-                           "often, five times or more"
-                         : "");
+                     "result file has k of every point\n{}",
+                     max_magnitude, max_phase, advice.empty() ? "" : "  " + advice + "\n");
 }
 
 std::string group_delay_line(const TransferFunction& function) {

@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "services/contract/evaluation_method.hpp"
+#include "services/report/expanded_uncertainty.hpp"
 #include "services/report/rounding.hpp"
 
 namespace dyncal::services {
@@ -35,13 +36,25 @@ StatedValue stated_phase_rad(const StoredValue& value) {
 }
 
 StatedValue stated_phase_deg(const StoredValue& value) {
-  return stated(value.phase_rad, value.of_phase, degrees_per_radian);
+  StatedValue result = stated(value.phase_rad, value.of_phase, degrees_per_radian);
+  if (result.value.starts_with("-180")) { // rounded to the end that is not in (-180, 180]
+    result.value.erase(0, 1);
+  }
+  return result;
 }
 
 bool can_be_stated(const StoredValue& value) {
   return is_usable(value.magnitude, value.of_magnitude) &&
          is_usable(value.phase_rad, value.of_phase) && value.coverage_probability > 0.0 &&
          value.coverage_probability < 1.0;
+}
+
+std::string advice_on_repetitions(const std::vector<StoredValue>& values) {
+  double largest_k = 0.0;
+  for (const StoredValue& value : values) {
+    largest_k = std::max({largest_k, value.of_magnitude.k, value.of_phase.k});
+  }
+  return advice_on_repetitions(largest_k);
 }
 
 std::string coverage_percent(double probability) {

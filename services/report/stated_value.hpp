@@ -9,6 +9,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "services/report/stored_result.hpp"
 
@@ -25,6 +26,9 @@ struct StatedValue {
 [[nodiscard]] StatedValue stated_phase_deg(const StoredValue& value);
 // Value and U are finite, and U and k are above 0: without these there is nothing to state.
 [[nodiscard]] bool can_be_stated(const StoredValue& value);
+
+// That of expanded_uncertainty.hpp, for the largest k of the values; empty where none is large.
+[[nodiscard]] std::string advice_on_repetitions(const std::vector<StoredValue>& values);
 
 // "95.45 %"
 [[nodiscard]] std::string coverage_percent(double probability);

@@ -37,10 +37,12 @@ export class ResultTable {
     this.no_means = element("p", { class: "quiet" },
                             "The means with their U come when the run is over.");
     this.means_root = means.root;
+    this.advice = element("p", { class: "quiet", "data-field": "advice" });
     this.root = element("section", { class: "panel", "data-panel": "table" },
                         element("div", { class: "panel-head" }, element("h2", {}, "Table"),
                                 this.unit),
                         element("h3", {}, "Means over the repetitions"), this.no_means, means.root,
+                        this.advice,
                         element("details", { open: true },
                                 element("summary", {}, "Every repetition"), points.root));
   }
@@ -51,6 +53,8 @@ export class ResultTable {
     set_text(this.unit, unit ? `|H| in ${short || "one (dimensionless)"}` : "unit not known");
     set_shown(this.no_means, transfer === null);
     set_shown(this.means_root, transfer !== null);
+    set_text(this.advice, transfer?.advice ?? "");
+    set_shown(this.advice, Boolean(transfer?.advice));
     this.means.update((transfer?.points ?? []).map((p) => ({ ...p, unit: short })));
     this.points.update(points.slice(-MAX_ROWS).map((p) => ({ ...p, unit: short })));
   }

@@ -83,7 +83,8 @@ def transfer(points):
             "flags": [flag for p in group for flag in p["flags"]],
         })
     return {"channel": CHANNEL, "unit": "\\one", "points": means, "group_delay_s": 1.7003e-3,
-            "u_group_delay_s": 1.2e-6, "group_delay_problem": "", "flags": []}
+            "u_group_delay_s": 1.2e-6, "group_delay_problem": "", "flags": [],
+            "advice": "Repeat more often."}
 
 
 def clock_report():

@@ -123,6 +123,7 @@ class Views(PageCase):
             self.assertEqual([float(row[i].split()[0]) for i in (2, 3, 4, 5)],
                              [mean[k] for k in ("magnitude", "U_magnitude", "phase_rad",
                                                 "U_phase_rad")])
+        self.assertEqual(page.value(text_of("[data-field=advice]")), "Repeat more often.")
         self.assertEqual(page.value(text_of("[data-field=group_delay]")),
                          "Group delay 1.7003 ms (u 0.0012 ms)")
         self.assertIn("check its network", page.value(text_of("[data-panel=flags]")))

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace dyncal::services {
@@ -37,6 +38,13 @@ TEST(ExpandedUncertainty, OfAMeanKeepsItsUAndGivesUOfK1) {
   EXPECT_DOUBLE_EQ(magnitude.u, 2e-3);
   EXPECT_DOUBLE_EQ(magnitude.k, 3.0);
   EXPECT_DOUBLE_EQ(magnitude.nu_eff, 7.0);
+}
+
+TEST(ExpandedUncertainty, AdvisesToRepeatWhereFewRepetitionsMakeKLarge) {
+  EXPECT_THAT(advice_on_repetitions(13.97), testing::HasSubstr("repeat more often"));
+  EXPECT_THAT(advice_on_repetitions(3.31), testing::HasSubstr("repeat more often")); // four
+  EXPECT_EQ(advice_on_repetitions(2.8), "");
+  EXPECT_EQ(advice_on_repetitions(2.0), "");
 }
 
 } // namespace

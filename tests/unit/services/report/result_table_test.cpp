@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "services/report/expanded_uncertainty.hpp"
 #include "tests/unit/services/report/example_outcome.hpp"
 
 namespace dyncal::services {
@@ -36,6 +37,7 @@ TEST(ResultTable, TellsWhenTwiceUIsNotEnough) {
   mean.magnitude_rel.k = 4.0;
   EXPECT_THAT(result_table(outcome), HasSubstr("1.0000  0.0015 "));
   EXPECT_THAT(result_table(outcome), HasSubstr("k up to 4.00 (|H|) and 2.00 (arg H)"));
+  EXPECT_THAT(result_table(outcome), HasSubstr(advice_on_repetitions(4.0)));
 }
 
 // Of 100 kB each, with lines of its own and what steers a terminal.

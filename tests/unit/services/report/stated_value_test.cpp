@@ -1,6 +1,10 @@
 #include "services/report/stated_value.hpp"
 
+#include <cmath>
 #include <limits>
+#include <numbers>
+#include <random>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -32,6 +36,26 @@ TEST(StatedValue, HasTheDigitsOfItsExpandedUncertainty) {
   const StatedValue degrees = stated_phase_deg(value);
   EXPECT_EQ(degrees.value, "-30.00");
   EXPECT_EQ(degrees.expanded, "0.72");
+}
+
+TEST(StatedValue, StaysWithinItsTurnNear180Degrees) {
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal;
+    int at_the_end = 0;
+    for (int draw = 0; draw < 300; ++draw) {
+      const double phase_rad =
+          std::remainder(std::numbers::pi + 1e-3 * normal(random), 2.0 * std::numbers::pi);
+      const StatedValue degrees = stated_phase_deg(value_of(1.0, 0.1, phase_rad, 1e-3));
+      const double stated = std::stod(degrees.value);
+      EXPECT_GT(stated, -180.0) << phase_rad;
+      EXPECT_LE(stated, 180.0) << phase_rad;
+      const double phase_deg = 180.0 / std::numbers::pi * phase_rad;
+      EXPECT_LE(std::abs(std::remainder(stated - phase_deg, 360.0)), 0.0005 + 1e-9) << phase_rad;
+      at_the_end += degrees.value == "180.000" ? 1 : 0;
+    }
+    EXPECT_GT(at_the_end, 0);
+  }
 }
 
 TEST(StatedValue, CannotBeStatedWithoutAUsableUncertainty) {
