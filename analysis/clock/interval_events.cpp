@@ -30,11 +30,11 @@ Verdict judge_one(const SampleInterval& interval, const SampleInterval* next,
   if (length < 0.0) {
     return {"backward"};
   }
-  if (length <= duplicate_part * usual.median_ns) {
-    return {"duplicate"};
-  }
   if (std::abs(deviation) <= unusual_scales * usual.scale_ns) {
     return {};
+  }
+  if (length <= duplicate_part * usual.median_ns) {
+    return {"duplicate"};
   }
   const double multiple = std::round(length / usual.median_ns);
   const double width =

@@ -11,17 +11,12 @@ namespace dyncal::analysis {
 namespace {
 
 constexpr std::size_t first_samples = 65;
-constexpr double periods_among_first = 0.9;
-constexpr double time_in_periods = 0.5; // of the first intervals, but for the longest three
-constexpr std::size_t longest_left_out = 3;
-constexpr double margin_periods = 0.25;
-constexpr double max_margin_periods = 0.75; // with a tick; a whole period is a missing sample
-constexpr double max_drift_rel = 1e-4;      // of the period in what is missing
-constexpr double coarse_tick_part = 1.0 / 8.0;
+constexpr double max_drift_rel = 1e-4; // of the period in what is missing
 constexpr double named_tick_part = 1.0 / 16.0;
 constexpr double one_tick = 1.01;
-constexpr double always_counted = 1000.0; // periods in a gap
-constexpr double period_drift_rel = 5e-6; // of an oscillator within a record
+constexpr double period_margin_ticks = 1.0 / 8.0; // of a period learned from alike intervals
+constexpr double always_counted = 1000.0;         // periods in a gap
+constexpr double period_drift_rel = 5e-6;         // of an oscillator within a record
 constexpr double known_to_periods = 1.0 / 8.0;
 constexpr std::uint64_t periods_for_mean = 256;
 constexpr std::uint32_t followers_of_a_move = 8;
@@ -30,28 +25,10 @@ constexpr std::uint32_t max_passed_over = 32;
 constexpr std::uint64_t moves_of_stamping = 5;
 constexpr double max_time_in_moves = 0.2;
 
-bool is_multiple(double distance_ns, double period_ns, double margin_ns) {
-  const double times = std::round(distance_ns / period_ns);
-  return times >= 1.0 && std::abs(distance_ns - times * period_ns) <= margin_ns;
-}
-
-// Most of the time passes in intervals of about this length. What is read from a FIFO with stamps a
-// few ns apart has its time between the read-outs.
-bool holds_most_of_the_time(std::vector<double> intervals_ns, double usual_ns) {
-  std::sort(intervals_ns.begin(), intervals_ns.end());
-  intervals_ns.resize(intervals_ns.size() - std::min(longest_left_out, intervals_ns.size() / 4));
-  double usual = 0.0, all = 0.0;
-  for (const double one_ns : intervals_ns) {
-    all += one_ns;
-    usual += one_ns < 2.5 * usual_ns ? one_ns : 0.0;
-  }
-  return usual >= time_in_periods * all;
-}
-
 } // namespace
 
 void PeriodCount::add(std::uint64_t sample, std::int64_t stamp_ns) {
-  const Sample one{sample, stamp_ns, std::exchange(begins_stretch_, false)};
+  const TimedSample one{sample, stamp_ns, std::exchange(begins_stretch_, false)};
   if (learned_) {
     count(one);
     return;
@@ -70,60 +47,41 @@ void PeriodCount::finish() {
   if (!learned_) {
     learn();
   }
+  settle();
+}
+
+// What waits for a next sample does so no longer.
+void PeriodCount::settle() {
   if (doubtful_ && periods_to_doubtful()) {
     accept_missing();
+  }
+  if (ticked_) {
+    count_ticked(ticked_->finish());
+  }
+  if (alike_) {
+    unsure_ticks_ += alike_->are_too_few() ? alike_->gaps().size() : 0;
+    take_waiting_as_losses();
   }
 }
 
 void PeriodCount::learn() {
   learned_ = true;
-  std::vector<double> intervals_ns;
-  for (std::size_t i = 1; i < first_.size(); ++i) {
-    if (!first_[i].begins_stretch && first_[i].number == first_[i - 1].number + 1) {
-      intervals_ns.push_back(static_cast<double>(first_[i].stamp_ns - first_[i - 1].stamp_ns));
-    }
+  if (const auto interval_ns = alike_interval_ns(first_)) {
+    tick_ns_ = *interval_ns;
+    period_ns_ = static_cast<double>(*interval_ns);
+    alike_.emplace(*interval_ns, first_.front().number, first_.front().stamp_ns);
+  } else if (const auto ticks = ticks_of(first_)) {
+    tick_ns_ = ticks->tick_ns;
+    period_ns_ = ticks->line.period_ns();
+    ticked_.emplace(ticks->line, first_.front().number, first_.front().stamp_ns);
+  } else if (const auto period = period_of(first_)) {
+    tick_ns_ = period->tick_ns;
+    period_ns_ = period->period_ns;
+    scatter_ns_ = period->scatter_ns;
+    coarse_tick_ns_ = period->coarse_tick_ns;
   }
-  if (!intervals_ns.empty()) {
-    std::vector<double> sorted = intervals_ns;
-    period_ns_ = upper_median(sorted);
-    learn_tick(intervals_ns);
-    const auto whole = std::count_if(intervals_ns.begin(), intervals_ns.end(), [&](double one_ns) {
-      return period_ns_ > 0.0 && is_multiple(one_ns, period_ns_, margin_ns());
-    });
-    if (static_cast<double>(whole) <
-            periods_among_first * static_cast<double>(intervals_ns.size()) ||
-        !holds_most_of_the_time(intervals_ns, period_ns_)) {
-      period_ns_ = 0.0;
-    }
-  }
-  for (const Sample& sample : std::exchange(first_, {})) {
+  for (const TimedSample& sample : std::exchange(first_, {})) {
     count(sample);
-  }
-}
-
-// REQUIRES: the median of these intervals is the period so far.
-void PeriodCount::learn_tick(const std::vector<double>& intervals_ns) {
-  std::vector<double> deviations_ns;
-  for (const double one_ns : intervals_ns) {
-    tick_ns_ = std::gcd(tick_ns_, std::llround(one_ns));
-    deviations_ns.push_back(std::abs(one_ns - period_ns_));
-  }
-  const auto tick = static_cast<double>(tick_ns_);
-  scatter_ns_ = mad_to_sd * upper_median(deviations_ns);
-  double sum = 0.0;
-  std::size_t near = 0;
-  bool differ = false;
-  for (const double one_ns : intervals_ns) {
-    if (std::abs(one_ns - period_ns_) < one_tick * tick) {
-      sum += one_ns;
-      ++near;
-      differ = differ || one_ns != period_ns_;
-    }
-  }
-  // Intervals that are all alike tell no tick: the period may be one.
-  if (differ && tick >= coarse_tick_part * period_ns_ && tick < period_ns_) {
-    coarse_tick_ns_ = tick;
-    period_ns_ = sum / static_cast<double>(near);
   }
 }
 
@@ -135,10 +93,10 @@ void PeriodCount::follow_tick(std::int64_t distance_ns) {
 }
 
 double PeriodCount::margin_ns() const {
-  return std::min(margin_periods * period_ns_ + coarse_tick_ns_, max_margin_periods * period_ns_);
+  return period_margin_ns(period_ns_, coarse_tick_ns_);
 }
 
-bool PeriodCount::in_order(const Sample& before, const Sample& sample) const {
+bool PeriodCount::in_order(const TimedSample& before, const TimedSample& sample) const {
   const auto times = static_cast<double>(sample.number - before.number);
   const auto distance = static_cast<double>(sample.stamp_ns - before.stamp_ns);
   return std::abs(distance - times * period_ns_) <=
@@ -164,13 +122,19 @@ std::optional<std::uint64_t> PeriodCount::periods_to_doubtful() const {
   return static_cast<std::uint64_t>(times);
 }
 
-void PeriodCount::begin_stretch(const Sample& sample) {
+void PeriodCount::begin_stretch(const TimedSample& sample) {
   ++stretches_;
   last_ = sample;
   doubtful_.reset();
+  if (alike_) {
+    take_waiting_as_losses();
+  }
+  if (ticked_) {
+    ticked_->begin(sample.number, sample.stamp_ns);
+  }
 }
 
-void PeriodCount::accept(const Sample& sample, std::uint64_t periods) {
+void PeriodCount::accept(const TimedSample& sample, std::uint64_t periods) {
   const std::int64_t distance_ns = sample.stamp_ns - last_.stamp_ns;
   follow_tick(distance_ns);
   span_ns_ += distance_ns;
@@ -179,19 +143,48 @@ void PeriodCount::accept(const Sample& sample, std::uint64_t periods) {
   doubtful_.reset();
 }
 
+void PeriodCount::add_missing(std::int64_t before_ns, std::int64_t after_ns,
+                              std::uint64_t missing) {
+  gaps_.push_back({before_ns, after_ns, missing});
+  unnumbered_ += missing;
+}
+
 // REQUIRES: periods_to_doubtful().
 void PeriodCount::accept_missing() {
   const std::uint64_t periods = *periods_to_doubtful();
-  const std::uint64_t missing = periods - (doubtful_->number - last_.number);
-  gaps_.push_back({last_.stamp_ns, doubtful_->stamp_ns, missing});
-  unnumbered_ += missing;
-  accept(Sample(*doubtful_), periods);
+  const TimedSample sample = *doubtful_;
+  const std::uint64_t numbered = sample.number - last_.number;
+  const std::int64_t distance_ns = sample.stamp_ns - last_.stamp_ns;
+  if (alike_ && distance_ns == static_cast<std::int64_t>(periods) * alike_->interval_ns()) {
+    alike_->add({last_.number, sample.number, last_.stamp_ns, sample.stamp_ns, periods - numbered});
+    accept(sample, numbered); // as ticks, so far
+    explain_gaps();
+    return;
+  }
+  if (alike_ && turn_to_ticks(distance_ns)) {
+    doubtful_.reset();
+    count_ticked(ticked_->add(sample.number, sample.stamp_ns));
+    return;
+  }
+  add_missing(last_.stamp_ns, sample.stamp_ns, periods - numbered);
+  accept(sample, periods);
 }
 
 // The stamps have moved between the last one in order and the doubtful one, which `sample` follows.
-void PeriodCount::accept_move(const Sample& sample) {
-  const std::int64_t across_ns = doubtful_->stamp_ns - last_.stamp_ns;
-  const std::uint64_t numbered = doubtful_->number - last_.number;
+void PeriodCount::accept_move(const TimedSample& sample) {
+  const TimedSample moved = *doubtful_;
+  if (alike_ && turn_to_ticks(moved.stamp_ns - last_.stamp_ns)) {
+    doubtful_.reset();
+    count_ticked(ticked_->add(moved.number, moved.stamp_ns));
+    count_ticked(ticked_->add(sample.number, sample.stamp_ns));
+    return;
+  }
+  count_move(moved.stamp_ns - last_.stamp_ns, moved.number - last_.number);
+  last_ = moved;
+  accept(sample, sample.number - last_.number);
+}
+
+void PeriodCount::count_move(std::int64_t across_ns, std::uint64_t numbered) {
   const double move_ns =
       static_cast<double>(across_ns) - static_cast<double>(numbered) * best_period_ns();
   ++moves_;
@@ -202,21 +195,86 @@ void PeriodCount::accept_move(const Sample& sample) {
   squares_of_moves_ns2_ += move_ns * move_ns;
   largest_ns_ = std::abs(move_ns) > std::abs(largest_ns_) ? move_ns : largest_ns_;
   follow_tick(across_ns);
-  last_ = *doubtful_;
-  accept(sample, sample.number - last_.number);
 }
 
-void PeriodCount::count(const Sample& sample) {
+void PeriodCount::take_waiting_as_losses() {
+  for (const TickGap& gap : alike_->gaps()) {
+    add_missing(gap.before_ns, gap.after_ns, gap.missing);
+    periods_ += gap.missing;
+  }
+  alike_.emplace(alike_->interval_ns(), last_.number, last_.stamp_ns);
+}
+
+// REQUIRES: the last one in order is behind a gap.
+void PeriodCount::explain_gaps() {
+  if (const auto explained = alike_->explained()) {
+    std::uint64_t missing = 0;
+    for (const TickGap& gap : explained->losses) {
+      add_missing(gap.before_ns, gap.after_ns, gap.missing);
+      missing += gap.missing;
+    }
+    periods_ += missing;
+    ticked_.emplace(explained->line, missing);
+    alike_.reset();
+  } else if (alike_->are_losses()) {
+    take_waiting_as_losses();
+    alike_.reset();
+  }
+}
+
+// An interval that is no multiple of those before, which were alike: whether it tells a coarse
+// tick. The order goes on from the last sample.
+bool PeriodCount::turn_to_ticks(std::int64_t distance_ns) {
+  const std::int64_t interval_ns = alike_->interval_ns();
+  const auto tick_ns = static_cast<double>(std::gcd(interval_ns, distance_ns));
+  if (tick_ns < static_cast<double>(interval_ns) || !alike_->flicker()) {
+    take_waiting_as_losses();
+  }
+  alike_.reset();
+  const auto period_ns = static_cast<double>(interval_ns);
+  if (tick_ns < TickLine::least_tick_periods * period_ns) {
+    return false;
+  }
+  tick_ns_ = std::gcd(interval_ns, distance_ns);
+  const double margin_ns = period_margin_ticks * tick_ns;
+  ticked_.emplace(TickLine(tick_ns, {period_ns - margin_ns, period_ns + margin_ns}), last_.number,
+                  last_.stamp_ns);
+  return true;
+}
+
+void PeriodCount::count_ticked(std::span<const TickedSample> samples) {
+  for (const TickedSample& one : samples) {
+    const TimedSample sample{one.number, one.stamp_ns, false};
+    const std::uint64_t numbered = one.number - last_.number;
+    switch (one.step) {
+    case TickedStep::missing:
+      add_missing(last_.stamp_ns, one.stamp_ns, one.missing);
+      [[fallthrough]];
+    case TickedStep::follows:
+      accept(sample, numbered + one.missing);
+      break;
+    case TickedStep::jump:
+      count_move(one.stamp_ns - last_.stamp_ns, numbered);
+      last_ = sample;
+      break;
+    case TickedStep::begins_stretch:
+      begin_stretch(sample);
+      break;
+    }
+  }
+}
+
+void PeriodCount::count(const TimedSample& sample) {
   if (!knows_period()) {
     return;
   }
   if (sample.begins_stretch || stretches_ == 0) {
-    if (doubtful_ && periods_to_doubtful()) {
-      accept_missing();
-    }
+    settle();
     begin_stretch(sample);
+  } else if (ticked_) {
+    count_ticked(ticked_->add(sample.number, sample.stamp_ns));
   } else if (in_order(last_, sample)) { // and so a doubtful one before it had a wrong stamp
-    accept(sample, sample.number - last_.number);
+    count_in_order(sample);
   } else if (doubtful_) {
     count_behind_doubtful(sample);
   } else {
@@ -226,8 +284,28 @@ void PeriodCount::count(const Sample& sample) {
   }
 }
 
+void PeriodCount::count_in_order(const TimedSample& sample) {
+  const std::uint64_t numbered = sample.number - last_.number;
+  const std::int64_t distance_ns = sample.stamp_ns - last_.stamp_ns;
+  if (alike_ && distance_ns != static_cast<std::int64_t>(numbered) * alike_->interval_ns() &&
+      turn_to_ticks(distance_ns)) {
+    doubtful_.reset();
+    count_ticked(ticked_->add(sample.number, sample.stamp_ns));
+    return;
+  }
+  if (alike_ && doubtful_) {
+    const auto stray_numbered = static_cast<std::int64_t>(doubtful_->number - last_.number);
+    const std::int64_t stray_ns =
+        doubtful_->stamp_ns - last_.stamp_ns - stray_numbered * alike_->interval_ns();
+    if (std::abs(stray_ns) == alike_->interval_ns()) {
+      alike_->add_stray();
+    }
+  }
+  accept(sample, numbered);
+}
+
 // REQUIRES: a doubtful one, and `sample` does not follow the last one in order.
-void PeriodCount::count_behind_doubtful(const Sample& sample) {
+void PeriodCount::count_behind_doubtful(const TimedSample& sample) {
   if (periods_to_doubtful() && sample.stamp_ns > doubtful_->stamp_ns) {
     accept_missing();
     count(sample);
@@ -267,9 +345,10 @@ double PeriodCount::mean_ns() const {
 }
 
 double PeriodCount::u_ends_ns() const {
-  const bool is_coarse = coarse_tick_ns_ > 0.0 || moves_ > 0;
+  const bool is_coarse = coarse_tick_ns_ > 0.0 || moves_ > 0 || ticked_;
   const double tick_ns = is_coarse ? static_cast<double>(tick_ns_) : 0.0;
-  double variance_ns2 = tick_ns * tick_ns / 6.0;
+  const double unsure_ns = static_cast<double>(unsure_ticks_) * static_cast<double>(tick_ns_);
+  double variance_ns2 = tick_ns * tick_ns / 6.0 + unsure_ns * unsure_ns;
   if (moves_ > 0 && moves_as_made() && std::abs(largest_ns_) > one_tick * tick_ns) {
     const auto count = static_cast<double>(moves_);
     const double mean_move_ns = sum_of_moves_ns_ / count;

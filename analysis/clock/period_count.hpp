@@ -11,16 +11,23 @@
 //                                           known to 1/8 of a period
 //   eight others follow it in order         the stamps moved against the samples by e = d - k m
 //
+// With ticks above m/4 the order is that of ticked_samples.hpp; where the intervals are alike, gaps
+// of one wait until it is known whether these are ticks (tick_gaps.hpp).
+//
 // Mean interval: (last - first) / periods, exact in integers. Stamps that move five times and more,
-// by a fifth of the time at most, or by one tick of their own, do so as they are made (coarse
-// ticks, FIFO read in batches): that is part of the mean. Others are jumps of the clock, or long
-// pauses; they are left out, and counted. Nothing is counted of a source whose first intervals are
-// not periods in nine of ten cases, or not most of the time. Units: ns. One thread.
+// by a fifth of the time at most, or by one tick of their own, do so as they are made (FIFO read in
+// batches): that is part of the mean. Others are jumps of the clock, or long pauses; they are left
+// out, and counted. Nothing is counted of a source whose first intervals are not periods in nine of
+// ten cases, or not most of the time. Units: ns. One thread.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 #include <vector>
+
+#include "analysis/clock/first_stamps.hpp"
+#include "analysis/clock/tick_gaps.hpp"
+#include "analysis/clock/ticked_samples.hpp"
 
 namespace dyncal::analysis {
 
@@ -52,28 +59,33 @@ public:
   [[nodiscard]] double largest_jump_ns() const { return largest_ns_; }
   // Standard uncertainty of the distance of the first from the last stamp by how stamps are made:
   // both ends lie anywhere within a tick T (T^2 / 6); a record begins, as a rule, behind a read-out
-  // of the FIFO and ends before one, and so is wrong by the mean move, and moves scatter. 0:
-  // nothing of the kind.
+  // of the FIFO and ends before one, and so is wrong by the mean move, and moves scatter; as many
+  // ticks as there are gaps that may be ticks or losses. 0: nothing of the kind.
   [[nodiscard]] double u_ends_ns() const;
+  // Stamps are whole ticks of more than a quarter of a period; 0: not so.
+  [[nodiscard]] double coarse_tick_ns() const {
+    return ticked_ ? static_cast<double>(tick_ns_) : 0.0;
+  }
 
 private:
-  struct Sample {
-    std::uint64_t number = 0;
-    std::int64_t stamp_ns = 0;
-    bool begins_stretch = false;
-  };
-
   void learn();
-  void learn_tick(const std::vector<double>& intervals_ns);
-  void count(const Sample& sample);
-  void count_behind_doubtful(const Sample& sample);
-  void accept(const Sample& sample, std::uint64_t periods);
-  void begin_stretch(const Sample& sample);
+  void settle();
+  void count(const TimedSample& sample);
+  void count_behind_doubtful(const TimedSample& sample);
+  void accept(const TimedSample& sample, std::uint64_t periods);
+  void begin_stretch(const TimedSample& sample);
   void accept_missing();
-  void accept_move(const Sample& sample);
+  void accept_move(const TimedSample& sample);
+  void count_move(std::int64_t across_ns, std::uint64_t numbered);
+  void count_ticked(std::span<const TickedSample> samples);
+  void count_in_order(const TimedSample& sample);
+  void explain_gaps();
+  [[nodiscard]] bool turn_to_ticks(std::int64_t distance_ns);
+  void take_waiting_as_losses();
+  void add_missing(std::int64_t before_ns, std::int64_t after_ns, std::uint64_t missing);
   void follow_tick(std::int64_t distance_ns);
   [[nodiscard]] bool moves_as_made() const;
-  [[nodiscard]] bool in_order(const Sample& before, const Sample& sample) const;
+  [[nodiscard]] bool in_order(const TimedSample& before, const TimedSample& sample) const;
   // Periods from the last one in order to the doubtful one; empty when these are as many as the
   // numbers say, or not known.
   [[nodiscard]] std::optional<std::uint64_t> periods_to_doubtful() const;
@@ -82,19 +94,22 @@ private:
 
   bool learned_ = false;
   double period_ns_ = 0.0;
-  double scatter_ns_ = 0.0;     // of the first intervals
-  double coarse_tick_ns_ = 0.0; // that the first intervals show; 0: none
-  std::int64_t tick_ns_ = 0;    // all distances are multiples of it; 0: of no tick worth naming
-  std::vector<Sample> first_;   // until the period is known
+  double scatter_ns_ = 0.0;        // of the first intervals
+  double coarse_tick_ns_ = 0.0;    // that the first intervals show; 0: none
+  std::int64_t tick_ns_ = 0;       // all distances are multiples of it; 0: of no tick worth naming
+  std::vector<TimedSample> first_; // until the period is known
+  std::optional<TickGaps> alike_;  // while all intervals are alike
+  std::optional<TickedSamples> ticked_;
   bool begins_stretch_ = true;
-  Sample last_;                    // in order
-  std::optional<Sample> doubtful_; // that does not follow in order
-  std::uint32_t followers_ = 0;    // of it, in its order
+  TimedSample last_;                    // in order
+  std::optional<TimedSample> doubtful_; // that does not follow in order
+  std::uint32_t followers_ = 0;         // of it, in its order
   std::uint32_t passed_over_ = 0;
   std::int64_t span_ns_ = 0;
   std::uint64_t periods_ = 0;
   std::uint64_t stretches_ = 0;
   std::uint64_t unnumbered_ = 0;
+  std::uint64_t unsure_ticks_ = 0; // that were taken for losses
   std::uint64_t moves_ = 0;
   std::int64_t span_across_moves_ns_ = 0;
   std::uint64_t periods_across_moves_ = 0;

@@ -15,12 +15,20 @@ namespace {
 
 constexpr std::uint64_t first_lesson = 64; // intervals after which it is known what is usual
 constexpr double core_scales = 6.0;
+constexpr double one_tick = 1.01;
 constexpr double gap_part =
     1.5; // an interval longer than this many medians interrupts the Allan deviation
 
 UsualInterval usual_of(const IntervalDistribution& distribution) {
   return {distribution.quantile(0.5),
           std::max(0.5, mad_to_sd * distribution.median_absolute_deviation())};
+}
+
+// Coarse ticks make an interval up to one longer or shorter: that is usual.
+UsualInterval usual_of(const IntervalDistribution& distribution, const PeriodCount& periods) {
+  return periods.coarse_tick_ns() > 0.0 && periods.periods() > 0
+             ? UsualInterval{periods.mean_ns(), one_tick * periods.coarse_tick_ns() / core_scales}
+             : usual_of(distribution);
 }
 
 double seconds(double ns) {
@@ -101,7 +109,7 @@ void SampleClock::State::take_interval(const SampleInterval& interval, double te
   have_interval_before = true;
   const std::uint64_t n = counts.sums().count;
   if (n >= first_lesson && std::has_single_bit(n)) {
-    usual = usual_of(counts.distribution());
+    usual = usual_of(counts.distribution(), periods);
   }
 }
 
@@ -214,10 +222,10 @@ std::optional<SampleClockStatistics> SampleClock::statistics() const {
   }
   SampleClockStatistics result;
   IntervalDistribution distribution = state.counts.distribution();
-  IntervalVerdict verdict =
-      state.events.judge(usual_of(distribution), *state.first_stamp_ns, state.settings.max_events);
   PeriodCount periods = state.periods;
   periods.finish();
+  IntervalVerdict verdict = state.events.judge(usual_of(distribution, periods),
+                                               *state.first_stamp_ns, state.settings.max_events);
   result.minimum_s = seconds(static_cast<double>(state.counts.minimum_ns()));
   result.maximum_s = seconds(static_cast<double>(state.counts.maximum_ns()));
   IntervalSums sums = all;
