@@ -319,7 +319,10 @@ std::optional<Expected<void>> RunController::answer_about_run(Instant attended) 
   if (auto same = check_same_instruments(); analysis && !same) {
     return same;
   }
-  const RunOutlook outlook = watch_->outlook();
+  // Without the guard, which has heard nothing since the other conductor died: it hears this one
+  // when a step is announced.
+  const RunOutlook outlook =
+      run_outlook(analysis, clock_.now() - watch_->analysis_heard(), watch_->commands());
   if (analysis && outlook.kind == Kind::well &&
       outcome_.results.size() >= analysis->results_published()) {
     watch_->notice(fmt::format("run '{}' is resumed, with {} results so far", name(),

@@ -48,6 +48,7 @@ SENSORS = {"mpu9250-ptb": "MPU 9250", "bma280": "BMA 280"}  # presets with the n
 OTHER_DELAY_S = 1e-3
 REFUSED_S = 3.0
 BEGUN_S = 5.0
+RESUMED_S = 60.0  # of a run of some seconds: it waits for nobody who is there
 WAYS = ("kill", "hangup", "ctrl-c", "terminal")
 NEXT = (
     "again",
@@ -265,8 +266,10 @@ def resume(arguments, number):
         laboratory.die(run, "kill")
         run.wait()
         laboratory.operator = chance.choice(("operator", OTHER_OPERATOR))
+        if number % 2 == 0:
+            expect_off(laboratory)  # its guard has noticed, and says that it hears nothing
         again = laboratory.conduct("--resume", "R1")
-        status = again.wait()
+        status = again.wait(RESUMED_S)
         if status != 0:
             raise Failure(f"exit status {status}: {again.errors().strip().splitlines()[-1:]}")
         laboratory.expect_own_values(laboratory.preset, laboratory.truth())
