@@ -23,6 +23,7 @@ constexpr double above_near = 2.0;  // times the lines beside it: a line of anot
 constexpr double apart = 6.0;       // resolutions, beyond the lines beside it
 constexpr double same_line = 1.5;   // resolutions
 constexpr double other_line = 0.05; // of the amplitude, that a harmonic or hum may have
+constexpr double near_of_noise = 2.5; // u: noise exceeds it in 16 of 100 sets of four lines
 constexpr int max_order = 10;
 constexpr std::size_t lines = 5; // it, and two to either side
 constexpr double mains_hz[] = {50.0, 60.0};
@@ -70,12 +71,13 @@ bool same_as_other(double line_hz, double signal_hz, double rate_hz, double reso
 
 } // namespace
 
-double alternating_part(const Frequency& frequency, const SineFit& fit, std::int64_t origin_ns,
-                        std::span<const std::int64_t> stamps_ns, std::span<const double> values) {
+AlternatingPart alternating_part(const Frequency& frequency, const SineFit& fit,
+                                 std::int64_t origin_ns, std::span<const std::int64_t> stamps_ns,
+                                 std::span<const double> values) {
   const std::size_t n = std::min(values.size(), max_samples);
   const double amplitude = fit.amplitude();
   if (n < min_samples || !(amplitude > 0.0)) {
-    return 0.0;
+    return {};
   }
   const std::size_t first = (values.size() - n) / 2;
   stamps_ns = stamps_ns.subspan(first, n);
@@ -87,7 +89,7 @@ double alternating_part(const Frequency& frequency, const SineFit& fit, std::int
   const double line_hz = 0.5 * rate_hz - frequency.hz();
   if (distance_of_fold(frequency.hz(), rate_hz) < apart * resolution_hz ||
       distance_of_fold(line_hz - frequency.hz(), rate_hz) < apart * resolution_hz) {
-    return 0.0;
+    return {};
   }
   std::vector<double> sine(n), cosine(n);
   fill_sine_cosine(frequency, origin_ns, stamps_ns, sine.data(), cosine.data());
@@ -117,9 +119,17 @@ double alternating_part(const Frequency& frequency, const SineFit& fit, std::int
   const double others =
       std::max(0.0, squares / static_cast<double>(n) - 0.5 * part * part * amplitude * amplitude);
   const double u = std::sqrt(2.0 * others / static_cast<double>(n)) / amplitude;
-  const double least =
-      same_as_other(line_hz, frequency.hz(), rate_hz, resolution_hz) ? other_line : smallest;
-  return part > std::max({least, certain * u, above_near * near}) ? part : 0.0;
+  const bool other = same_as_other(line_hz, frequency.hz(), rate_hz, resolution_hz);
+  AlternatingPart found;
+  if (part > std::max({other ? other_line : smallest, certain * u, above_near * near})) {
+    found.certain_rel = part;
+  }
+  if (!other) {
+    const Complex signal(fit.sine, fit.cosine);
+    found.gain_rel = scale * (Complex(0.0, 1.0) * std::conj(signal) * sums[0]).real() / amplitude;
+    found.u_gain_rel = std::max(u, near / near_of_noise);
+  }
+  return found;
 }
 
 } // namespace dyncal::analysis

@@ -241,7 +241,7 @@ StampScatter measure_stamp_scatter(const Frequency& frequency, const SineFit& fi
     scatter.far_off = far_off(samples);
   }
   if (scatter.far_off == 0) {
-    scatter.alternating_part = alternating_part(frequency, fit, origin_ns, stamps_ns, values);
+    scatter.alternating = alternating_part(frequency, fit, origin_ns, stamps_ns, values);
   }
   const double mean = m / n, spread = mm - m * mean;
   if (spread < min_variance * n) {

@@ -19,8 +19,8 @@
 // amplitude at the ends of the sine where there are hardly any elsewhere: samples that a converter
 // wrapped. `far_off` are residuals beyond ten robust standard deviations of a sine through the
 // others, at least four that are on the slopes (values of other instants) or 0.3 % anywhere (wrong
-// values). `alternating_part`: by how much of the amplitude every second value differs from the
-// mean (alternating_samples.hpp), where none are far off. `batched_part` are intervals below a
+// values). `alternating`: by how much of the amplitude every second value differs from the mean
+// (alternating_samples.hpp), where none are far off. `batched_part` are intervals below a
 // twentieth of the mean. Fewer than 64 samples: nothing. Any thread.
 #pragma once
 
@@ -28,6 +28,7 @@
 #include <span>
 
 #include "analysis/base/frequency.hpp"
+#include "analysis/sine/alternating_samples.hpp"
 #include "analysis/sine/sine_fit.hpp"
 
 namespace dyncal::analysis {
@@ -38,7 +39,7 @@ struct StampScatter {
   double batched_part = 0.0;
   std::uint64_t peak_jumps = 0;
   std::uint64_t far_off = 0;
-  double alternating_part = 0.0;
+  AlternatingPart alternating{};
   std::uint64_t samples = 0; // that were looked at
 
   // What is taken out of the amplitude: 0 where it is not certain, or as small as numbers are.

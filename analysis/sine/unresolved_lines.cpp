@@ -24,6 +24,10 @@ double leakage(double distance_hz, double duration_s) {
   return turns < 0.5 ? std::sin(angle) / angle : 1.0 / angle;
 }
 
+double wander_of(const UnresolvedLine& line) {
+  return line.kind == LineKind::mains ? mains_wander_rel * line.line_hz : 0.0;
+}
+
 } // namespace
 
 double folded_hz(double line_hz, double rate_hz) {
@@ -65,11 +69,19 @@ LineUncertainty line_uncertainty(const UnresolvedLine& line, double line_amplitu
   if (!(signal_amplitude > 0.0)) {
     return {};
   }
-  const double wander_hz = line.kind == LineKind::mains ? mains_wander_rel * line.line_hz : 0.0;
-  const double distance_hz = std::max(0.0, line.distance_hz - wander_hz);
+  const double distance_hz = std::max(0.0, line.distance_hz - wander_of(line));
   const double u =
       line_amplitude * leakage(distance_hz, duration_s) / (std::numbers::sqrt2 * signal_amplitude);
   return {u, u};
+}
+
+double largest_beat_rel(const UnresolvedLine& line, double line_amplitude, double signal_amplitude,
+                        double duration_s) {
+  if (!(signal_amplitude > 0.0)) {
+    return 0.0;
+  }
+  const double turns = std::min(0.5, (line.distance_hz + wander_of(line)) * duration_s);
+  return 2.0 * line_amplitude / signal_amplitude * std::sin(std::numbers::pi * turns);
 }
 
 bool is_resolved(double line_hz, int order, double frequency_hz, double duration_s,

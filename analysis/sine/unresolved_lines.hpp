@@ -54,6 +54,12 @@ struct LineUncertainty { // standard uncertainties, of magnitude and phase alike
 [[nodiscard]] LineUncertainty line_uncertainty(const UnresolvedLine& line, double line_amplitude,
                                                double signal_amplitude, double duration_s);
 
+// By how much of the signal it may seem to change along the record, for a line that beats with it:
+//
+//   2 h / A sin(pi d T)      2 h / A from d T = 1 / 2 on; d of the mains larger by their wandering
+[[nodiscard]] double largest_beat_rel(const UnresolvedLine& line, double line_amplitude,
+                                      double signal_amplitude, double duration_s);
+
 // Where sampling at `rate_hz` puts a line: from 0 to half the rate.
 [[nodiscard]] double folded_hz(double line_hz, double rate_hz);
 

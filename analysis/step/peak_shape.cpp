@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -16,6 +17,7 @@ constexpr double resolved = 1.5; // distance of lines in 1 / T
 constexpr double min_periods = 4.0;
 constexpr std::size_t min_orders = 2;
 constexpr std::array widths_rad{0.1, 0.2, 0.35, 0.6, 0.9};
+constexpr std::array close_widths_rad{0.1, 0.14, 0.2, 0.24, 0.29, 0.35, 0.42, 0.5, 0.6, 0.75, 0.9};
 constexpr double response_unknown = 0.15; // of H(kf) / H(f), at low frequencies
 constexpr double second_of_sensor = 3e-3; // of its own: a good sensor's square term
 constexpr double third_of_sensor = 1e-3;  // cubic term
@@ -23,7 +25,14 @@ constexpr double higher_of_sensor = 1e-4;
 constexpr double certain = 4.0; // u: 6e-5 a trial, and about five independent ones a step
 constexpr double explained = 0.4;
 constexpr double passed_place = 0.5; // of half the rate: what sensors let pass
-constexpr double confirmed = 0.25;   // of a harmonic of the reference, at least, by the sensor
+constexpr double anywhere = std::numeric_limits<double>::infinity(); // also what is folded
+constexpr double confirmed = 0.25; // of a harmonic of the reference, at least, by the sensor
+// Of a reference by itself, where the sensor shows none: so many orders in the phases and parts
+// that an end stop gives them, but for a tenth, are no exciter's.
+constexpr std::size_t unmistakable_orders = 4;
+constexpr double unmistakable_explained = 0.9;
+constexpr double tolerated = 0.1;  // of each order
+constexpr double stands_out = 5.0; // u
 
 // E_k of a peak as wide as `d` to either side.
 double lost_at(int k, double d) {
@@ -125,9 +134,9 @@ Match match_of(const std::vector<Excess>& excess, double width_rad, Ends ends) {
   return match;
 }
 
-Match best_match(const std::vector<Excess>& excess) {
+Match best_match(const std::vector<Excess>& excess, std::span<const double> widths) {
   Match best;
-  for (const double width_rad : widths_rad) {
+  for (const double width_rad : widths) {
     for (const Ends ends : {Ends::both, Ends::upper, Ends::lower, Ends::each}) {
       const Match match = match_of(excess, width_rad, ends);
       const double handicap = ends == Ends::each ? 4.0 : 0.0; // of one more unknown
@@ -139,25 +148,40 @@ Match best_match(const std::vector<Excess>& excess) {
   return best;
 }
 
-BentPeaks judged(const std::vector<Excess>& excess) {
+BentPeaks judged(const std::vector<Excess>& excess, std::span<const double> widths = widths_rad,
+                 double least_explained = explained) {
   double all = 0.0;
   for (const Excess& one : excess) {
     all += std::norm(one.value / one.u);
   }
-  Match best = best_match(excess);
+  Match best = best_match(excess, widths);
   const double noise = 2.0 * static_cast<double>(excess.size());
   BentPeaks& peaks = best.peaks;
   peaks.found = std::abs(peaks.amplitude_error_rel) > certain * peaks.u &&
-                best.gain > explained * (all - noise) && best.gain > certain * certain;
+                best.gain > least_explained * (all - noise) && best.gain > certain * certain;
   return peaks;
 }
 
-// Whether the sensor, where it would let them pass, shows nothing of the reference's harmonics.
-bool lacks_harmonics_of(const SineShape& sensor, const SineShape& reference) {
+// Peaks that nothing but an end stop bends so.
+BentPeaks flat_top(const SineShape& shape) {
+  std::vector<Excess> excess;
+  std::size_t strong = 0;
+  for (const ShapeHarmonic& one : shape.harmonics) {
+    const double size = std::abs(one.relative);
+    const double u = std::hypot(one.u, shape.steps_rel, higher_of_sensor);
+    strong += size > stands_out * u ? 1 : 0;
+    excess.push_back({one.order, -one.relative, std::hypot(u, tolerated * size)});
+  }
+  return strong >= unmistakable_orders ? judged(excess, close_widths_rad, unmistakable_explained)
+                                       : BentPeaks{};
+}
+
+// Whether the sensor, up to this part of half its rate, shows nothing of the reference's harmonics.
+bool lacks_harmonics_of(const SineShape& sensor, const SineShape& reference, double place) {
   double shown = 0.0, square = 0.0, u2 = 0.0;
   for (const ShapeHarmonic& one : sensor.harmonics) {
     for (const ShapeHarmonic& other : reference.harmonics) {
-      if (other.order == one.order && one.order <= passed_place * sensor.order_of_half_rate) {
+      if (other.order == one.order && one.order <= place * sensor.order_of_half_rate) {
         shown += (one.relative * std::conj(other.relative)).real();
         square += std::norm(other.relative);
         u2 += std::norm(other.relative) * one.u * one.u;
@@ -167,17 +191,22 @@ bool lacks_harmonics_of(const SineShape& sensor, const SineShape& reference) {
   return square > 0.0 && shown + certain * std::sqrt(u2) < confirmed * square;
 }
 
-// By itself, where orders that the sensor does not show tell it.
-BentPeaks bent_reference(const SineShape& sensor, const SineShape& reference) {
-  if (!lacks_harmonics_of(sensor, reference)) {
-    return {};
-  }
+std::vector<Excess> own_shape(const SineShape& shape) {
   std::vector<Excess> excess;
-  for (const ShapeHarmonic& one : reference.harmonics) {
-    const double u = std::hypot(one.u, reference.steps_rel);
+  for (const ShapeHarmonic& one : shape.harmonics) {
+    const double u = std::hypot(one.u, shape.steps_rel);
     excess.push_back({one.order, -one.relative, std::hypot(u, own_part(one.order))});
   }
-  const BentPeaks peaks = judged(excess);
+  return excess;
+}
+
+// By itself, where orders that the sensor does not show tell it.
+BentPeaks bent_reference(const SineShape& sensor, const SineShape& reference) {
+  const bool lacks = lacks_harmonics_of(sensor, reference, passed_place);
+  if (!lacks && !lacks_harmonics_of(sensor, reference, anywhere)) {
+    return {};
+  }
+  const BentPeaks peaks = lacks ? judged(own_shape(reference)) : flat_top(reference);
   return peaks.amplitude_error_rel < 0.0 ? peaks : BentPeaks{};
 }
 
@@ -236,7 +265,11 @@ BentPeaks find_bent_peaks(const SineShape& sensor, const SineShape& reference) {
     return {};
   }
   const BentPeaks peaks = judged(excess);
-  return peaks.found ? peaks : bent_reference(sensor, reference);
+  if (peaks.found) {
+    return peaks;
+  }
+  const BentPeaks of_reference = bent_reference(sensor, reference);
+  return of_reference.found ? of_reference : peaks;
 }
 
 } // namespace dyncal::analysis

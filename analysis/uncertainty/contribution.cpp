@@ -37,6 +37,7 @@ constexpr std::array rows{
     Row{ContributionKind::trace_clock, "clock of the oscilloscope", false, Repeats::common_delay},
     Row{ContributionKind::mains_hum, "mains hum in", true, Repeats::anew},
     Row{ContributionKind::folded_harmonic, "folded harmonics of", true, Repeats::common},
+    Row{ContributionKind::background, "background in", true, Repeats::anew},
     Row{ContributionKind::other, "other", false, Repeats::common}};
 
 constexpr bool in_order() {

@@ -47,6 +47,7 @@ enum class ContributionKind {
   trace_clock,        // rate of the oscilloscope's clock, from the middle of a trace to its trigger
   mains_hum,       // a mains line too near the excitation to be told from it; subject: the channel
   folded_harmonic, // a harmonic that sampling folds onto the excitation; subject: the channel
+  background,      // what else there is at the excitation's frequency; subject: the channel
   other            // a row that this version does not know; its subject is its name
 };
 

@@ -175,8 +175,9 @@ std::optional<double> LineBounds::square_of_harmonic(const std::string& channel,
   return analysis::square_of_amplitude(amplitudes);
 }
 
-void LineBounds::settle_mains(const ChannelLines& channel, StepResult& result) const {
+double LineBounds::settle_mains(const ChannelLines& channel, StepResult& result) const {
   double u2 = 0.0;
+  double beats = 0.0;
   for (const analysis::UnresolvedLine& line : channel.unresolved) {
     if (!is_of_mains(line)) {
       continue;
@@ -186,13 +187,17 @@ void LineBounds::settle_mains(const ChannelLines& channel, StepResult& result) c
     if (!bound.from_driven_steps) {
       result.flags.push_back(flag_of_line(channel.channel, line));
     }
-    const double u = analysis::line_uncertainty(line, std::sqrt(bound.square), channel.amplitude,
-                                                channel.duration_s)
-                         .u_phase_rad;
+    const double h = std::sqrt(bound.square);
+    const double u =
+        analysis::line_uncertainty(line, h, channel.amplitude, channel.duration_s).u_phase_rad;
     u2 += u * u;
+    if (bound.significant) {
+      beats += analysis::largest_beat_rel(line, h, channel.amplitude, channel.duration_s);
+    }
   }
   add_half_repeating({.kind = ContributionKind::mains_hum, .subject = channel.subject}, channel, u2,
                      result);
+  return beats;
 }
 
 void LineBounds::settle_background(const ChannelLines& channel, StepResult& result) const {
@@ -205,9 +210,8 @@ void LineBounds::settle_background(const ChannelLines& channel, StepResult& resu
       bound_of({channel.channel, LineKind::background, channel.frequency_hz, 0},
                {channel.channel, result.step, result.repetition}, channel.amplitude);
   if (bound.significant) {
-    add_half_repeating(
-        {.kind = ContributionKind::other, .subject = background_row(channel.subject)}, channel,
-        0.5 * bound.square / (channel.amplitude * channel.amplitude), result);
+    add_half_repeating({.kind = ContributionKind::background, .subject = channel.subject}, channel,
+                       0.5 * bound.square / (channel.amplitude * channel.amplitude), result);
   }
 }
 
@@ -230,17 +234,20 @@ void LineBounds::settle_harmonics(const ChannelLines& channel, StepResult& resul
           result);
 }
 
-bool LineBounds::concerns(const StepResult& result) const {
-  return result.provisional || settled(result).budget.size() != result.budget.size();
-}
-
 StepResult LineBounds::settled(StepResult result) const {
   result.flags.erase(std::remove_if(result.flags.begin(), result.flags.end(), is_of_line),
                      result.flags.end());
+  double beats = 0.0;
   for (const ChannelLines& channel : result.lines) {
-    settle_mains(channel, result);
+    beats += settle_mains(channel, result);
     settle_background(channel, result);
     settle_harmonics(channel, result);
+  }
+  if (result.change &&
+      std::hypot(result.change->magnitude_rel, result.change->phase_rad) <= beats) {
+    result.change.reset();
+    std::erase_if(result.flags,
+                  [](const Flag& flag) { return flag.kind == ResultFlag::changed_within_step; });
   }
   result.provisional = false;
   return result;

@@ -12,7 +12,9 @@
 // quiet time does, in this proportion. A line of the mains that no driven step shows apart is not
 // there where its kindred are not (low multiples of the same parity); else it keeps its flag,
 // whatever quiet time shows, for an amplifier may hum while it drives. So does a harmonic that
-// nothing shows. Apart from the mains, only what is significant counts.
+// nothing shows. Apart from the mains, only what is significant counts. A line of the mains that
+// beats with the excitation is no change within the step: that flag goes where a significant line
+// may make as large a one.
 //
 // Hum is a bounded sine: whatever its phase, the error is at most h L, which is 2 u for u = h / 2.
 // It may come with the same phase in every repetition (a generator locked to the mains, steps at a
@@ -38,9 +40,6 @@ public:
   // Takes what the result's channels show, once for every channel of a step; of a later attempt in
   // place of the earlier one.
   void add(const StepResult& result);
-
-  // Whether settled() would change the budget or the flags.
-  [[nodiscard]] bool concerns(const StepResult& result) const;
 
   // The result with its final budget and flags; not provisional any more. Its Monte Carlo check is
   // not drawn again.
@@ -75,7 +74,8 @@ private:
                                      const StepOfChannel& where) const;
   [[nodiscard]] std::optional<double> square_of_harmonic(const std::string& channel,
                                                          int order) const;
-  void settle_mains(const ChannelLines& channel, StepResult& result) const;
+  // Returns by how much the value may seem to change along the step (largest_beat_rel()).
+  [[nodiscard]] double settle_mains(const ChannelLines& channel, StepResult& result) const;
   void settle_background(const ChannelLines& channel, StepResult& result) const;
   void settle_harmonics(const ChannelLines& channel, StepResult& result) const;
 

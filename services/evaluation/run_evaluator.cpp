@@ -39,6 +39,11 @@ Evaluation counted(Evaluation evaluation, const SharedWorkCount& count) {
   };
 }
 
+bool is_changed(const StepResult& result, const StepResult& settled) {
+  return result.provisional || settled.budget.size() != result.budget.size() ||
+         settled.flags.size() != result.flags.size();
+}
+
 } // namespace
 
 RunEvaluator::RunEvaluator(Recipe recipe, const EvaluationLimits& limits)
@@ -231,6 +236,7 @@ void RunEvaluator::take_results(std::vector<StepResult> results, EvaluationOutpu
   for (StepResult& result : results) {
     summary_.add(result);
     line_bounds_.add(result);
+    channel_faults_.add(result);
     keep(result);
     output.results.push_back(std::move(result));
   }
@@ -320,16 +326,18 @@ EvaluationOutput RunEvaluator::take_output() {
 Evaluation RunEvaluator::settlement() {
   std::vector<StepResult> concerned = std::exchange(results_, {});
   if (!method_->settle(concerned)) {
-    std::erase_if(concerned, [&](const StepResult& one) { return !line_bounds_.concerns(one); });
+    std::erase_if(concerned, [&](const StepResult& one) {
+      return !is_changed(one, channel_faults_.settled(line_bounds_.settled(one)));
+    });
   }
   if (count_) {
     count_->begin("settling", "results", concerned.size());
   }
-  return [bounds = line_bounds_, trials = recipe_->monte_carlo_trials,
+  return [bounds = line_bounds_, faults = channel_faults_, trials = recipe_->monte_carlo_trials,
           concerned = std::move(concerned), count = count_](const std::stop_token& stop) {
     std::vector<StepResult> settled;
     for (const StepResult& one : concerned) {
-      settled.push_back(bounds.settled(one));
+      settled.push_back(faults.settled(bounds.settled(one)));
       redo_monte_carlo_check(trials, stop, settled.back());
       if (count) {
         count->add_done();

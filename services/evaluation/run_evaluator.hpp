@@ -33,6 +33,7 @@
 #include <vector>
 
 #include "services/error.hpp"
+#include "services/evaluation/channel_faults.hpp"
 #include "services/evaluation/clock_report_builder.hpp"
 #include "services/evaluation/evaluation_queue.hpp"
 #include "services/evaluation/level_watch.hpp"
@@ -168,6 +169,7 @@ private:
   RateWatch rate_watch_;
   TransferSummary summary_;
   LineBounds line_bounds_;
+  ChannelFaults channel_faults_;
   std::vector<StepResult> results_; // that the end of the run may settle
   struct AheadOfEnd {               // the next step as it is expected to be
     StepSnapshot inputs;

@@ -237,8 +237,4 @@ Flag flag_of_line(const std::string& channel, const analysis::UnresolvedLine& li
                       to_string(ResultFlag::harmonic_not_separated))};
 }
 
-std::string background_row(const std::string& subject) {
-  return "background in " + subject;
-}
-
 } // namespace dyncal::services

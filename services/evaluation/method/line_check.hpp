@@ -49,8 +49,4 @@ void add_lines(std::vector<ChannelLines> lines, StepResult& result);
 // "dau/dos: hum at 50 Hz cannot be told from the excitation".
 [[nodiscard]] Flag flag_of_line(const std::string& channel, const analysis::UnresolvedLine& line);
 
-// Name of the row for what is at the frequency beside the excitation, other than mains: "background
-// in the reference".
-[[nodiscard]] std::string background_row(const std::string& subject);
-
 } // namespace dyncal::services

@@ -46,12 +46,12 @@ void check_stamps(const analysis::ChannelFit& fit, double u_magnitude_rel, doubl
              fmt::format("{} of {} values are beside the sine of the others", scatter.far_off,
                          scatter.samples),
              result);
-  } else if (scatter.alternating_part > 0.0) {
+  } else if (scatter.alternating.certain_rel > 0.0) {
     add_flag(
         ResultFlag::values_off_stamps, fit.channel,
         fmt::format("every second value is of a sine that differs by {}: of another sensor, or "
                     "another gain",
-                    percent(2.0 * scatter.alternating_part)),
+                    percent(2.0 * scatter.alternating.certain_rel)),
         result);
   }
   if (correction > u_magnitude_rel) {
@@ -73,6 +73,7 @@ void check_stamps(const analysis::ChannelFit& fit, double u_magnitude_rel, doubl
 
 void check_peaks(const std::string& reference_name, const std::string& channel,
                  const analysis::BentPeaks& peaks, StepResult& result) {
+  result.peaks = peaks;
   const double error = std::abs(peaks.amplitude_error_rel);
   if (!peaks.found || !result.valid ||
       error * result.magnitude < visible_error * result.u_magnitude) {

@@ -31,6 +31,7 @@ StepResult point_result(const StepTask& task, const ChannelName& channel,
 
 // What the evaluation found along the step.
 void add_findings(const analysis::PointFindings& point, StepResult& result) {
+  result.change = point.change;
   if (point.change) {
     result.flags.push_back({ResultFlag::changed_within_step,
                             fmt::format("{}: {}: by {:.2g} % and {:.2g} rad after {:.2g} s",

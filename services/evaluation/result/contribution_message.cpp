@@ -33,6 +33,7 @@ constexpr auto kinds = std::to_array<std::pair<ContributionKind, wire::Contribut
     {ContributionKind::trace_clock, wire::CONTRIBUTION_TRACE_CLOCK},
     {ContributionKind::mains_hum, wire::CONTRIBUTION_MAINS_HUM},
     {ContributionKind::folded_harmonic, wire::CONTRIBUTION_FOLDED_HARMONIC},
+    {ContributionKind::background, wire::CONTRIBUTION_BACKGROUND},
 });
 static_assert(kinds.size() == static_cast<std::size_t>(ContributionKind::other) + 1);
 

@@ -14,8 +14,10 @@
 
 #include "analysis/method/nominal_frequency.hpp"
 #include "analysis/method/start_latency.hpp"
+#include "analysis/method/step_findings.hpp"
 #include "analysis/method/transfer_check.hpp"
 #include "analysis/method/transfer_point.hpp"
+#include "analysis/step/peak_shape.hpp"
 #include "services/evaluation/result/channel_lines.hpp"
 #include "services/evaluation/result/channel_signal.hpp"
 #include "services/evaluation/result/result_flag.hpp"
@@ -74,7 +76,10 @@ struct StepResult {
   std::optional<analysis::TransferCheck> monte_carlo;
   // Lines beside the excitation are flagged, and settled at the end of the run (line_bounds.hpp).
   bool provisional = false;
-  std::vector<ChannelLines> lines; // for that, within the evaluation: no message has them
+  // For that, within the evaluation: no message has them.
+  std::vector<ChannelLines> lines;
+  std::optional<analysis::RatioChange> change; // that flag changed_within_step tells of
+  std::optional<analysis::BentPeaks> peaks;    // found or not
 };
 
 } // namespace dyncal::services

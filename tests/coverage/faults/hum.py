@@ -129,6 +129,10 @@ CLASSES = {
         for tau_s, pause_s in ((0.02, 0.3), (0.06, 0.32), (0.2, 0.6), (0.2, 3.0))
     },
     "clean, ISO 266": bench(frequencies=ISO_266, duration_s=1.0),
+    "clean, mains alone": bench(frequencies=("50", "100", "150", "200")),
+    "clean, mains alone, little noise": bench(
+        LITTLE_NOISE, frequencies=("50", "100", "150", "200"), duration_s=1.0
+    ),
     "clean, mean of 3 at the mains": bench(
         frequencies=AT_MAINS,
         repetitions=3,
@@ -189,6 +193,8 @@ CLASSES = {
 EXPECTED = [
     *(Row(name, VALUE, COVERED_NO_FLAG) for name in CLASSES if name.startswith("clean, rings")),
     Row("clean, ISO 266", VALUE, COVERED_NO_FLAG),
+    Row("clean, mains alone", VALUE, COVERED_NO_FLAG),
+    Row("clean, mains alone, little noise", VALUE, COVERED_NO_FLAG),
     Row("clean, mean of 3 at the mains", MEAN, COVERED_NO_FLAG),
     *(Row(name, VALUE, COVERED_OR_FLAGGED) for name in CLASSES if name.startswith("hum at")),
     *(

@@ -82,7 +82,9 @@ STRENGTHS = {
     "a code of {:g} % of the amplitude is missing": (
         MissingCode, {0.5: 0.005, 5: 0.05, 20: 0.2}
     ),
-    "every second sample of a sensor {:+g} %": (Interleaved, {0.2: 0.002}),
+    "every second sample of a sensor {:+g} %": (
+        Interleaved, {0.02: 2e-4, 0.05: 5e-4, 0.1: 1e-3, 0.2: 2e-3}
+    ),
     "polled, written at {:g} times the rate": (Polled, {5.3: 5.3, 1.013: 1.013}),
 }
 GROSS = {

@@ -23,7 +23,7 @@ struct Recording {
   std::size_t samples = 2000;
 };
 
-double found(const Recording& recording, unsigned seed) {
+AlternatingPart part_of(const Recording& recording, unsigned seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> noise(0.0, recording.noise);
   const double w = 2.0 * std::numbers::pi * recording.frequency_hz;
@@ -45,7 +45,32 @@ double found(const Recording& recording, unsigned seed) {
   const std::span<const double> channel[] = {values};
   const auto fit = fit_sine(frequency, middle_ns, stamps_ns, channel);
   EXPECT_TRUE(fit.has_value());
-  return fit ? alternating_part(frequency, fit->front(), middle_ns, stamps_ns, values) : -1.0;
+  return fit ? alternating_part(frequency, fit->front(), middle_ns, stamps_ns, values)
+             : AlternatingPart{};
+}
+
+double found(const Recording& recording, unsigned seed) {
+  return part_of(recording, seed).certain_rel;
+}
+
+// Of either sign, by which of the two was first.
+TEST(AlternatingSamples, TheDifferenceOfTheGainsHasANormalErrorOfItsUncertainty) {
+  for (const double gain : {1.0, 1.0005}) {
+    double squares = 0.0, n = 0.0;
+    for (unsigned seed = 1; seed <= 200; ++seed) {
+      const AlternatingPart part = part_of({.gain = gain}, seed);
+      ASSERT_GT(part.u_gain_rel, 0.0);
+      EXPECT_LT(part.u_gain_rel, 2.0 * 0.01 * std::sqrt(2.0 / 2000.0));
+      const double expected = 0.5 * (gain - 1.0);
+      const double error = expected > 0.0 ? std::min(std::abs(part.gain_rel - expected),
+                                                     std::abs(part.gain_rel + expected))
+                                          : part.gain_rel;
+      squares += std::pow(error / part.u_gain_rel, 2);
+      n += 1.0;
+    }
+    EXPECT_LT(squares / n, 1.2) << gain;
+    EXPECT_GT(squares / n, gain > 1.0 ? 0.2 : 0.6) << gain;
+  }
 }
 
 // Gains 1 and g: d is half of their difference, over their mean.

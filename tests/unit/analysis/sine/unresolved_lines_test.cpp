@@ -1,6 +1,7 @@
 #include "analysis/sine/unresolved_lines.hpp"
 
 #include <cmath>
+#include <complex>
 #include <cstdint>
 #include <numbers>
 #include <random>
@@ -142,6 +143,27 @@ TEST(UnresolvedLines, TheMainsMayWanderTowardsTheExcitation) {
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_NEAR(line_uncertainty(lines[0], 1.0, 1.0, duration_s).u_phase_rad,
               1.0 / std::numbers::sqrt2, 1e-12);
+}
+
+// Against sums over the two halves of a record, at the phase where they differ most.
+TEST(UnresolvedLines, ALineBeatsByNoMoreThanThis) {
+  for (const double distance_hz : {0.02, 0.1, 0.2, 0.6}) {
+    const UnresolvedLine line{LineKind::background, 50.0, 0, distance_hz};
+    const double largest = largest_beat_rel(line, 0.01, 2.0, duration_s);
+    EXPECT_LE(largest, 0.01 + 1e-12);
+    for (double phase = 0.0; phase < 6.28; phase += 0.1) {
+      std::complex<double> halves[2];
+      for (int i = 0; i < 1000; ++i) {
+        const double turns = distance_hz * duration_s * (i + 0.5) / 1000.0;
+        halves[i / 500] += 0.005 / 500.0 * std::polar(1.0, 2.0 * std::numbers::pi * turns + phase);
+      }
+      EXPECT_LE(std::abs(halves[1] - halves[0]), largest) << distance_hz;
+      EXPECT_GE(std::abs(halves[1] - halves[0]), distance_hz > 0.2 ? 0.0 : 0.4 * largest);
+    }
+  }
+  const UnresolvedLine at_50_hz{LineKind::mains, 50.0, 1, 0.0}; // that wanders by 50 mHz
+  EXPECT_NEAR(largest_beat_rel(at_50_hz, 0.01, 2.0, 2.0), 0.01 * std::sin(0.1 * std::numbers::pi),
+              1e-9);
 }
 
 TEST(UnresolvedLines, NothingIsMeasuredInAFewSamplesOrOfAConstant) {

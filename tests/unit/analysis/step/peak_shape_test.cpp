@@ -127,6 +127,43 @@ TEST(PeakShape, ReferenceIsTooWhereTheSensorShowsFewOrders) {
   }
 }
 
+// The sensor shows none of its harmonics but the second, which ends on both sides leave alone.
+TEST(PeakShape, AFlatTopOfTheReferenceIsUnmistakable) {
+  for (const double limit : {0.9, 0.95, 0.97}) {
+    for (const double frequency_hz : {90.0, 100.3, 128.0, 160.0, 203.0, 240.0}) {
+      for (unsigned seed = 1; seed <= 3; ++seed) {
+        Channel reference;
+        reference.upper = reference.lower = limit;
+        const BentPeaks peaks = peaks_of({.frequency_hz = frequency_hz}, reference, seed);
+        EXPECT_TRUE(peaks.found) << limit << " of " << frequency_hz << " Hz";
+        EXPECT_NEAR(peaks.amplitude_error_rel, -2.0 * lost(limit), 0.4 * 2.0 * lost(limit));
+      }
+    }
+  }
+}
+
+// Four and more harmonics of any phase that the sensor's filter takes away.
+TEST(PeakShape, HarmonicsOfTheExciterAreNoFlatTop) {
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> part(0.0, 1.0);
+  int found = 0;
+  constexpr int runs = 20000;
+  for (int run = 0; run < runs; ++run) {
+    SineShape reference{
+        .order_of_half_rate = 15.0, .steps_rel = 0.0, .periods = 200.0, .harmonics = {}};
+    SineShape sensor{
+        .order_of_half_rate = 3.0, .steps_rel = 0.0, .periods = 200.0, .harmonics = {}};
+    for (int k = 2; k <= 9; ++k) {
+      const double size = 0.05 * part(random) / (k - 1);
+      const auto value = std::polar(k % 2 == 0 ? 0.2 * size : size, 6.2832 * part(random));
+      reference.harmonics.push_back({k, value, 2e-5});
+      sensor.harmonics.push_back({k, {}, 2e-4});
+    }
+    found += find_bent_peaks(sensor, reference).found ? 1 : 0;
+  }
+  EXPECT_LE(found, runs / 5000);
+}
+
 // An amplifier that clips moves both, and a filter of the sensor takes half of its second harmonic.
 TEST(PeakShape, PeaksThatTheExciterBendsAreNotTheReferences) {
   int found = 0;

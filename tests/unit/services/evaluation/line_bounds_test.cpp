@@ -151,11 +151,11 @@ TEST(LineBounds, WhatOtherStepsShowAtTheFrequencyOfAStepIsItsBackground) {
   LineBounds bounds;
   StepResult step = result(1, {sensor(10.0)}); // 80 Hz, beside no line of the mains
   bounds.add(step);
-  EXPECT_FALSE(bounds.concerns(step));
+  EXPECT_TRUE(bounds.settled(step).budget.empty());
   add_others(bounds, {LineKind::background, 80.0, 0, {0.01, 1e-5}});
-  ASSERT_TRUE(bounds.concerns(step));
   const StepResult settled = bounds.settled(step);
   ASSERT_EQ(settled.budget.size(), 2U);
+  EXPECT_EQ(settled.budget[0].kind, analysis::ContributionKind::background);
   EXPECT_EQ(settled.budget[0].name(), "background in the sensor");
   EXPECT_NEAR(total_phase(settled), 0.001 / std::sqrt(2.0), 1e-6);
   EXPECT_TRUE(settled.flags.empty());
@@ -166,8 +166,24 @@ TEST(LineBounds, NoiseIsNoBackground) {
   const StepResult step = result(1, {sensor(10.0)});
   bounds.add(step);
   add_others(bounds, {LineKind::background, 80.0, 0, {1.2e-4, 1e-4}});
-  EXPECT_FALSE(bounds.concerns(step));
+  EXPECT_TRUE(bounds.settled(step).budget.empty());
   EXPECT_EQ(bounds.settled(step).u_magnitude, step.u_magnitude);
+}
+
+// Hum of 0.001 of the amplitude, a quarter of a hertz away: it beats by up to 0.002.
+TEST(LineBounds, AChangeIsNoneWhereALineBeatsAsMuch) {
+  const analysis::UnresolvedLine near{LineKind::mains, 50.0, 1, 0.25};
+  for (const double h : {0.01, 1e-4}) {
+    for (const double change : {0.0019, 0.0021}) {
+      LineBounds bounds;
+      add_others(bounds, {LineKind::mains, 50.0, 0, {h, 1e-5}});
+      StepResult step = beside(near, 10.0);
+      step.change = {1.0, 0.6 * change, -0.8 * change};
+      step.flags.push_back(make_flag(ResultFlag::changed_within_step));
+      const bool explained = h == 0.01 && change < 0.002;
+      EXPECT_EQ(bounds.settled(step).flags.size(), explained ? 1U : 2U) << h << " " << change;
+    }
+  }
 }
 
 TEST(LineBounds, WhatWasNeverSeenKeepsItsFlag) {

@@ -122,7 +122,7 @@ TEST(ShapeCheck, HeldValuesAndReadBuffersAreSaid) {
 
 TEST(ShapeCheck, ValuesInTurnOfTwoSensorsAreSaidWithTheirDifference) {
   analysis::ChannelFit alternating = channel("dau/z", 0.0);
-  alternating.scatter.alternating_part = 0.025;
+  alternating.scatter.alternating.certain_rel = 0.025;
   StepResult of_two = result(1e-3);
   check_shape(channel("acs/ref", 0.0), alternating, of_two);
   ASSERT_THAT(kinds(of_two), testing::ElementsAre(ResultFlag::values_off_stamps));
