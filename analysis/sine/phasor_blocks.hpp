@@ -5,7 +5,8 @@
 //
 // All blocks hold the same whole number of periods, at least one, and last 20 ms and 12 samples at
 // least; there are 256 at the most. P_k is about the phase origin of the fits, so that its phase
-// stays where the frequency is that of the fits. One pass over the samples for all channels.
+// stays where the frequency is that of the fits; what its slope along the record adds to the fit of
+// a block is taken out. One pass over the samples for all channels.
 //
 // Blocks that are too thin (samples lost) are left out; empty where fewer than four remain. Any
 // thread.

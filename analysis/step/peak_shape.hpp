@@ -19,8 +19,9 @@
 // amplitude is just found at 1 % noise, of 0.03 % at 0.1 %. Above an eighth of the sensor's rate
 // harmonics fold and filters take them away: 0.8 % at a fifth. The sensor is bent where the error
 // is positive, the reference where it is negative; that, too, where its own harmonics alone show it
-// and the sensor shows less than a quarter of those up to a quarter of its rate. A soft knee may
-// lose up to three times as much. Any thread.
+// and the sensor shows less than a quarter of those up to a quarter of its rate; or of all, where
+// four orders and more are those of a flat top but for a tenth. A soft knee may lose up to three
+// times as much. Any thread.
 #pragma once
 
 #include <complex>

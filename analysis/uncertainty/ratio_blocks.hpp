@@ -5,7 +5,8 @@
 //
 // 1. Two clocks that are linked by sync alone are apart by an offset that is known modulo a period,
 //    and to `reach_s` from where the records begin (a triangle). Each candidate has the weight of
-//    that triangle and of the likelihood of its d_k, constant but for noise.
+//    that triangle and of the likelihood of its d_k, constant but for noise. The sensor's group
+//    delay, up to 50 ms or a period, shifts what both share as well: eight parts of it are tried.
 // 2. Where either signal varies more than white noise does (once in 10^5), the ratio of the whole
 //    records is not the best estimate: blocks of different phase add to a shorter phasor, and the
 //    records do not cover the same part of what both share. `correction` is the weighted mean of
@@ -13,7 +14,7 @@
 //    square of the phase's advance in one; else it is 0, so that clean records keep their value.
 // 3. Scatter of d_k in up to 16 groups, s / sqrt(m), larger where neighbours resemble each other.
 // 4. The best split of d_k into two levels is a change where chance gives it once in 10^4, against
-//    noise as white as stated or as large as what the split leaves.
+//    noise as white as stated or as large as what the split leaves, for every likely offset.
 //
 // Any thread.
 #pragma once
