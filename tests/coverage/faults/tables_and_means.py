@@ -12,6 +12,7 @@ from judgement import (
     COVERED,
     COVERED_AS_STUDENT,
     COVERED_NO_FLAG,
+    COVERED_NO_MORE,
     COVERED_OR_FLAGGED,
     FLAGGED,
 )
@@ -131,6 +132,7 @@ TABLE = {**LITTLE_NOISE, "calibrated_reference": True}
 AT_TABLE_HZ = {"frequencies": ("12.5", "14", "16", "18", "25", "31.5")}
 HIGH_PASSES = {"just visible": 0.3, "clear": 1.0, "gross": 3.0}  # corner in Hz
 SCATTER = {"just visible": 5e-4, "clear": 2e-3, "gross": 2e-2}
+TWO = {**SHORT_ANALOGUE_STEPS, "frequencies": ("31.5", "80")}
 FOUR = {**SHORT_ANALOGUE_STEPS, "frequencies": ("12.5", "31.5", "80", "128")}
 TEN = {
     **SHORT_ANALOGUE_STEPS,
@@ -168,6 +170,10 @@ CLASSES = {
         for n in (2, 3, 5)
         for strength, scatter_rel in SCATTER.items()
     },
+    **{
+        f"mean of {n}, sweeps scatter, two frequencies": sweeps_scatter(TWO, n, SCATTER["clear"])
+        for n in (2, 3, 5)
+    },
     "mean of 2, sweeps scatter, ten frequencies": sweeps_scatter(TEN, 2, SCATTER["gross"]),
     "mean of 3, one sweep upside down": bench(
         SHORT_ANALOGUE_STEPS, repetitions=3, fault=UpsideDown
@@ -195,6 +201,12 @@ EXPECTED = [
         for n in (2, 3, 5)
         for strength in SCATTER
     ),
+    # Far above the noise nothing is left to guess: neither more nor less than stated.
+    *(Row(f"mean of {n}, sweeps scatter, gross", MEAN, COVERED_NO_MORE) for n in (2, 3, 5)),
+    *(
+        Row(f"mean of {n}, sweeps scatter, two frequencies", MEAN, COVERED_AS_STUDENT)
+        for n in (2, 3, 5)
+    ),
     Row("mean of 2, sweeps scatter, ten frequencies", MEAN, COVERED_AS_STUDENT),
     Row("mean of 3, one sweep upside down", MEAN, FLAGGED),
     Row("group delay at multiples of 40 Hz", MEAN, FLAGGED),
@@ -202,6 +214,7 @@ EXPECTED = [
     Row("clean, three frequencies that tell the delay", MEAN, COVERED_NO_FLAG),
 ]
 MORE_DRAWS = {
-    **{f"mean of {n}, sweeps scatter, gross": 2 for n in (2, 3, 5)},
+    **{f"mean of {n}, sweeps scatter, gross": 4 for n in (2, 3, 5)},
+    **{f"mean of {n}, sweeps scatter, two frequencies": 2 for n in (2, 3, 5)},
     "mean of 2, sweeps scatter, ten frequencies": 2,
 }
