@@ -23,6 +23,8 @@ constexpr std::array rows{
     Row{ResultFlag::clock_uncertainty_unknown, true,
         "U of the phase lacks the uncertainty of the time stamps"},
     Row{ResultFlag::excitation_broken_off, true, "the step was not finished"},
+    Row{ResultFlag::step_number_uncertain, false,
+        "the value holds for its frequency and level; which repetition it is, is not known"},
     Row{ResultFlag::level_off_plan, false,
         "the value holds for the level that the reference measured, which is stated"},
     Row{ResultFlag::over_range, true, "a sine that is cut off is wrong by more than U"},

@@ -113,7 +113,7 @@ Evaluation AbsoluteTime::evaluation(std::size_t step, const RunRecords& records)
   std::vector<SourceInterval> sensors = sensor_intervals(*recipe_, records, *interval);
   std::vector<SourceInterval> all{acs};
   all.insert(all.end(), sensors.begin(), sensors.end());
-  StepTask task = make_step_task(recipe_, step, records.excitation(), all);
+  StepTask task = make_step_task(recipe_, step, records, all);
   return [task = std::move(task), acs = std::move(acs), sensors = std::move(sensors)](
              const std::stop_token& stop) { return evaluate(task.until(stop), acs, sensors); };
 }

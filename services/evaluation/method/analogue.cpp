@@ -85,7 +85,7 @@ Evaluation Analogue::evaluation(std::size_t step, const RunRecords& records) {
                const std::stop_token&) { return results; };
   }
   SourceInterval acs = records.samples(roles_.reference.source, *interval);
-  StepTask task = make_step_task(recipe_, step, records.excitation(), {acs});
+  StepTask task = make_step_task(recipe_, step, records, {acs});
   return [task = std::move(task), acs = std::move(acs)](const std::stop_token& stop) {
     return evaluate(task.until(stop), acs);
   };

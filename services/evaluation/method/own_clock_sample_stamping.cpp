@@ -124,7 +124,7 @@ Evaluation OwnClockSampleStamping::evaluation(std::size_t step, const RunRecords
                       sensor_intervals(*recipe_, records, *of_dau)};
   std::vector<SourceInterval> all{sources.acs, sources.dau};
   all.insert(all.end(), sources.sensors.begin(), sources.sensors.end());
-  StepTask task = make_step_task(recipe_, step, records.excitation(), all);
+  StepTask task = make_step_task(recipe_, step, records, all);
   return [task = std::move(task), sources = std::move(sources)](const std::stop_token& stop) {
     return evaluate(task.until(stop), sources);
   };

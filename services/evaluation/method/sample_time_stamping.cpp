@@ -114,7 +114,7 @@ Evaluation SampleTimeStamping::evaluation(std::size_t step, const RunRecords& re
   }
   SourceInterval acs = records.samples(roles_.sync_acs.source, *of_acs);
   SourceInterval dau = records.samples(roles_.sync_dau.source, *of_dau);
-  StepTask task = make_step_task(recipe_, step, records.excitation(), {acs, dau});
+  StepTask task = make_step_task(recipe_, step, records, {acs, dau});
   return [task = std::move(task), acs = std::move(acs), dau = std::move(dau)](
              const std::stop_token& stop) { return evaluate(task.until(stop), acs, dau); };
 }

@@ -84,7 +84,7 @@ std::vector<StepResult> SeriesTimeStamping::evaluate(std::size_t step, const Run
   }
   const SourceInterval acs = records.samples(roles_.sync_acs.source, *interval);
   SeriesStepOutput evaluated =
-      evaluate_series_step({.task = make_step_task(recipe_, step, records.excitation(), {acs}),
+      evaluate_series_step({.task = make_step_task(recipe_, step, records, {acs}),
                             .acs = acs,
                             .oscilloscope = records.of(roles_.sync_dso.source),
                             .sensor = records.of(roles_.dut.front().source),

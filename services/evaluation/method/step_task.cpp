@@ -82,8 +82,8 @@ std::string likely_cause(const RunRecords& records, const RecipeStep& step,
 } // namespace
 
 StepTask make_step_task(std::shared_ptr<const Recipe> recipe, std::size_t step,
-                        const ExcitationProgress& excitation,
-                        const std::vector<SourceInterval>& sources) {
+                        const RunRecords& records, const std::vector<SourceInterval>& sources) {
+  const ExcitationProgress& excitation = records.excitation();
   StepTask task{std::move(recipe), excitation.order().index(step)};
   for (const SourceInterval& source : sources) {
     const auto& record = source.record;
@@ -98,6 +98,9 @@ StepTask make_step_task(std::shared_ptr<const Recipe> recipe, std::size_t step,
   }
   if (excitation.is_broken_off(step)) {
     task.flags.push_back(make_flag(ResultFlag::excitation_broken_off));
+  }
+  if (records.is_uncertain(step)) {
+    task.flags.push_back(make_flag(ResultFlag::step_number_uncertain));
   }
   return task;
 }

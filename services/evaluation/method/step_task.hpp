@@ -28,9 +28,9 @@ struct StepTask {
 };
 
 // With the flags that every method has: samples lost, step shorter than planned, excitation broken
-// off.
+// off, number of the step uncertain.
 [[nodiscard]] StepTask make_step_task(std::shared_ptr<const Recipe> recipe, std::size_t step,
-                                      const ExcitationProgress& excitation,
+                                      const RunRecords& records,
                                       const std::vector<SourceInterval>& sources);
 
 // Why a step has no interval in the source of this sync channel: what the whole records show where

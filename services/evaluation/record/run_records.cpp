@@ -244,6 +244,10 @@ std::string RunRecords::why_missing(std::size_t step) const {
   return schedule_ && step < schedule_->problems.size() ? schedule_->problems[step] : "";
 }
 
+bool RunRecords::is_uncertain(std::size_t step) const {
+  return schedule_ && step < schedule_->uncertain.size() && schedule_->uncertain[step];
+}
+
 std::shared_ptr<const SourceRecord> RunRecords::part_of(const SourceRecord& whole,
                                                         const TimeInterval& interval) const {
   return copies_

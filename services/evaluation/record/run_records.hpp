@@ -92,6 +92,8 @@ public:
   // Why a step has no value, where one channel was found to lack it, or somebody has looked for it
   // before (run_schedule.hpp).
   [[nodiscard]] std::string why_missing(std::size_t step) const;
+  // What was found of it may as well be another step of its frequency and level.
+  [[nodiscard]] bool is_uncertain(std::size_t step) const;
 
   // Evaluated in the caller's thread these look at the records themselves, else at copies.
   void copy_samples(bool copies) { copies_ = copies; }

@@ -24,6 +24,7 @@ struct RunSchedule {
 
   std::vector<OfRecord> records;     // in the order of the method's searches
   std::vector<std::string> problems; // by step: why it has no value; empty where it has one
+  std::vector<bool> uncertain;       // by step: what is there, may as well be another step
 };
 
 } // namespace dyncal::services

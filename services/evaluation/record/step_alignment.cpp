@@ -15,7 +15,11 @@ namespace dyncal::services {
 namespace {
 
 using Plan = std::span<const RecipeStep* const>;
-using StepsInRecords = std::vector<JoinedExcitation>; // by step; neither: it shows nowhere
+
+struct StepsInRecords {
+  std::vector<JoinedExcitation> shown; // by step; neither: it shows nowhere
+  std::vector<bool> uncertain;         // by step
+};
 
 // Of a pause: what stays within it is cut out of it.
 constexpr double whole_pause = 0.7;
@@ -49,14 +53,14 @@ std::optional<std::vector<std::size_t>> only_places(Plan plan,
 
 std::optional<StepsInRecords> by_frequency(Plan plan,
                                            const std::vector<RecordedExcitations>& records) {
-  StepsInRecords steps(plan.size());
+  StepsInRecords steps{std::vector<JoinedExcitation>(plan.size()), std::vector<bool>(plan.size())};
   for (std::size_t record = 0; record < records.size(); ++record) {
     const auto places = only_places(plan, records[record].found);
     if (!places) {
       return std::nullopt;
     }
     for (std::size_t i = 0; i < places->size(); ++i) {
-      JoinedExcitation& step = steps[(*places)[i]];
+      JoinedExcitation& step = steps.shown[(*places)[i]];
       (record == 0 ? step.first : step.second) = i;
     }
   }
@@ -114,10 +118,12 @@ StepsInRecords placed(Plan plan, const std::vector<RecordedExcitations>& records
   }
   const bool late = std::all_of(records.begin(), records.end(), begins_late);
   const auto places = place_excitations(plan, excitations, late);
-  StepsInRecords steps(plan.size());
+  const auto other_way = place_excitations(plan, excitations, !late);
+  StepsInRecords steps{std::vector<JoinedExcitation>(plan.size()), std::vector<bool>(plan.size())};
   for (std::size_t i = 0; i < joined.size(); ++i) {
     if (places[i]) {
-      steps[*places[i]] = joined[i];
+      steps.shown[*places[i]] = joined[i];
+      steps.uncertain[*places[i]] = places[i] != other_way[i];
     }
   }
   return steps;
@@ -134,8 +140,9 @@ std::optional<ScheduledStep> scheduled(const RecordedExcitations& record,
 
 // In `record`, one of the two: the step within which it begins.
 void cut(Plan plan, const RecordedExcitations& record,
-         std::optional<std::size_t> JoinedExcitation::*place, const StepsInRecords& steps,
-         RunSchedule::OfRecord& scheduled, std::vector<std::string>& problems) {
+         std::optional<std::size_t> JoinedExcitation::*place,
+         const std::vector<JoinedExcitation>& steps, RunSchedule::OfRecord& scheduled,
+         std::vector<std::string>& problems) {
   std::vector<const RecipeStep*> of_excitation(record.found.size());
   std::size_t first = plan.size();
   for (std::size_t step = 0; step < plan.size(); ++step) {
@@ -184,17 +191,18 @@ RunSchedule align_steps(Plan plan, const std::vector<RecordedExcitations>& recor
     }
     steps = placed(plan, records, *in_order);
   }
+  const std::vector<JoinedExcitation>& shown = steps->shown;
+  schedule.uncertain = steps->uncertain;
   for (std::size_t step = 0; step < plan.size(); ++step) {
-    schedule.records[0][step] = scheduled(records[0], (*steps)[step].first);
+    schedule.records[0][step] = scheduled(records[0], shown[step].first);
     if (records.size() == 2) {
-      schedule.records[1][step] = scheduled(records[1], (*steps)[step].second);
+      schedule.records[1][step] = scheduled(records[1], shown[step].second);
     }
-    schedule.problems[step] = why_missing(plan, records, *steps, step);
+    schedule.problems[step] = why_missing(plan, records, shown, step);
   }
-  cut(plan, records[0], &JoinedExcitation::first, *steps, schedule.records[0], schedule.problems);
+  cut(plan, records[0], &JoinedExcitation::first, shown, schedule.records[0], schedule.problems);
   if (records.size() == 2) {
-    cut(plan, records[1], &JoinedExcitation::second, *steps, schedule.records[1],
-        schedule.problems);
+    cut(plan, records[1], &JoinedExcitation::second, shown, schedule.records[1], schedule.problems);
   }
   return schedule;
 }

@@ -5,7 +5,10 @@
 //    that is its step; so it is where nothing is missing.
 // 2. Else instants, phases and levels of sync join the records (excitation_pairs.hpp), and
 //    frequencies, levels and times place what is joined in the plan (step_places.hpp).
-// 3. A step that a record lacks has no value, and its problem names the record and the cause. Where
+// 3. Where steps of one frequency and level are missing in all records, and neither levels nor
+//    times tell which, the places count from the first step, or from the last one where the records
+//    begin within a pause; what would have another place the other way round, is uncertain.
+// 4. A step that a record lacks has no value, and its problem names the record and the cause. Where
 //    nothing tells which excitations are the same, no step has a value.
 //
 // Plain function, any thread. REQUIRES: one or two records.

@@ -41,6 +41,11 @@ constexpr std::array rows{
         "the step ended before its time, and what was recorded until then was evaluated; repeat "
         "the step",
         true},
+    Row{ResultFlag::step_number_uncertain, "step_number_uncertain",
+        "it may be another step of this frequency and level",
+        "steps of the same frequency and level were planned, the records do not show all of them, "
+        "and nothing tells which these are; the value holds for its frequency and level, its "
+        "number may be another one; begin the records before the first step"},
     Row{ResultFlag::level_off_plan, "level_off_plan", "level off plan",
         "the reference shows another level than planned, and the value holds for what it shows; "
         "check level_per_volt and the amplifier, or set level_tolerance_rel"},

@@ -18,6 +18,7 @@ enum class ResultFlag {
   shorter_than_planned,
   clock_uncertainty_unknown,
   excitation_broken_off,
+  step_number_uncertain,
   level_off_plan,
   over_range,
   values_stuck,

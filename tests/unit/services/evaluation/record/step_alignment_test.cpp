@@ -149,6 +149,7 @@ TEST_F(StepAlignment, WholeRecordsAreInTheOrderOfThePlan) {
   EXPECT_THAT(of_acs(), ElementsAre(0, 1, 2));
   EXPECT_THAT(of_dau(), ElementsAre(0, 1, 2));
   EXPECT_THAT(schedule_.problems, Each(IsEmpty()));
+  EXPECT_THAT(schedule_.uncertain, Each(false));
 }
 
 TEST_F(StepAlignment, FrequenciesTellWhichStepsARecordHas) {
@@ -180,6 +181,7 @@ TEST_F(StepAlignment, PhasesTellEqualStepsApart) {
   EXPECT_THAT(of_acs(), ElementsAre(0, 1, 2, 3, -1));
   EXPECT_THAT(of_dau(), ElementsAre(-1, 1, 2, 3, 4));
   EXPECT_THAT(schedule_.problems[4], HasSubstr("the record of 'acs' ends before it"));
+  EXPECT_THAT(schedule_.uncertain, Each(false));
 }
 
 // A generator that is never switched off in phase, and steps that a program has timed: any of them
@@ -238,6 +240,7 @@ TEST_F(StepAlignment, TimesTellWhichOfEqualStepsBothRecordsLack) {
   EXPECT_THAT(of_acs(), ElementsAre(0, 1, -1, 3, 4));
   EXPECT_THAT(of_dau(), ElementsAre(0, 1, -1, 3, 4));
   EXPECT_THAT(schedule_.problems[2], HasSubstr("none was there between step 2"));
+  EXPECT_THAT(schedule_.uncertain, Each(false));
 }
 
 TEST_F(StepAlignment, ARunThatWasBrokenOffHasItsFirstSteps) {
@@ -249,6 +252,7 @@ TEST_F(StepAlignment, ARunThatWasBrokenOffHasItsFirstSteps) {
   EXPECT_THAT(of_acs(), ElementsAre(0, 1, 2, -1, -1));
   EXPECT_THAT(of_dau(), ElementsAre(0, 1, 2, -1, -1));
   EXPECT_THAT(schedule_.problems[3], HasSubstr("the last that was there is step 3"));
+  EXPECT_THAT(schedule_.uncertain, ElementsAre(true, true, true, false, false));
 }
 
 // Their frequencies are the same, and so are the times between them; their phases are not.
@@ -293,6 +297,27 @@ TEST_F(StepAlignment, AClockThatIsSetBackCostsNoStepWhoseFrequencyTells) {
     has.push_back(step.has_value());
   }
   EXPECT_THAT(has, ElementsAre(true, true, false, true, true, true));
+}
+
+// The offset between the clocks is free: any of one record could be any of the other one.
+TEST_F(StepAlignment, OneOfSeveralEqualStepsIsRefusedWhereTheRecordsMayShowAnother) {
+  plan({80.0, 80.0, 80.0, 80.0});
+  align({1, 2, 3}, {0, 1, 2});
+  EXPECT_THAT(of_acs(), Each(-1));
+  EXPECT_THAT(of_dau(), Each(-1));
+  EXPECT_THAT(schedule_.problems, Each(HasSubstr("nothing tells")));
+  align({}, {0, 1, 2});
+  EXPECT_THAT(of_dau(), Each(-1));
+}
+
+// A record that begins or ends within a pause may have the first repetition or the second one.
+TEST_F(StepAlignment, WhichRepetitionIsMissingIsNotMadeUp) {
+  plan({31.5, 80.0, 125.0, 31.5, 80.0, 125.0});
+  align({record("acs", acs_clock, {0, 1, 2, 3})});
+  EXPECT_EQ(std::count(schedule_.uncertain.begin(), schedule_.uncertain.end(), true), 2);
+  align({record("acs", acs_clock, {0, 1})}); // 125 Hz comes first: the others are of the second
+  EXPECT_THAT(of_acs(), ElementsAre(-1, -1, 2, 3, 4, 5));
+  EXPECT_THAT(schedule_.uncertain, Each(false));
 }
 
 TEST_F(StepAlignment, OneRecordAloneFindsItsPlaceByFrequencyAndLevel) {
