@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Cuts good runs: whole steps, or a record's begin or end, from one record or from both, and holds
-what `dyncal analyse` gives of the rest against what it gave of the whole.
+"""Cuts good runs: whole steps, a repetition, a block in the middle, or a record's begin or end,
+from one record or from both, and holds what `dyncal analyse` gives of the rest against what it gave
+of the whole. (Recordings, whose announced steps give the truth: recorded_cuts_test.cpp.)
 
     cuts.py BUILD/bin/dyncal                          short: 100 cuts (test command)
     cuts.py BUILD/bin/dyncal --draws 1000 --seed 7    long, of other runs
@@ -12,14 +13,22 @@ A result is of the step whose samples it used, by their stamps: never of two ste
   budget holds a bound of the hum, which is of the whole record.
 - Of steps that were cut at most 1 % are farther from it than
   3 sqrt(u_cut^2 - u_whole^2) + 0.1 u_cut (a finding when more are by the binomial bound), and none
-  than 5 sqrt(u_cut^2 - u_whole^2) + 0.1 u_cut. All u are those that are stated. What is evaluated
-  may also lie elsewhere in the step and be as long as before: then the difference of two means of
-  the same noise, of which some samples are in both, takes the place of the square root where it is
-  larger.
+  than 5 sqrt(u_cut^2 - u_whole^2) + 0.1 u_cut. All u are those that are stated.
+- Exchanged samples. The wording above holds where the samples of the cut step are some of those
+  of the whole one. Settling is counted from the begin of the record that is left, so that what is
+  evaluated may lie elsewhere in the step and be as long as before: n samples go, n others come,
+  u_cut = u_whole, and the wording would allow 0.1 u for a difference of two means of noise that is
+  not the same. Its variance is u_cut^2 + u_whole^2 - 2 u_whole^2 n_both / n_cut, of the rows of
+  noise only; no other row may move. This takes the place of the square root where samples came
+  that the whole step had not used, and nowhere else; how many values are judged so is printed.
 - A step has no value when a record lacks it, and its problem names no sync cable.
-- It has the frequency and the level of its step, and its number; another number of the same
-  frequency and level only where both records lack a step of these.
-- A value is refused only where steps of one frequency and level are left in both records.
+- It has the frequency and the level of its step. It has its number, or the flag
+  `step_number_uncertain`; this only where every record in which steps are searched lacks a step of its
+  frequency and level: then equal steps are left of which nothing tells which they are, and what is certain is the value
+  at a frequency and a level.
+- A value is refused only where steps of one frequency and level are left in both records: the
+  offset between the clocks is free, so that any of one record could be any of the other. Then a
+  value would be a guess, and the refusal has a need; in one record alone there is none.
 
 The seed is fixed unless --seed gives another. Needs python3-numpy; says so and leaves with status
 77 without it.
@@ -51,8 +60,11 @@ EQUAL = 1e-12
 EQUAL_WITH_HUM_U = 0.01
 MARGIN_S = 0.15  # beside a step, whose frames of the search a cut may touch
 BEYOND = 0.01
-# Steps of one frequency and level can be told by their phases alone: some draws leave too few.
-REFUSED_OF_ALIKE = 0.15
+BLOCK_S = (0.02, 1.0)  # length of a block that is cut from anywhere
+UNCERTAIN = "step_number_uncertain"
+# Steps of one frequency and level can be told by their phases alone: some draws leave too few. One
+# such cut refuses all steps that it leaves, so that a kind with ten cuts alone shows no share.
+REFUSED_OF_ALIKE = 0.05
 
 SHORT = {"duration_s": 0.8, "acs_rate_hz": 2000.0}
 WHOLE = {"lacks": "first", "records": ()}
@@ -64,6 +76,9 @@ KINDS = {
         SHORT, frequencies=("80",) * 5, fault=missing(**WHOLE, levels=LEVELS)
     ),
     "equal steps": bench(SHORT, frequencies=("80",), repetitions=6),
+    "numbered samples": bench(
+        SHORT, frequencies=("31.5", "80", "125"), repetitions=2, records_sample_numbers=True
+    ),
     "analogue": bench(SHORT, method="analogue", frequencies=("31.5", "80", "125"), repetitions=2),
     "absolute time": bench(
         SHORT, method="absolute-time", frequencies=("31.5", "80", "125"), repetitions=2
@@ -118,6 +133,17 @@ class Run:
         return (self.rows[name]["t_ns"] - self.epochs_ns[name]) * 1e-9
 
 
+def draw_steps(run, rng, repetition):
+    """The first and last of each row of steps that are cut: of a repetition, or one or two."""
+    if repetition:
+        length = len(run.steps) // run.calibration.settings.repetitions
+        first = length * rng.integers(run.calibration.settings.repetitions)
+        if length < len(run.steps):
+            return [(first, first + length - 1)]
+    places = rng.choice(len(run.steps), size=rng.integers(1, 3), replace=False)
+    return [(place, place) for place in places]
+
+
 def draw_cut(run, rng):
     """By record, the intervals of true time that are cut from it."""
     names = list(run.epochs_ns)
@@ -128,16 +154,20 @@ def draw_cut(run, rng):
         if cuts and alike:
             cuts[name] = next(iter(cuts.values()))
             continue
-        kind = rng.integers(3)
+        kind = rng.integers(5)
         if kind == 0:
             cuts[name] = [(-math.inf, rng.uniform(0.0, 0.7) * run.end_s)]
         elif kind == 1:
             cuts[name] = [(rng.uniform(0.3, 1.0) * run.end_s, math.inf)]
+        elif kind == 2:
+            middle_s = rng.uniform(0.0, run.end_s)
+            half_s = 0.5 * rng.uniform(*BLOCK_S)
+            cuts[name] = [(middle_s - half_s, middle_s + half_s)]
         else:
-            places = rng.choice(len(run.steps), size=rng.integers(1, 3), replace=False)
             quiet_s = 0.4 * run.calibration.settings.pause_s
             cuts[name] = [
-                (run.steps[i].begin_s - quiet_s, run.steps[i].end_s + quiet_s) for i in places
+                (run.steps[first].begin_s - quiet_s, run.steps[last].end_s + quiet_s)
+                for first, last in draw_steps(run, rng, kind == 3)
             ]
     return cuts
 
@@ -163,9 +193,15 @@ def span_ns(point, source):
     return of_source[0]["first_stamp_ns"], of_source[0]["last_stamp_ns"]
 
 
+def has_others(point, whole, sources):
+    """Whether samples were used that the whole step had not."""
+    spans = [(span_ns(point, name), span_ns(whole, name)) for name in sources]
+    return any(cut[0] < before[0] or cut[1] > before[1] for cut, before in spans)
+
+
 def variance_of_change(point, whole, quantity, sources):
-    """Of the noise that samples left out, or others in their place, make of a value: relative, or
-    in rad^2. With u^2 = s^2 / n: u_cut^2 + u_whole^2 - 2 u_whole^2 n_both / n_cut."""
+    """Of the noise that others in the place of samples make of a value: relative, or in rad^2.
+    With u^2 = s^2 / n: u_cut^2 + u_whole^2 - 2 u_whole^2 n_both / n_cut."""
     column = "u_magnitude_rel" if quantity == "magnitude" else "u_phase_rad"
     noise2 = [
         {row["subject"]: row[column] ** 2 for row in one["budget"] if row["kind"] == "noise of"}
@@ -190,8 +226,12 @@ class Judgement:
         self.left = [
             [left_of(step, cuts.get(name, [])) for name in run.epochs_ns] for step in run.steps
         ]
+        # Steps are searched in the sync of both records, or in the reference alone: "acs" is first.
+        self.searched = 2 if run.calibration.settings.method == "sample-timestamping" else 1
         self.findings = []
         self.of_cut_steps = []  # deviation over what is allowed at 3
+        self.exchanged = 0  # of these values, of samples that the whole step had not used
+        self.uncertain = 0  # numbers that are said to be so
         self.refused = 0  # steps that are whole, where others are like them
 
     def like(self, step):
@@ -238,10 +278,13 @@ class Judgement:
                 f"step {place + 1} is given as {point['frequency_text_hz']} Hz, "
                 f"{point['level_m_s2']} m/s^2"
             )
-        elif point["step"] != place + 1:
-            lacking = [i for i in self.like(step) if "whole" not in self.left[i]]
-            if not lacking:
-                self.findings.append(f"step {place + 1} is given as step {point['step']}")
+        said = UNCERTAIN in point["flag_names"]
+        self.uncertain += said
+        lacking = [i for i in self.like(step) if "whole" not in self.left[i][: self.searched]]
+        if point["step"] != place + 1 and not said:
+            self.findings.append(f"step {place + 1} is given as step {point['step']}, unsaid")
+        if said and not lacking:
+            self.findings.append(f"the number of step {place + 1} is uncertain, without need")
 
     def judge_value(self, point, place):
         whole = self.run.whole[place]
@@ -259,8 +302,12 @@ class Judgement:
                     )
                 continue
             scale = whole["magnitude"] if quantity == "magnitude" else 1.0
-            noise = scale**2 * variance_of_change(point, whole, quantity, self.run.epochs_ns)
-            more = math.sqrt(max(u_cut**2 - u_whole**2, noise))
+            more2 = max(0.0, u_cut**2 - u_whole**2)
+            if has_others(point, whole, self.run.epochs_ns):
+                noise = variance_of_change(point, whole, quantity, self.run.epochs_ns)
+                self.exchanged += scale**2 * noise > more2
+                more2 = max(more2, scale**2 * noise)
+            more = math.sqrt(more2)
             self.of_cut_steps.append(change / (3.0 * more + 0.1 * u_cut))
             if change > 5.0 * more + 0.1 * u_cut:
                 self.findings.append(
@@ -294,6 +341,8 @@ def judged(work):
                 [Finding(text, one) for one in judgement.findings],
                 judgement.of_cut_steps,
                 judgement.refused,
+                judgement.exchanged,
+                judgement.uncertain,
                 sum(set(left) == {"whole"} for left in judgement.left),
             )
         )
@@ -326,18 +375,20 @@ def report(judgements):
     wrong = [f"{one.where}: {one.what}" for _, found, *_ in judgements for one in found]
     for kind in KINDS:
         of_kind = [one for one in judgements if one[0] == kind]
-        whole = sum(one[4] for one in of_kind)
+        whole = sum(one[6] for one in of_kind)
         of_cut = [ratio for one in of_kind for ratio in one[2]]
         refused = sum(one[3] for one in of_kind)
         print(
             f"{kind:20} {len(of_kind):4} cuts, {whole:5} steps left whole, {refused:3} of them "
-            f"refused, {len(of_cut):4} values of cut steps, largest "
+            f"refused, {sum(one[5] for one in of_kind):3} numbers uncertain, {len(of_cut):4} "
+            f"values of cut steps ({sum(one[4] for one in of_kind)} of exchanged samples), largest "
             f"{max(of_cut, default=0.0):.2f} of what is allowed"
         )
         if of_kind and not whole:
             wrong.append(f"{kind}: no step was left whole, nothing was judged")
-        if refused > REFUSED_OF_ALIKE * whole:
-            wrong.append(f"{kind}: {refused} of {whole} steps that are whole have no value")
+    refused, whole = (sum(one[column] for one in judgements) for column in (5, 6))
+    if refused > REFUSED_OF_ALIKE * whole:
+        wrong.append(f"{refused} of {whole} steps that are whole have no value")
     of_cut = [ratio for one in judgements for ratio in one[2]]
     beyond = sum(ratio > 1.0 for ratio in of_cut)
     if too_few(len(of_cut) - beyond, len(of_cut), 1.0 - BEYOND, CHANCE):
