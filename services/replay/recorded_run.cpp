@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <map>
 #include <thread>
 #include <variant>
 
@@ -19,6 +20,7 @@
 #include "services/evaluation/result/transfer_function_message.hpp"
 #include "services/evaluation/run_evaluator.hpp"
 #include "services/recording/recorded_topics.hpp"
+#include "services/replay/measured_later.hpp"
 #include "services/replay/recorded_messages.hpp"
 #include "services/replay/recording_index.hpp"
 #include "services/replay/waiting_announcements.hpp"
@@ -117,6 +119,7 @@ public:
       evaluator_.finish_now();
       collect(evaluator_.recipe(), evaluator_.take_output(), outcome_);
     }
+    lateness_.refuse(outcome_);
     return outcome_of_walk_;
   }
 
@@ -136,7 +139,9 @@ private:
   void take_excitation(const recording::MessageInFile& message) {
     const auto excitation = recording::decode<wire::Excitation>(message.message.data);
     if (excitation && excitation->run() == run_) {
-      announcements_.add(here(), from_message(*excitation));
+      const StepAnnouncement announcement = from_message(*excitation);
+      lateness_.add(announcement, static_cast<std::int64_t>(now_));
+      announcements_.add(here(), announcement);
     }
   }
 
@@ -236,6 +241,7 @@ private:
     if (!source.answered) {
       return;
     }
+    lateness_.add(name, view_block(block), sent_ns);
     source.waiting.push_back(block);
     hand_over_waiting(name, source, false);
     if (source.waiting.empty() && !source.is_unfit) {
@@ -279,6 +285,7 @@ private:
   std::uint64_t now_ = 0; // log_time
   std::uint64_t walked_ = 0;
   WaitingAnnouncements announcements_;
+  MeasuredLater lateness_;
   Expected<void> outcome_of_walk_;
 };
 
