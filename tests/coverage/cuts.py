@@ -386,7 +386,7 @@ def report(judgements):
         )
         if of_kind and not whole:
             wrong.append(f"{kind}: no step was left whole, nothing was judged")
-    refused, whole = (sum(one[column] for one in judgements) for column in (5, 6))
+    refused, whole = (sum(one[column] for one in judgements) for column in (3, 6))
     if refused > REFUSED_OF_ALIKE * whole:
         wrong.append(f"{refused} of {whole} steps that are whole have no value")
     of_cut = [ratio for one in judgements for ratio in one[2]]
