@@ -23,9 +23,9 @@ A result is of the step whose samples it used, by their stamps: never of two ste
   that the whole step had not used, and nowhere else; how many values are judged so is printed.
 - A step has no value when a record lacks it, and its problem names no sync cable.
 - It has the frequency and the level of its step. It has its number, or the flag
-  `step_number_uncertain`; this only where every record in which steps are searched lacks a step of its
-  frequency and level: then equal steps are left of which nothing tells which they are, and what is certain is the value
-  at a frequency and a level.
+  `step_number_uncertain`; this only where every record in which steps are searched lacks a step of
+  its frequency and level: then equal steps are left of which nothing tells which they are, and what
+  is certain is the value at a frequency and a level.
 - A value is refused only where steps of one frequency and level are left in both records: the
   offset between the clocks is free, so that any of one record could be any of the other. Then a
   value would be a guess, and the refusal has a need; in one record alone there is none.
