@@ -7,6 +7,7 @@
 #include "services/bench/named_files.hpp"
 #include "services/command/own_recording.hpp"
 #include "services/contract/run_identity.hpp"
+#include "services/report/show_outcome.hpp"
 #include "services/report/stored_result.hpp"
 #include "services/store/store.hpp"
 
@@ -245,6 +246,10 @@ Expected<void> KeptRun::hold_against_recording(const RunOutcome& outcome,
   }
   if (!disk_->recorder) {
     say(not_held("there is none"));
+    return {};
+  }
+  if (!check_complete(outcome)) { // a step that was broken off has no end to agree on
+    say(not_held("the run is not whole"));
     return {};
   }
   const OwnRecordingCheck check = check_own_recording(

@@ -36,7 +36,7 @@ constexpr std::array rows{
     Row{ResultFlag::clock_uncertainty_unknown, "clock_uncertainty_unknown",
         "nothing is known of the uncertainty of its clock",
         "u of the phase holds nothing for the time stamps of this source; find their uncertainty "
-        "and add it by hand"},
+        "and state it as u_stamp_s of a file, or add it by hand"},
     Row{ResultFlag::excitation_broken_off, "excitation_broken_off", "excitation broken off",
         "the step ended before its time, and what was recorded until then was evaluated; repeat "
         "the step",
