@@ -66,6 +66,18 @@ protected:
     }
     EXPECT_EQ(arm_state(), wire::ARM_FINISHED);
   }
+  // At the end of the run, no more samples coming.
+  void expect_the_step_without_value() {
+    excite(wire::EXCITATION_DONE);
+    set_state(wire::MEASUREMENT_DONE);
+    for (int i = 0; i < 200 && !session_->finished(); ++i) {
+      pass(100ms);
+      acs_.send_nothing();
+      dau_.send_nothing();
+    }
+    ASSERT_EQ(published_.results().size(), 1U);
+    EXPECT_FALSE(published_.results()[0].valid());
+  }
 };
 
 // The same run in a network of its own, with nothing lost.
@@ -201,15 +213,7 @@ TEST_F(RunSessionCatchUp, TakesNothingOfASourceThatComesBackWithAnotherBenchFile
   describe(dau_);
   run_for(1s, {&acs_, &dau_});
   EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_OK);
-  excite(wire::EXCITATION_DONE);
-  set_state(wire::MEASUREMENT_DONE);
-  for (int i = 0; i < 200 && !session_->finished(); ++i) {
-    pass(100ms);
-    acs_.send_nothing();
-    dau_.send_nothing();
-  }
-  ASSERT_EQ(published_.results().size(), 1U);
-  EXPECT_FALSE(published_.results()[0].valid()); // its samples were those of another sensor
+  expect_the_step_without_value(); // its samples were those of another sensor
 }
 
 // Another sensor has been mounted; then the one that the run began with is put back.
@@ -241,15 +245,7 @@ TEST_F(RunSessionCatchUp, TakesNothingOfAnotherInstrument) {
     run_for(1s, {&acs_, &dau_});
     EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_OK);
   }
-  excite(wire::EXCITATION_DONE);
-  set_state(wire::MEASUREMENT_DONE);
-  for (int i = 0; i < 200 && !session_->finished(); ++i) {
-    pass(100ms);
-    acs_.send_nothing();
-    dau_.send_nothing();
-  }
-  ASSERT_EQ(published_.results().size(), 1U);
-  EXPECT_FALSE(published_.results()[0].valid()); // its samples were those of another sensor
+  expect_the_step_without_value(); // its samples were those of another sensor
 }
 
 // A description that is completed, or comes again from a service that was restarted, is no other.

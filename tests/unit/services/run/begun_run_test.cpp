@@ -9,6 +9,7 @@
 #include "services/version.hpp"
 #include "tests/unit/services/run/played_analysis.hpp"
 #include "tests/unit/services/run/played_generator.hpp"
+#include "tests/unit/services/run/two_steps.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -35,19 +36,8 @@ protected:
   bool was_announced_ = false;
 
   static BenchFile bench() {
-    BenchFile bench;
-    bench.bench = "b";
+    BenchFile bench = tests::bench_of_two_steps("b");
     bench.sha256 = "sha";
-    bench.excitation.frequencies_hz = {"40", "80"};
-    bench.excitation.levels_m_s2 = {10.0, 10.0};
-    bench.excitation.settling_s = 0.5;
-    bench.excitation.duration_s = 2.0;
-    bench.generator.driver = GeneratorDriver::scpi;
-    bench.generator.level_per_volt = 5.0;
-    bench.method.reference = {"acs", "reference"};
-    bench.method.sync_acs = {"acs", "sync"};
-    bench.method.sync_dau = {"dau", "sync"};
-    bench.method.dut = {{"dau", "acceleration_x"}};
     return bench;
   }
   void describe(const std::string& source, const std::string& serial) {

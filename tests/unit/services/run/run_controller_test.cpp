@@ -11,6 +11,7 @@
 
 #include "tests/unit/services/run/played_analysis.hpp"
 #include "tests/unit/services/run/played_generator.hpp"
+#include "tests/unit/services/run/two_steps.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -34,17 +35,7 @@ protected:
   std::vector<std::string> notices_;
 
   static BenchFile bench() {
-    BenchFile bench;
-    bench.bench = bench_name;
-    bench.excitation.frequencies_hz = {"40", "80"};
-    bench.excitation.levels_m_s2 = {10.0, 10.0};
-    bench.excitation.settling_s = 0.5;
-    bench.excitation.duration_s = 2.0;
-    bench.generator.driver = GeneratorDriver::scpi;
-    bench.generator.level_per_volt = 5.0;
-    bench.method.reference = {"acs", "reference"};
-    bench.method.sync_acs = {"acs", "sync"};
-    bench.method.sync_dau = {"dau", "sync"};
+    BenchFile bench = tests::bench_of_two_steps(bench_name);
     bench.method.dut = {{"dau", "acceleration_x"}, {"dau", "acceleration_y"}};
     return bench;
   }

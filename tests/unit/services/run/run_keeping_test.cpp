@@ -6,6 +6,7 @@
 #include "services/run/run_controller.hpp"
 #include "tests/unit/services/run/played_analysis.hpp"
 #include "tests/unit/services/run/played_generator.hpp"
+#include "tests/unit/services/run/two_steps.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -22,18 +23,7 @@ protected:
   std::stop_source stop_;
 
   Expected<RunOutcome> conduct(RunKeeping keeping) {
-    BenchFile bench;
-    bench.bench = "b";
-    bench.excitation.frequencies_hz = {"40", "80"};
-    bench.excitation.levels_m_s2 = {10.0, 10.0};
-    bench.excitation.settling_s = 0.5;
-    bench.excitation.duration_s = 2.0;
-    bench.generator.driver = GeneratorDriver::scpi;
-    bench.generator.level_per_volt = 5.0;
-    bench.method.reference = {"acs", "reference"};
-    bench.method.sync_acs = {"acs", "sync"};
-    bench.method.sync_dau = {"dau", "sync"};
-    bench.method.dut = {{"dau", "acceleration_x"}};
+    const BenchFile bench = tests::bench_of_two_steps("b");
     clock_.at(100ms, [this] { analysis_.report(wire::ARM_ARMED); });
     clock_.every(1s, [this] {
       if (!finished_) {

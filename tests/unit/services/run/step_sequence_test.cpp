@@ -13,6 +13,7 @@
 #include "services/run/run_controller.hpp"
 #include "tests/unit/services/run/played_analysis.hpp"
 #include "tests/unit/services/run/played_generator.hpp"
+#include "tests/unit/services/run/two_steps.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -66,18 +67,9 @@ protected:
   bool was_on_ = false;
 
   static BenchFile bench() {
-    BenchFile bench;
-    bench.bench = bench_name;
-    bench.excitation.frequencies_hz = {"40", "80", "125"};
-    bench.excitation.levels_m_s2 = {10.0, 10.0, 10.0};
-    bench.excitation.settling_s = 0.5;
-    bench.excitation.duration_s = 2.0;
-    bench.generator.driver = GeneratorDriver::scpi;
-    bench.generator.level_per_volt = 5.0;
-    bench.method.reference = {"acs", "reference"};
-    bench.method.sync_acs = {"acs", "sync"};
-    bench.method.sync_dau = {"dau", "sync"};
-    bench.method.dut = {{"dau", "acceleration_x"}};
+    BenchFile bench = tests::bench_of_two_steps(bench_name);
+    bench.excitation.frequencies_hz.push_back("125");
+    bench.excitation.levels_m_s2.push_back(10.0);
     return bench;
   }
   static wire::CalibrationResult good(Attempt attempt) {
