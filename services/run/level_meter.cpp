@@ -105,16 +105,17 @@ Expected<LevelReading> LevelMeter::level_after(double bench_time_s,
   return read_level(record_, *channel, *window, frequency, agreement_rel);
 }
 
-std::map<std::string, double>
+std::optional<std::map<std::string, double>>
 LevelMeter::quiet_levels_after(double bench_time_s,
                                const std::vector<std::string>& frequencies_hz) const {
   std::map<std::string, double> levels;
   const auto channel = record_.described() ? record_.channel(reference_.channel) : std::nullopt;
   for (const auto& [text, frequency] : listened_to(frequencies_hz)) {
     const auto window = window_after(bench_time_s, level_window_s(frequency.hz()));
-    if (channel && window) {
-      levels[text] = level_in(record_, *channel, *window, frequency).value_or(0.0);
+    if (!channel || !window) {
+      return std::nullopt;
     }
+    levels[text] = level_in(record_, *channel, *window, frequency).value_or(0.0); // noise alone
   }
   return levels;
 }

@@ -48,9 +48,9 @@ public:
   [[nodiscard]] Expected<LevelReading> level_after(double bench_time_s,
                                                    const analysis::Frequency& frequency,
                                                    double agreement_rel) const;
-  // The sines that samples from after `bench_time_s` show, the output being off. None where there
-  // is no window, and at frequencies below 4 Hz: mains do not hum there.
-  [[nodiscard]] std::map<std::string, double>
+  // The sines that samples from after `bench_time_s` show, the output being off; none of
+  // frequencies below 4 Hz: mains do not hum there. Nothing while a window lacks samples.
+  [[nodiscard]] std::optional<std::map<std::string, double>>
   quiet_levels_after(double bench_time_s, const std::vector<std::string>& frequencies_hz) const;
 
 private:

@@ -1,4 +1,5 @@
-// How long a step settles when its level is brought to the wanted one by closed loop.
+// How long a step settles when its level is brought to the wanted one by closed loop, and how far
+// that loop may drive.
 //
 // The loop's measurements happen before the evaluated part of the step, so the recipe plans time
 // for as many as may be needed, in bench time:
@@ -9,6 +10,7 @@
 // known, 2 in later ones. Any thread.
 #pragma once
 
+#include "drivers/generator/level_control.hpp"
 #include "services/bench/bench_file.hpp"
 
 namespace dyncal::services {
@@ -22,5 +24,8 @@ inline constexpr double level_slack_s = 0.5;
 
 [[nodiscard]] double planned_settling_s(const BenchFile& bench, double frequency_hz,
                                         int repetition);
+
+// What the bench file states, and what of it a level beyond the highest planned one makes.
+[[nodiscard]] drivers::generator::LevelLimits level_limits(const BenchFile& bench);
 
 } // namespace dyncal::services

@@ -20,8 +20,9 @@ constexpr auto look_interval = 20ms;
 constexpr auto confirmation_slice = 200ms;
 constexpr double off_s = 0.3; // between two steps
 constexpr double shot_slice_s = 0.25;
-constexpr double slice_s = 0.4;     // bench time between two looks at the network
-constexpr double max_hum = 0.2;     // of a level: so far would the exciter be from it
+constexpr double max_listening_s = 10.0; // beyond what it needs
+constexpr double slice_s = 0.4;          // bench time between two looks at the network
+constexpr double max_hum = 0.2;          // of a level: so far would the exciter be from it
 constexpr double edge_frames = 4.0; // excitation_window.hpp: up to two frames are lost at each edge
 
 // Time beyond settling and duration for which a step is excited, see
@@ -77,27 +78,12 @@ Expected<std::unique_ptr<StepExcitation>> StepExcitation::open(const RunEnvironm
 Expected<void> StepExcitation::check_levels(const wire::Measurement& measurement) const {
   for (const wire::PlannedStep& step : measurement.steps()) {
     const auto voltage = drivers::generator::voltage_for_level(
-        step.level_m_s2(), bench_.generator.level_per_volt, limits());
+        step.level_m_s2(), bench_.generator.level_per_volt, level_limits(bench_));
     if (!voltage) {
       return fail(of_step(step, ErrorCode::bad_argument, voltage.error().message));
     }
   }
   return {};
-}
-
-drivers::generator::LevelLimits StepExcitation::limits() const {
-  drivers::generator::LevelLimits limits;
-  limits.maximum_voltage_v = bench_.generator.maximum_voltage_v.value_or(limits.maximum_voltage_v);
-  limits.maximum_level_m_s2 =
-      bench_.generator.maximum_level_m_s2.value_or(limits.maximum_level_m_s2);
-  const auto& levels = bench_.excitation.levels_m_s2;
-  if (bench_.generator.maximum_level_m_s2 || !levels.empty()) {
-    limits.plausible_level_m_s2 = drivers::generator::plausible_level_m_s2(
-        bench_.generator.maximum_level_m_s2 ? *bench_.generator.maximum_level_m_s2
-                                            : *std::max_element(levels.begin(), levels.end()));
-    limits.plausible_voltage_v = limits.plausible_level_m_s2 / bench_.generator.level_per_volt;
-  }
-  return limits;
 }
 
 drivers::generator::LevelTarget StepExcitation::target_of(const wire::PlannedStep& step) const {
@@ -245,7 +231,7 @@ Expected<double> StepExcitation::switch_on_to_level(const wire::PlannedStep& ste
   if (const auto quiet = refuse_hum(step, stop); !quiet || stop.stop_requested()) {
     return quiet.map([] { return 0.0; });
   }
-  auto loop = LevelControl::start(target_of(step), limits());
+  auto loop = LevelControl::start(target_of(step), level_limits(bench_));
   if (!loop) {
     return fail(of_step(step, ErrorCode::bad_argument, loop.error().message));
   }
@@ -284,16 +270,10 @@ Expected<double> StepExcitation::switch_on_to_level(const wire::PlannedStep& ste
 Expected<void> StepExcitation::refuse_hum(const wire::PlannedStep& step,
                                           const std::stop_token& stop) {
   if (!quiet_levels_) {
-    const auto began = generator().clock_now_s();
-    if (!began) {
-      return fail(reported(began.error()));
+    const auto listened = listen(stop);
+    if (!listened || stop.stop_requested()) {
+      return listened;
     }
-    hooks_.show("listening for hum");
-    const auto held = hold_until(*began + listening_s(bench_.excitation.frequencies_hz), stop);
-    if (!held || !*held) {
-      return held.map([](bool) {});
-    }
-    quiet_levels_ = meter_->quiet_levels_after(*began, bench_.excitation.frequencies_hz);
   }
   const double quiet_m_s2 = (*quiet_levels_)[step.frequency_text_hz()];
   return quiet_m_s2 <= max_hum * step.level_m_s2()
@@ -302,6 +282,32 @@ Expected<void> StepExcitation::refuse_hum(const wire::PlannedStep& step,
                    "{} shows {:.3g} m/s^2 at this frequency while the output is off, and {:.3g} "
                    "are planned: it hums, and no level can be set by it",
                    bench_.method.reference.text(), quiet_m_s2, step.level_m_s2())));
+}
+
+// Samples may come late, as after the reader was made: what was not heard is not quiet.
+Expected<void> StepExcitation::listen(const std::stop_token& stop) {
+  const auto& frequencies_hz = bench_.excitation.frequencies_hz;
+  const auto began = generator().clock_now_s();
+  if (!began) {
+    return fail(reported(began.error()));
+  }
+  hooks_.show("listening for hum");
+  double until_s = *began + listening_s(frequencies_hz);
+  const double deadline_s = until_s + max_listening_s;
+  while (until_s <= deadline_s) {
+    const auto held = hold_until(until_s, stop);
+    if (!held || !*held) {
+      return held.map([](bool) {});
+    }
+    if ((quiet_levels_ = meter_->quiet_levels_after(*began, frequencies_hz))) {
+      return {};
+    }
+    until_s += shot_slice_s;
+  }
+  return fail(fault_of_step(fmt::format("of {} no whole window of samples came while the output "
+                                        "was off, so that nothing tells whether it hums; do its "
+                                        "samples come?",
+                                        bench_.method.reference.text())));
 }
 
 // Nothing if a stop was requested.

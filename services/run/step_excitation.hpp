@@ -106,6 +106,7 @@ private:
   Expected<double> switch_on_to_level(const wire::PlannedStep& step, const std::stop_token& stop);
   // Before the output is on; listens before the first step after begin().
   Expected<void> refuse_hum(const wire::PlannedStep& step, const std::stop_token& stop);
+  Expected<void> listen(const std::stop_token& stop);
   Expected<std::optional<double>> measure_level(double changed_s, double deadline_s,
                                                 const std::stop_token& stop);
   Expected<void> hold_until_shots_are_taken(const std::stop_token& stop);
@@ -114,7 +115,6 @@ private:
   // Returns false if a stop was requested.
   Expected<bool> hold_until(double bench_time_s, const std::stop_token& stop);
   [[nodiscard]] drivers::generator::Generator& generator() { return *connection_->generator; }
-  [[nodiscard]] drivers::generator::LevelLimits limits() const;
   [[nodiscard]] drivers::generator::LevelTarget target_of(const wire::PlannedStep& step) const;
 
   bus::Participant& participant_;

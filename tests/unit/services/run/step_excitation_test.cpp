@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -306,18 +307,29 @@ TEST_F(LevelTest, IsBroughtToTheWantedOneBeforeTheStepIsSteady) {
                                       wire::EXCITATION_DONE));
 }
 
-TEST_F(LevelTest, FailsJustAfterThePlannedSettlingWhenNoLevelIsSeen) {
+TEST_F(LevelTest, NothingIsDrivenWhileTheReferenceIsNotHeard) {
   const auto excited = excite(); // no source sends
   ASSERT_FALSE(excited);
   EXPECT_EQ(excited.error().code, ErrorCode::device);
   EXPECT_THAT(excited.error().message,
-              HasSubstr("step 1, 40 Hz: acs/reference shows no steady level"));
-  EXPECT_THAT(excited.error().message, HasSubstr("is settling_s long enough?"));
+              HasSubstr("step 1, 40 Hz: of acs/reference no whole window of samples came while "
+                        "the output was off"));
   EXPECT_TRUE(fault_may_pass_);
-  const double planned_s = listening_s({"40"}) + planned_settling_s(bench_, 40.0, 1);
-  EXPECT_GT(instrument_.now_s(), planned_s);
-  EXPECT_LE(instrument_.now_s(), planned_s + 0.05);
-  EXPECT_FALSE(instrument_.on);
+  EXPECT_THAT(instrument_.settings, testing::Not(testing::Contains("on")));
+  EXPECT_GT(instrument_.now_s(), listening_s({"40"}) + 9.0);
+  EXPECT_LE(instrument_.now_s(), listening_s({"40"}) + 10.5);
+}
+
+// The reader finds its writer late on a busy network: hum that was not heard is not absent.
+TEST_F(LevelTest, HumIsHeardHoweverLateTheSamplesCome) {
+  hum_m_s2_ = 6.0;
+  std::mt19937 random(17);
+  const int late_ms = std::uniform_int_distribution(100, 9000)(random);
+  clock_.at(std::chrono::milliseconds(late_ms), [this] { play_reference(); });
+  const auto excited = excite();
+  ASSERT_FALSE(excited) << late_ms << " ms late";
+  EXPECT_THAT(excited.error().message, HasSubstr("shows 6 m/s^2 at this frequency"));
+  EXPECT_THAT(instrument_.settings, testing::Not(testing::Contains("on")));
 }
 
 TEST_F(LevelTest, FailsWhenTheLevelNeverComesToRest) {
@@ -329,12 +341,9 @@ TEST_F(LevelTest, FailsWhenTheLevelNeverComesToRest) {
   EXPECT_FALSE(instrument_.on);
 }
 
-TEST_F(LevelTest, IsFoundWithASourceThatComesJustBeforeThePlannedSettlingIsOver) {
+TEST_F(LevelTest, IsFoundWithASourceThatComesLate) {
   gain_ = 10.0; // half of the voltage is enough at once
-  const auto settling =
-      std::chrono::duration<double>(listening_s({"40"}) + planned_settling_s(bench_, 40.0, 1));
-  clock_.at(std::chrono::duration_cast<std::chrono::nanoseconds>(settling) - 1200ms,
-            [this] { play_reference(); });
+  clock_.at(9s, [this] { play_reference(); });
   const auto excited = excite();
   ASSERT_TRUE(excited) << excited.error().message;
   EXPECT_THAT(instrument_.settings, ElementsAre("40 Hz", "1.0 V", "on", "off"));

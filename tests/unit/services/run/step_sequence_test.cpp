@@ -486,7 +486,7 @@ TEST_F(StepSequenceTest, ALevelThatIsNotReachedBreaksOffItsStepAlone) {
   bench_.generator.level_tolerance_rel = 0.01; // and no source shows the level
   bench_.excitation.attempts = 2;
   const RunOutcome outcome = conduct();
-  EXPECT_THAT(outcome.problem, StartsWith("step 1, 40 Hz: acs/reference shows no steady level"));
+  EXPECT_THAT(outcome.problem, StartsWith("step 1, 40 Hz: of acs/reference no whole window "));
   EXPECT_THAT(outcome.problem, testing::EndsWith("(attempts: 2); steps that failed as well: 2"));
   EXPECT_THAT(excited_, ElementsAre(Attempt{1, 1}, Attempt{2, 1}, Attempt{3, 1}, Attempt{1, 2},
                                     Attempt{2, 2}, Attempt{3, 2}));
