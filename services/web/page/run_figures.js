@@ -10,6 +10,7 @@ import { PictureList } from "./picture_list.js";
 
 const RETRY_MS = 2000;
 const NOTHING = "There is no result yet.";
+const ASKED = "The figures are on their way.";
 
 export class RunFigures {
   /** on_pick: called with the step of a point that was clicked */
@@ -31,6 +32,8 @@ export class RunFigures {
     this.wanted = wanted;
     if (wanted.channel === null) {
       this.clear(NOTHING);
+    } else if (this.message.textContent === NOTHING) {
+      set_text(this.message, ASKED);
     }
     this.ask();
   }

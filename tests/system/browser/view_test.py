@@ -178,6 +178,8 @@ class Views(PageCase):
         page.value("location.hash = '#/run/acc-2'")
         page.wait_for("document.querySelectorAll('[data-step]').length === 51")
         self.assertEqual(page.value("document.querySelectorAll('.canvas').length"), 0)
+        # Results are there: a figure that is late is no lack of them.
+        self.assertIn("on their way", page.value(text_of("[data-panel=figures]")))
         self.laboratory.figures_wait.set()
         page.wait_for(f"{drawn_pixels(0)} > 200")
         self.assertEqual(page.value("figures.querySelectorAll('.canvas').length"), 0)
