@@ -9,12 +9,14 @@
 namespace dyncal::analysis {
 namespace {
 
-constexpr double better = 0.8;         // times the misses of the straight line over frequency
-constexpr double unknown_growth = 3.0; // of a table of three points; 1 / f grows by 2 an octave
-constexpr double below_both = 2.0;     // 1 / f lies as far again below the line over the logarithm
-constexpr double most_growth = 4.0;    // of one that falls as 1 / f^2
-constexpr double turns_back = 1.5;     // times what points that far apart still show of a wave
-constexpr double least_span = 0.4;     // of a slope, in steps ahead: octaves have a half
+constexpr double better = 0.8;          // times the misses of the straight line over frequency
+constexpr double unknown_growth = 3.0;  // of a table of three points; 1 / f grows by 2 an octave
+constexpr double below_both = 2.0;      // 1 / f lies as far again below the line over the logarithm
+constexpr double most_growth = 4.0;     // of one that falls as 1 / f^2
+constexpr double turns_back = 1.5;      // times what points that far apart still show of a wave
+constexpr double crosses_at_once = 0.7; // of the largest rise: a wave of 7 points has 0.78
+constexpr double peaks_at_once = 0.8;   // of 6 points at least 1, of 8 points 0.59
+constexpr double least_span = 0.4;      // of a slope, in steps ahead: octaves have a half
 constexpr double well_predicted_rad = 1.0; // then a slope is believed over more than half a turn
 constexpr double most_step_rad = 0.75 * std::numbers::pi; // that nothing else predicts
 
@@ -52,22 +54,67 @@ double at_end(double beside, double next) {
   return beside * (next > 0.0 ? std::clamp(beside / next, 1.0, most_growth) : 1.0);
 }
 
-// Where points near the interval lie above and below the line through their neighbours, the curve
-// turns back between its points, and the nearest second differences may miss the turn: the largest
-// of those, one farther on either side too, in an interval as long as theirs. Else 0.
-double missed_at_a_turn(std::span<const double> x, std::span<const double> y, std::size_t i,
-                        double weight) {
+// How far points near an interval lie above the line through their neighbours: those that both
+// sides of it tell, and `wider` more on either side.
+std::vector<double> rises_near(std::span<const double> x, std::span<const double> y, std::size_t i,
+                               std::size_t wider) {
   const std::size_t last = x.size() - 3;
   const std::size_t first = i > last ? last - std::min<std::size_t>(last, 2) : i < 2 ? 0 : i - 2;
   const std::size_t behind = std::min(last, i == 0 ? 2 : i + 1) + 1;
-  double below = 0.0, above = 0.0;
-  for (std::size_t j = first; j < behind; ++j) {
-    const double rise = rise_above_neighbours(x, y, j);
-    below = std::max(below, -rise);
-    above = std::max(above, rise);
+  std::vector<double> rises;
+  for (std::size_t j = first - std::min(first, wider); j < std::min(last + 1, behind + wider);
+       ++j) {
+    rises.push_back(rise_above_neighbours(x, y, j));
   }
-  return below > 0.0 && above > 0.0 ? turns_back * std::max(below, above) * weight * (1.0 - weight)
-                                    : 0.0;
+  return rises;
+}
+
+double largest_of(const std::vector<double>& rises) {
+  double largest = 0.0;
+  for (const double rise : rises) {
+    largest = std::max(largest, std::abs(rise));
+  }
+  return largest;
+}
+
+bool lie_on_both_sides(const std::vector<double>& rises) {
+  const auto [least, most] = std::minmax_element(rises.begin(), rises.end());
+  return *least < 0.0 && *most > 0.0;
+}
+
+// Whether they go to the other side at once, or up and down again from point to point: a wave of
+// fewer than seven points a period does, a curve that the table follows does not.
+bool are_far_apart(const std::vector<double>& rises) {
+  const double largest = largest_of(rises);
+  for (std::size_t j = 0; j + 1 < rises.size(); ++j) {
+    const double step = std::abs(rises[j + 1] - rises[j]);
+    if (rises[j] * rises[j + 1] < 0.0 && step >= crosses_at_once * largest) {
+      return true;
+    }
+    const bool is_peak = j > 0 && std::abs(rises[j]) >= std::abs(rises[j - 1]) &&
+                         std::abs(rises[j]) >= std::abs(rises[j + 1]);
+    if (is_peak &&
+        std::abs(2.0 * rises[j] - rises[j - 1] - rises[j + 1]) >= peaks_at_once * largest) {
+      return largest > 0.0;
+    }
+  }
+  return false;
+}
+
+// Where points near the interval lie above and below the line through their neighbours, the curve
+// turns back between its points, and the nearest second differences may miss the turn: the largest
+// of those, one farther on either side too, in an interval as long as theirs. The same where these
+// lie on one side, but with those next to them show that the points are far apart. Else 0.
+double missed_at_a_turn(std::span<const double> x, std::span<const double> y, std::size_t i,
+                        double weight) {
+  std::vector<double> rises = rises_near(x, y, i, 0);
+  if (!lie_on_both_sides(rises)) {
+    rises = rises_near(x, y, i, 1);
+    if (!are_far_apart(rises)) {
+      return 0.0;
+    }
+  }
+  return turns_back * largest_of(rises) * weight * (1.0 - weight);
 }
 
 double half_curvature(std::span<const double> x, std::span<const double> y, std::size_t i) {

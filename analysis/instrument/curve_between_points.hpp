@@ -10,9 +10,12 @@
 // second differences grow towards that end (at most 4, and 3 where a table of three points does not
 // show it), or the next one where that is above 4 times as large. Where points near the interval,
 // one more on either side, lie both above and below the line through their neighbours, the curve
-// turns back: then at least 1.5 times the largest of those, as in an interval of that length. A
-// table of two points shows no curvature: then twice the difference of the two lines is taken for
-// it, as 1 / f has it.
+// turns back: then at least 1.5 times the largest of those, as in an interval of that length; the
+// same where they lie on one side and the points next to them show that the table is coarse: they
+// go to the other side, or up and down again, from one point to the next, as a wave of fewer than
+// seven points a period does. Four points do not show such a wave, and no table what turns back
+// twice between two of its points. A table of two points shows no curvature: then twice the
+// difference of the two lines is taken for it, as 1 / f has it.
 //
 // Phases are unwrapped first: to the turn that the slope before predicts, so that +179 and -179
 // degrees are 2 degrees apart and a delay is followed over steps of more than half a turn. A step

@@ -6,7 +6,7 @@ import math
 
 from bench_files import write_reference_calibration
 from class_presets import LITTLE_NOISE, SHORT_ANALOGUE_STEPS, bench
-from expected_row import MEAN, VALUE, Row
+from expected_row import MEAN, PHASE, VALUE, Row
 from faults.fault import Fault
 from judgement import (
     COVERED,
@@ -45,20 +45,30 @@ class ReferenceTable(Fault):
 
 
 class Inverting(ReferenceTable):
-    """A charge amplifier that inverts: 179.9, -179.8 ... degrees; `wave_degrees` up and down within
-    three points."""
+    """A charge amplifier that inverts: 179.9, -179.8 ... degrees."""
 
     points_hz = (10.0, 20.0, 40.0, 80.0, 160.0, 320.0)
 
-    def __init__(self, calibration, rng, wave_degrees=0.0):
-        self.wave_degrees = wave_degrees
-        super().__init__(calibration, rng)
-
     def response(self, frequency_hz):
         octaves = math.log2(frequency_hz / 57.0)
-        degrees = 180.05 + 0.15 * octaves + 0.02 * octaves**2
-        degrees += self.wave_degrees * math.sin(2.0 * math.log(frequency_hz))
-        return 1.0, math.radians(math.remainder(degrees, 360.0))
+        return 1.0, math.radians(math.remainder(self.degrees(octaves), 360.0))
+
+    def degrees(self, octaves):
+        return 180.05 + 0.15 * octaves + 0.02 * octaves**2
+
+
+class Ripple(Inverting):
+    """The same, up and down within some points of the table, from anywhere on: the standing wave of
+    a cable or a mount."""
+
+    def __init__(self, calibration, rng, points_a_period, half_degrees=0.25):
+        self.turn_an_octave = 2.0 * math.pi / points_a_period
+        self.half_degrees, self.begin = half_degrees, rng.uniform(0.0, 2.0 * math.pi)
+        super().__init__(calibration, rng)
+
+    def degrees(self, octaves):
+        wave = math.sin(self.turn_an_octave * octaves + self.begin)
+        return super().degrees(octaves) + self.half_degrees * wave
 
 
 class Late(ReferenceTable):
@@ -130,6 +140,7 @@ class Resonance(Fault):
 
 TABLE = {**LITTLE_NOISE, "calibrated_reference": True}
 AT_TABLE_HZ = {"frequencies": ("12.5", "14", "16", "18", "25", "31.5")}
+RIPPLES = (4.0, 4.5, 6.0, 9.0)
 HIGH_PASSES = {"just visible": 0.3, "clear": 1.0, "gross": 3.0}  # corner in Hz
 SCATTER = {"just visible": 5e-4, "clear": 2e-3, "gross": 2e-2}
 TWO = {**SHORT_ANALOGUE_STEPS, "frequencies": ("31.5", "80")}
@@ -150,9 +161,12 @@ def sweeps_scatter(preset, repetitions, scatter_rel):
 
 CLASSES = {
     "table of an inverting reference, between points": bench(TABLE, fault=Inverting),
-    "table that turns back between its points": bench(
-        TABLE, fault=functools.partial(Inverting, wave_degrees=0.25)
-    ),
+    **{
+        f"table of {points:g} points a period of its ripple": bench(
+            TABLE, fault=functools.partial(Ripple, points_a_period=points)
+        )
+        for points in RIPPLES
+    },
     **{
         f"table of a reference {1e3 * delay_s:g} ms late, between points": bench(
             TABLE, fault=functools.partial(Late, delay_s=delay_s)
@@ -185,11 +199,9 @@ CLASSES = {
 
 EXPECTED = [
     Row("table of an inverting reference, between points", VALUE, COVERED),
-    Row(
-        "table that turns back between its points",
-        ("phase",),
-        COVERED,
-        fails_at="points too far apart for what lies between: u is half of the error at some",
+    *(
+        Row(f"table of {points:g} points a period of its ripple", PHASE, COVERED)
+        for points in RIPPLES
     ),
     *(
         Row(f"table of a reference {name} ms late, between points", VALUE, COVERED_OR_FLAGGED)
@@ -214,6 +226,7 @@ EXPECTED = [
     Row("clean, three frequencies that tell the delay", MEAN, COVERED_NO_FLAG),
 ]
 MORE_DRAWS = {
+    **{f"table of {points:g} points a period of its ripple": 2 for points in RIPPLES},
     **{f"mean of {n}, sweeps scatter, gross": 4 for n in (2, 3, 5)},
     **{f"mean of {n}, sweeps scatter, two frequencies": 2 for n in (2, 3, 5)},
     "mean of 2, sweeps scatter, ten frequencies": 2,
