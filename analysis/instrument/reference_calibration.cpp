@@ -75,15 +75,15 @@ curves_of_levels(std::span<const ReferenceCalibrationPoint> points) {
 }
 
 ReferenceResponse response_of(const ReferenceCalibrationPoint& point) {
-  return {point.magnitude, point.phase_rad, point.contributions};
+  return {point.magnitude, wrap_phase(point.phase_rad), point.contributions};
 }
 
 // The more of `b`, the nearer `weight` is to 1.
 ReferenceResponse between(const ReferenceResponse& a, const ReferenceResponse& b, double weight) {
   const auto mixed = [&](double left, double right) { return left + weight * (right - left); };
   const double turned_rad = wrap_phase(b.phase_rad - a.phase_rad);
-  ReferenceResponse result{mixed(a.magnitude, b.magnitude), a.phase_rad + weight * turned_rad,
-                           a.contributions};
+  ReferenceResponse result{mixed(a.magnitude, b.magnitude),
+                           wrap_phase(a.phase_rad + weight * turned_rad), a.contributions};
   for (std::size_t i = 0; i < result.contributions.size(); ++i) {
     ReferenceContribution& one = result.contributions[i];
     const ReferenceContribution& other = b.contributions[i];
@@ -123,7 +123,7 @@ ReferenceResponse between_points(const Curve& curve, std::size_t i, double frequ
                                        (frequency_hz - curve[i].frequency_hz) /
                                            (curve[i + 1].frequency_hz - curve[i].frequency_hz));
   response.magnitude = magnitude.value;
-  response.phase_rad = phase.value;
+  response.phase_rad = wrap_phase(phase.value);
   response.contributions.push_back(
       {.name = interpolation,
        .distribution = Distribution::rectangular,

@@ -1,7 +1,7 @@
 // The response of the reference transducer at a frequency and level, from the points of its
 // calibration certificate.
 //
-//   R = magnitude e^{i phase_rad}     what its channel reads over what is; phase is lead
+//   R = magnitude e^{i phase_rad}     what its channel reads over what is; phase is lead, (-pi, pi]
 //
 // so that H of a sensor, measured against the reading, is multiplied by R. Its uncertainty is a
 // list of contributions (ISO 16063-11 annex A has them: distortion, hum, transverse motion, base

@@ -335,8 +335,7 @@ std::string single_results(const ReportContents& contents) {
                                "flags"});
     for (const StoredPoint& point : contents.result.points_of(channel)) {
       const RoundedValue magnitude = round_by_uncertainty(point.magnitude, point.u_magnitude);
-      const RoundedValue phase = round_by_uncertainty(degrees_per_radian * point.phase_rad,
-                                                      degrees_per_radian * point.u_phase_rad);
+      const RoundedValue phase = round_phase(point.phase_rad, point.u_phase_rad).degrees;
       const auto shown = [](double value, int decimals) {
         return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : std::string();
       };

@@ -157,8 +157,10 @@ std::string corrections_of(const StoredResult& result) {
   return "<h3>Corrections</h3>\n" + table.finish();
 }
 
-// Each correction of the steps by name, with the range of what it does to the phase.
+// Each correction of the steps by name, with the range of what it does to the phase: of angles, so
+// that 179.9 and -179.9 degrees are 0.2 degrees apart.
 std::string applied_corrections(const StoredResult& result) {
+  constexpr double turn = 360.0;
   struct Range {
     double low = INFINITY;
     double high = -INFINITY;
@@ -168,7 +170,9 @@ std::string applied_corrections(const StoredResult& result) {
   for (const CheckedJson& step : result.root().nodes("steps")) {
     for (const CheckedJson& correction : step.nodes("corrections")) {
       Range& range = ranges[correction.text("name")];
-      const double degrees = correction.number("phase_deg");
+      const double stated = correction.number("phase_deg");
+      const double degrees =
+          range.high < range.low ? stated : stated + turn * std::round((range.low - stated) / turn);
       range.low = std::min(range.low, degrees);
       range.high = std::max(range.high, degrees);
       range.u = std::max(range.u, correction.number("u_phase_rad"));

@@ -46,7 +46,7 @@ Row point_row(const FrequencyPoint& point, const std::vector<Flag>& flags) {
   const RoundedValue magnitude =
       round_by_uncertainty(point.mean.magnitude, magnitude_uncertainty(point.mean).u);
   const RoundedValue phase =
-      round_by_uncertainty(point.mean.phase_rad, phase_uncertainty(point.mean).u);
+      round_phase(point.mean.phase_rad, phase_uncertainty(point.mean).u).radians;
   return {
       one_line(point.frequency_text_hz),      magnitude.value,  magnitude.u, phase.value, phase.u,
       std::to_string(point.mean.repetitions), flag_names(flags)};

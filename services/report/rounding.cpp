@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <numbers>
 
 #include <fmt/core.h>
 
@@ -12,6 +13,7 @@ namespace {
 constexpr double min_without_exponent = 1e-3; // of the larger of value and u
 constexpr double max_without_exponent = 1e7;
 constexpr int max_digits = 17; // a double has no more
+constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
 
 bool is_usable(double u) {
   return std::isfinite(u) && u > 0.0;
@@ -68,6 +70,19 @@ RoundedValue round_by_uncertainty(double value, double u) {
   }
   return {round_to_place(value, std::max(place, -max_digits)),
           u < 1e-9 ? fmt::format("{:.1e}", u) : round_to_place(u, place)};
+}
+
+RoundedPhase round_phase(double phase_rad, double u_rad) {
+  const auto rounded = [&](double phase) {
+    return RoundedPhase{
+        round_by_uncertainty(phase, u_rad),
+        round_by_uncertainty(degrees_per_radian * phase, degrees_per_radian * u_rad)};
+  };
+  RoundedPhase result = rounded(phase_rad);
+  if (std::strtod(result.degrees.value.c_str(), nullptr) == -180.0) {
+    result = rounded(phase_rad + 2.0 * std::numbers::pi);
+  }
+  return result;
 }
 
 } // namespace dyncal::services

@@ -23,6 +23,15 @@ struct RoundedValue {
 
 [[nodiscard]] RoundedValue round_by_uncertainty(double value, double u);
 
+// In both units, each rounded by its own u, and of one turn: what rounds to -180 degrees is stated
+// as +180 degrees, the end that belongs to (-180, 180], and in rad with the same sign.
+struct RoundedPhase {
+  RoundedValue radians;
+  RoundedValue degrees;
+};
+
+[[nodiscard]] RoundedPhase round_phase(double phase_rad, double u_rad);
+
 // Two significant digits, without exponent where that is readable.
 [[nodiscard]] std::string rounded_uncertainty(double u);
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/core.h>
 
@@ -13,11 +12,12 @@
 namespace dyncal::services {
 namespace {
 
-constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
-
-StatedValue stated(double value, const StoredUncertainty& uncertainty, double scale) {
-  const RoundedValue rounded = round_by_uncertainty(scale * value, scale * uncertainty.expanded);
+StatedValue stated(const RoundedValue& rounded, const StoredUncertainty& uncertainty) {
   return {rounded.value, rounded.u, fmt::format("{:.2f}", uncertainty.k)};
+}
+
+RoundedPhase rounded_phase(const StoredValue& value) {
+  return round_phase(value.phase_rad, value.of_phase.expanded);
 }
 
 bool is_usable(double value, const StoredUncertainty& uncertainty) {
@@ -28,19 +28,16 @@ bool is_usable(double value, const StoredUncertainty& uncertainty) {
 } // namespace
 
 StatedValue stated_magnitude(const StoredValue& value) {
-  return stated(value.magnitude, value.of_magnitude, 1.0);
+  return stated(round_by_uncertainty(value.magnitude, value.of_magnitude.expanded),
+                value.of_magnitude);
 }
 
 StatedValue stated_phase_rad(const StoredValue& value) {
-  return stated(value.phase_rad, value.of_phase, 1.0);
+  return stated(rounded_phase(value).radians, value.of_phase);
 }
 
 StatedValue stated_phase_deg(const StoredValue& value) {
-  StatedValue result = stated(value.phase_rad, value.of_phase, degrees_per_radian);
-  if (result.value.starts_with("-180")) { // rounded to the end that is not in (-180, 180]
-    result.value.erase(0, 1);
-  }
-  return result;
+  return stated(rounded_phase(value).degrees, value.of_phase);
 }
 
 bool can_be_stated(const StoredValue& value) {

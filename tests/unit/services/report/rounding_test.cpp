@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -77,6 +78,21 @@ TEST(Rounding, UncertaintiesAloneHaveTwoDigits) {
   EXPECT_EQ(rounded_uncertainty(0.0000934), "9.3e-05");
   EXPECT_EQ(rounded_uncertainty(151.0), "150");
   EXPECT_EQ(rounded_uncertainty(0.0), "0");
+}
+
+TEST(Rounding, PhasesHaveOneSignInBothUnits) {
+  constexpr double pi = std::numbers::pi;
+  const RoundedPhase end = round_phase(-pi + 4e-6, 3.5e-4);
+  EXPECT_EQ(end.degrees.value, "180.000");
+  EXPECT_EQ(end.radians.value, "3.14160");
+  EXPECT_EQ(round_phase(-pi, 0.2).degrees.value, "180");
+  EXPECT_EQ(round_phase(-pi, 0.2).radians.value, "3.14");
+  // One place beside the end: as it is.
+  const RoundedPhase beside = round_phase(-pi + 2e-5, 3.5e-4);
+  EXPECT_EQ(beside.degrees.value, "-179.999");
+  EXPECT_EQ(beside.radians.value, "-3.14157");
+  EXPECT_EQ(round_phase(pi, 3.5e-4).radians.value, "3.14159");
+  EXPECT_EQ(round_phase(-0.5, 0.0).radians.value, "-0.5");
 }
 
 // Whatever the sizes: reading the text back gives the value within half a unit of its last place.

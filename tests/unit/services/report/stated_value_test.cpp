@@ -53,6 +53,12 @@ TEST(StatedValue, StaysWithinItsTurnNear180Degrees) {
       const double phase_deg = 180.0 / std::numbers::pi * phase_rad;
       EXPECT_LE(std::abs(std::remainder(stated - phase_deg, 360.0)), 0.0005 + 1e-9) << phase_rad;
       at_the_end += degrees.value == "180.000" ? 1 : 0;
+      const StatedValue radians = stated_phase_rad(value_of(1.0, 0.1, phase_rad, 1e-3));
+      EXPECT_EQ(radians.value.front() == '-', degrees.value.front() == '-') << phase_rad;
+      EXPECT_LE(
+          std::abs(std::remainder(std::stod(radians.value) - phase_rad, 2.0 * std::numbers::pi)),
+          0.00005 + 1e-9)
+          << phase_rad;
     }
     EXPECT_GT(at_the_end, 0);
   }
