@@ -8,6 +8,7 @@ than once in a thousand on that side is a finding.
 import collections
 import dataclasses
 import math
+import statistics
 
 import numpy as np
 
@@ -180,9 +181,17 @@ def too_many(k, n, p, chance=CHANCE):
     return at_most(n - k, n, 1.0 - p) < chance
 
 
-def least_rms(n):
-    """What the rms of n normal deviates falls below once in a thousand (Wilson and Hilferty)."""
-    return max(0.0, 1.0 - 2.0 / (9.0 * n) - 3.09 * math.sqrt(2.0 / (9.0 * n))) ** 1.5
+def least_rms(n, chance=CHANCE):
+    """What the rms of n normal deviates falls below by this chance (Wilson and Hilferty)."""
+    deviate = statistics.NormalDist().inv_cdf(1.0 - chance)
+    return max(0.0, 1.0 - 2.0 / (9.0 * n) - deviate * math.sqrt(2.0 / (9.0 * n))) ** 1.5
+
+
+def widest_of(usual, n, chance=CHANCE):
+    """What U over the rms of n errors exceeds by this chance, where it is `usual` in the long run.
+    Of so few that their rms may be next to nothing, it may be anything."""
+    least = least_rms(n, chance)
+    return usual / least if least > 0.0 else math.inf
 
 
 @dataclasses.dataclass
@@ -218,34 +227,41 @@ class Tally:
         n = len(self.claims)
         if n == 0:
             return "no claims at all: nothing was judged"
+        if not self.numbers and wanted not in (FLAGGED, COVERED_OR_FLAGGED):
+            return f"none of {n} has a number: nothing was judged"
         if wanted == FLAGGED:
             enough = not too_few(self.warned, n, FLAGGED_RUNS, chance)
             return "" if enough else f"{n - self.warned} of {n} carry no flag"
         if wanted == COVERED_OR_FLAGGED:
             silent = self._wrong_among(self.silent, chance, "without a flag ")
-            return silent or self._too_wide(WIDEST)
+            return silent or self._too_wide(self._widest_at_all(chance))
         finding = self._wrong_among(self.claims, chance)
         if finding or wanted == COVERED:
-            return finding or self._too_wide(WIDEST)
+            return finding or self._too_wide(self._widest_at_all(chance))
         if wanted == COVERED_AS_STUDENT:
-            return self._too_wide(self.widest_mean())
+            return self._too_wide(self.widest_mean(chance))
         if wanted == COVERED_WITH_BOUND:
-            return self._flagged_clean(n, chance) or self._too_wide(WIDEST_BOUND / least_rms(n))
+            widest = widest_of(WIDEST_BOUND, n, chance)
+            return self._flagged_clean(n, chance) or self._too_wide(widest)
         if too_many(self.covered, n, PROBABILITY, chance):
             return f"{self.covered} of {n} are covered: u is too large"
         if wanted == COVERED_NO_MORE:
             return ""
-        widest = self.widest_mean() if self.few_repeats else 2.0 / least_rms(n)
+        widest = self.widest_mean(chance) if self.few_repeats else widest_of(2.0, n, chance)
         return self._flagged_clean(n, chance) or self._too_wide(widest)
 
     def _flagged_clean(self, n, chance):
         flagged = too_few(n - self.warned, n, UNFLAGGED_CLAIMS, chance)
         return f"{self.warned} of {n} carry a flag" if flagged else ""
 
-    def widest_mean(self):
-        """U against the rms of the errors, by the usual factor of those that the results state."""
+    def _widest_at_all(self, chance):
+        return max(WIDEST, widest_of(2.0, len(self.numbers), chance)) if self.numbers else WIDEST
+
+    def widest_mean(self, chance=CHANCE):
+        """U against the rms of the errors, by the usual factor of those that the results state.
+        REQUIRES: numbers."""
         k = float(np.median([one.k for one in self.numbers]))
-        return BEYOND_STUDENT * k / least_rms(len(self.numbers))
+        return widest_of(BEYOND_STUDENT * k, len(self.numbers), chance)
 
     def _wrong_among(self, claims, chance, which=""):
         n, covered = len(claims), sum(one.covered for one in claims)

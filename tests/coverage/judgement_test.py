@@ -26,6 +26,7 @@ from judgement import (
     Tally,
     at_most,
     claims_of,
+    least_rms,
     refusal,
 )
 
@@ -120,6 +121,27 @@ class TallyOfClaims(unittest.TestCase):
         self.assertEqual(finding(2.0, 1.1, COVERED_AS_STUDENT), "")
         for k, u_too_large in ((4.5, 1.5), (2.8, 1.5), (2.0, 1.5)):
             self.assertIn("times the rms", finding(k, u_too_large, COVERED_AS_STUDENT))
+
+    def test_of_few_claims_no_width_is_judged_but_their_numbers_are(self):
+        for wanted in WANTED:
+            claims = normal_claims(2, 0.1, flagged=wanted == FLAGGED)
+            for few_repeats in (False, True):
+                self.assertEqual(Tally(claims, few_repeats).finding(wanted), "", wanted)
+
+    def test_results_without_any_mean_are_no_pass(self):
+        for n in (1, 2, 60):
+            refused = [Claim(refused=True) for _ in range(n)]
+            for wanted in set(WANTED) - {FLAGGED, COVERED_OR_FLAGGED}:
+                finding = Tally(refused, few_repeats=True).finding(wanted)
+                self.assertIn("nothing was judged", finding, wanted)
+
+    def test_the_bound_of_a_width_is_that_of_the_chance(self):
+        self.assertAlmostEqual(least_rms(240), 0.86, 2)
+        self.assertLess(least_rms(240, 1e-5), 0.82)
+        errors = np.random.default_rng(5).standard_normal((2000, 24))
+        rms = np.sqrt(np.mean(errors**2, axis=1))
+        for chance in (0.02, 0.1):
+            self.assertAlmostEqual(np.mean(rms < least_rms(24, chance)) / chance, 1.0, delta=0.4)
 
     def test_the_factor_is_that_of_the_result(self):
         given = result([point(10.0, 1.0, -0.1, k_magnitude=3.0, k_phase=4.0)])

@@ -10,7 +10,13 @@ import numpy as np
 from class_presets import LITTLE_NOISE, bench
 from expected_row import MEAN, VALUE, Row
 from faults.fault import Fault
-from judgement import COVERED, COVERED_NO_FLAG, COVERED_OR_FLAGGED, FLAGGED
+from judgement import (
+    COVERED,
+    COVERED_NO_FLAG,
+    COVERED_OR_FLAGGED,
+    COVERED_WITH_BOUND,
+    FLAGGED,
+)
 
 
 class RingDown(Fault):
@@ -193,8 +199,9 @@ CLASSES = {
 EXPECTED = [
     *(Row(name, VALUE, COVERED_NO_FLAG) for name in CLASSES if name.startswith("clean, rings")),
     Row("clean, ISO 266", VALUE, COVERED_NO_FLAG),
-    Row("clean, mains alone", VALUE, COVERED_NO_FLAG),
-    Row("clean, mains alone, little noise", VALUE, COVERED_NO_FLAG),
+    # No step shows what hum there is: u holds what quiet time leaves possible.
+    Row("clean, mains alone", VALUE, COVERED_WITH_BOUND),
+    Row("clean, mains alone, little noise", VALUE, COVERED_WITH_BOUND),
     Row("clean, mean of 3 at the mains", MEAN, COVERED_NO_FLAG),
     *(Row(name, VALUE, COVERED_OR_FLAGGED) for name in CLASSES if name.startswith("hum at")),
     *(
