@@ -19,22 +19,18 @@ constexpr double negligible = 1e-7;     // weight of a part
 constexpr double out_of_reach = 1e-10;  // against the likeliest: what the others make of a part
 constexpr double bin = 0.04;            // parts whose variances are closer become one
 
-// Of the common value: with room for no scatter at all where the frequencies together can tell.
-Grid common_prior(std::size_t frequencies) {
-  Grid result = scatter_prior();
-  if (frequencies >= seen_from) {
-    for (double& weight : result) {
-      weight *= 1.0 - no_scatter;
-    }
-    result[scatter_grid_steps] += no_scatter;
+Grid with_room_for_none(Grid prior) {
+  for (double& weight : prior) {
+    weight *= 1.0 - no_scatter;
   }
-  return result;
+  prior[scatter_grid_steps] += no_scatter;
+  return prior;
 }
 
 // Of what single runs add to the scatter of sweeps: with room for nothing, however few frequencies
 // there are. Without it sweeps pass for independent runs (n = 2, four frequencies: 92 % covered).
 const Grid& steps_prior() {
-  static const Grid prior = common_prior(seen_from);
+  static const Grid prior = with_room_for_none(scatter_prior());
   return prior;
 }
 
@@ -157,7 +153,9 @@ MeanError error_of_mean(std::span<const RepeatedQuantity> quantities,
                         const std::vector<ScatterHypothesis>& hypotheses, std::size_t f) {
   const RepeatedQuantity& own = quantities[f];
   const bool repeated = shows_scatter(own);
-  const Grid prior = common_prior(repeated_frequencies(quantities));
+  const bool are_few = repeated_frequencies(quantities) < seen_from;
+  const Grid alone = are_few ? scatter_prior_of_few(own.u.size()) : scatter_prior();
+  const Grid prior = are_few ? alone : with_room_for_none(alone);
   std::vector<Candidate> candidates;
   for (const ScatterHypothesis& hypothesis : hypotheses) {
     add_independent(own, hypothesis, f, prior, candidates);
@@ -182,7 +180,7 @@ MeanError error_of_mean(std::span<const RepeatedQuantity> quantities,
   for (std::size_t i = 0; repeated && i < scatter_grid_points; ++i) {
     const double tau = scatter_grid()[i] * noise_of(own);
     parts.push_back({variance_of_mean(own, tau),
-                     std::log(unlike_others * scatter_prior()[i]) + log_likelihood(own, tau)});
+                     std::log(unlike_others * alone[i]) + log_likelihood(own, tau)});
   }
   return mixture(std::move(parts));
 }

@@ -13,6 +13,9 @@ constexpr double grid_high = 3e4;
 // scatter.
 constexpr double bend_of_runs = 0.5;
 constexpr double bend_of_sweeps = 1.0;
+// Of one frequency: what n runs leave open of a scatter of about the noise grows less with n than
+// its prior must. 95.4 % at worst for n = 3 to 20; with 0.5 for all n 94.5 %, at 2 u.
+constexpr double bend_a_run = 0.25;
 
 ScatterGrid prior(double bend) {
   ScatterGrid weights{};
@@ -45,6 +48,10 @@ const ScatterGrid& scatter_grid() {
 const ScatterGrid& scatter_prior() {
   static const ScatterGrid weights = prior(bend_of_runs);
   return weights;
+}
+
+ScatterGrid scatter_prior_of_few(std::size_t runs) {
+  return prior(bend_a_run * static_cast<double>(runs));
 }
 
 const ScatterGrid& sweep_scatter_prior() {

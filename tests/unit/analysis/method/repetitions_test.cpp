@@ -183,8 +183,11 @@ TEST(Repetitions, CoversTheTruthInNineteenOfTwentyRunsOfThree) {
     magnitude_covered += std::abs(mean->magnitude - 0.95) <= 2.0 * mean->u_magnitude;
     phase_covered += std::abs(wrap_phase(mean->phase_rad - 2.0)) <= 2.0 * mean->u_phase_rad;
   }
-  EXPECT_NEAR(static_cast<double>(magnitude_covered) / runs, two_sigma_probability, 0.014);
-  EXPECT_NEAR(static_cast<double>(phase_covered) / runs, two_sigma_probability, 0.014);
+  // Three runs of one frequency do not rule out that they scatter more: 97 % where it is 3 u.
+  for (const int covered : {magnitude_covered, phase_covered}) {
+    EXPECT_GT(static_cast<double>(covered) / runs, two_sigma_probability - 0.01);
+    EXPECT_LT(static_cast<double>(covered) / runs, two_sigma_probability + 0.025);
+  }
 }
 
 // Shots of a sensor that samples freely: each starts anywhere within one sample interval, so that
