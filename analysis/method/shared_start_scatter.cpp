@@ -10,11 +10,13 @@ namespace {
 
 constexpr double most_of_a_step = 20.0; // more than what shows a scatter, less than one wild shot
 constexpr double significant = 10.0;    // chi-squared of one degree of freedom, s not below 0: 1e-3
-constexpr double probable_none = 0.5;
-constexpr double latency_of_scatter = 2.5; // see above
-constexpr double narrowest = 0.03;         // u*: less does not matter
-constexpr double widest = 30.0;            // of the noisiest or most scattered step
-constexpr double step_factor = 1.05;       // of s: finer than any run can tell
+constexpr double probable_none = 0.6;
+constexpr double scale_of_prior = 2.0;   // u*
+constexpr double latency_of_mean = 2.0;  // sqrt(3) of a rectangle, and its own scatter
+constexpr double latency_of_doubt = 4.4; // the least that holds 95 % of rectangles of 1 to 3 u*
+constexpr double narrowest = 0.03;       // u*: less does not matter
+constexpr double widest = 30.0;          // of the noisiest or most scattered step
+constexpr double step_factor = 1.05;     // of s: finer than any run can tell
 
 bool counts(const StartEvidence& step) {
   return step.shots > 1 && step.u_s > 0.0;
@@ -62,20 +64,26 @@ void add_evidence(const StartEvidence& step, const Grid& grid, std::vector<doubl
   }
 }
 
-// Root of the mean square of s, 0 among its values.
-double rms_of(const Grid& grid, const std::vector<double>& evidence) {
+struct Moments {
+  double mean_s = 0.0, mean_square_s2 = 0.0;
+};
+
+// Of s after the shots were seen, 0 among its values.
+Moments moments_of(const Grid& grid, const std::vector<double>& evidence) {
   const double most = std::max(0.0, *std::max_element(evidence.begin(), evidence.end()));
-  double prior = 0.0, total = 0.0, squares = 0.0;
+  const double scale_s = scale_of_prior * grid.resolved_s;
+  double prior = 0.0, total = 0.0, sum = 0.0, squares = 0.0;
   for (std::size_t i = 0; i < evidence.size(); ++i) {
     const double s = grid.scatters_s[i];
-    const double weight = s / (1.0 + std::pow(s / grid.resolved_s, 2)); // s: of a logarithmic grid
+    const double weight = s / (1.0 + std::pow(s / scale_s, 2)); // s: of a logarithmic grid
     const double likely = weight * std::exp(0.5 * (evidence[i] - most));
     prior += weight;
     total += likely;
+    sum += likely * s;
     squares += likely * s * s;
   }
-  const double none = prior * probable_none / (1.0 - probable_none) * std::exp(-0.5 * most);
-  return std::sqrt(squares / (total + none));
+  total += prior * probable_none / (1.0 - probable_none) * std::exp(-0.5 * most);
+  return {sum / total, squares / total};
 }
 
 } // namespace
@@ -92,8 +100,10 @@ std::optional<SharedStartScatter> shared_start_scatter(std::span<const StartEvid
     add_evidence(step, grid, evidence);
   }
   SharedStartScatter found;
-  found.scatter_s = rms_of(grid, evidence);
-  found.u_latency_s = latency_of_scatter * found.scatter_s;
+  const auto [mean_s, mean_square_s2] = moments_of(grid, evidence);
+  const double doubt_s = std::sqrt(std::max(0.0, mean_square_s2 - mean_s * mean_s));
+  found.scatter_s = std::sqrt(mean_square_s2);
+  found.u_latency_s = std::hypot(latency_of_mean * mean_s, latency_of_doubt * doubt_s);
   found.is_shown = *std::max_element(evidence.begin(), evidence.end()) >= significant;
   return found;
 }

@@ -261,14 +261,17 @@ std::vector<ResultFlag> kinds_of(const StepResult& result) {
   return kinds;
 }
 
+void lose_a_sample(wire::TriggeredRecord& series) {
+  series.values().erase(series.values().begin() + 400);
+  series.values().push_back(series.values().back());
+}
+
 TEST_F(SeriesRun, ASampleThatASeriesLostIsFlagged) {
   start();
   for (std::uint64_t number = 1; number <= 5; ++number) {
     auto records = shot(number, 1, 40.0);
     if (number == 3) {
-      auto& values = records.second.values();
-      values.erase(values.begin() + 400);
-      values.push_back(values.back());
+      lose_a_sample(records.second);
     }
     add(records);
   }
@@ -278,6 +281,47 @@ TEST_F(SeriesRun, ASampleThatASeriesLostIsFlagged) {
   EXPECT_THAT(sentences_of(result.flags),
               testing::Contains(HasSubstr("the phase changes within a series")));
 }
+
+// Which of three steps carry the flag when shots disagree in so many of the first.
+class DisagreeingSteps : public SeriesRun, public testing::WithParamInterface<std::uint32_t> {
+protected:
+  EvaluationOutput output_of(std::uint32_t losing) {
+    run_.steps = {{"40", 10.0}, {"80", 10.0}, {"160", 10.0}};
+    wire::Measurement message = measurement();
+    message.steps(run_.measurement().steps());
+    start(message);
+    for (std::uint32_t step = 1; step <= 3; ++step) {
+      for (std::uint64_t number = 1; number <= 5; ++number) {
+        auto records = shot(5 * step + number, step, 20.0 * std::pow(2.0, step));
+        if (step <= losing && number == 3) {
+          lose_a_sample(records.second);
+        }
+        add(records);
+      }
+    }
+    return finish();
+  }
+};
+
+TEST_P(DisagreeingSteps, FlagTheOthersWhereTheyAreMost) {
+  const std::uint32_t losing = GetParam();
+  const EvaluationOutput output = output_of(losing);
+  ASSERT_EQ(output.settled.size(), 3U);
+  for (const StepResult& result : output.settled) {
+    ASSERT_TRUE(result.valid) << result.problem;
+    const bool flagged = losing == 2 || result.step <= losing;
+    EXPECT_EQ(testing::Matches(testing::Contains(ResultFlag::shots_disagree))(kinds_of(result)),
+              flagged)
+        << result.step;
+    const bool by_the_others = losing == 2 && result.step == 3;
+    EXPECT_EQ(testing::Matches(testing::Contains(HasSubstr("they do in 2 of 3 steps")))(
+                  sentences_of(result.flags)),
+              by_the_others)
+        << result.step;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(NoneOneOrMost, DisagreeingSteps, testing::Values(0U, 1U, 2U));
 
 TEST_F(SeriesRun, ATraceThatIsCutOffIsFlaggedAndRefusesNothing) {
   start();
