@@ -137,8 +137,11 @@ TEST(RandomEffects, EightFrequenciesKnowTheScatter) {
       expect_covered(coverage, 0.01, name_of(session));
       EXPECT_LT(coverage.part, two_sigma_probability + above + 3.0 * coverage.u_part)
           << name_of(session);
-      // Two sweeps leave one degree of freedom for what they have in common.
-      EXPECT_LT(coverage.quotient, runs == 2 ? 2.1 : 1.3) << name_of(session);
+      // Two sweeps leave one degree of freedom for what they have in common: k / 2, as stated, is
+      // 1.7 to 2.1. In the long run the quotient is 1.6 without scatter and 1.9 at worst (tau 3),
+      // 0.06 being its standard deviation of as many sessions.
+      const double of_two = tau <= 1.0 ? 1.8 : 2.1;
+      EXPECT_LT(coverage.quotient, runs == 2 ? of_two : 1.3) << name_of(session);
       EXPECT_LT(coverage.quotient, widest(coverage)) << name_of(session);
     }
   }
@@ -180,13 +183,18 @@ TEST(RandomEffects, ALaterSweepMayLackAFrequency) {
   EXPECT_GT(whole, 0.9 * 4.5265 * 26.5 / std::sqrt(3.0)); // Student's t of three
 }
 
+// Of three runs not even eight frequencies tell the scatter so well that U were not up to 1.2 times
+// too wide: 97.2 % in the long run, and less the more of it is known.
 TEST(RandomEffects, CommonPartsStayCovered) {
   for (const double u_common : {0.3, 1.0, 3.0}) {
     for (const double tau : {0.0, 3.0}) {
       const Coverage coverage = coverage_of(
           {.frequencies = 8, .runs = 3, .tau = tau, .u_common = u_common}, draws() / 8, 4);
-      EXPECT_NEAR(coverage.part, two_sigma_probability, 0.025 + 3.0 * coverage.u_part)
-          << u_common << ", tau " << tau;
+      const std::string what =
+          "common " + std::to_string(u_common) + ", tau " + std::to_string(tau);
+      expect_covered(coverage, 0.0, what);
+      const double above = u_common > 2.0 ? 0.012 : 0.018;
+      EXPECT_LT(coverage.part, two_sigma_probability + above + 3.0 * coverage.u_part) << what;
     }
   }
 }
@@ -204,7 +212,7 @@ TEST(RandomEffects, ScatterMayBeATime) {
   std::mt19937_64 random(8);
   std::normal_distribution<double> normal;
   std::vector<double> lowest, highest;
-  for (int session = 0; session < 9; ++session) {
+  for (int session = 0; session < 36; ++session) {
     std::vector<RepeatedQuantity> quantities;
     for (int f = 0; f < 20; ++f) {
       RepeatedQuantity quantity{{}, {1.0, 1.0, 1.0}, 10.0 * std::pow(1.3, f)};
@@ -218,8 +226,9 @@ TEST(RandomEffects, ScatterMayBeATime) {
     lowest.push_back(combine(means[0], 0.0).expanded());
     highest.push_back(combine(means[19], 0.0).expanded() / (2.0 * 14.6 / std::sqrt(3.0)));
   }
-  EXPECT_LT(median(lowest), 1.6);
-  EXPECT_NEAR(median(highest), 1.15, 0.25);
+  EXPECT_NEAR(median(lowest), 1.18, 0.12); // 2 / sqrt(3) is what its noise asks for
+  // Single sessions scatter by 0.28, so that the median of 36 does by 0.06.
+  EXPECT_NEAR(median(highest), 1.21, 0.17);
 }
 
 TEST(RandomEffects, WithoutAnyNoiseItIsStudentsT) {
