@@ -16,6 +16,7 @@ python3-numpy; says so and leaves with status 77 without it.
 
 import argparse
 import collections
+import math
 import multiprocessing
 import os
 import pathlib
@@ -77,14 +78,19 @@ def percent(part, whole):
 def check(row, found, chance):
     """Prints a line for each quantity; returns what is not as expected."""
     tallies = {
-        what: Tally(found[row.fault_class, what], few_repeats=what in MEAN) for what in row.judged
+        what: Tally(
+            [claim for claim in found[row.fault_class, what] if row.judges(claim)],
+            few_repeats=what in MEAN,
+        )
+        for what in row.judged
     }
+    below = f" < {row.below_hz:g} Hz" if math.isfinite(row.below_hz) else ""
     findings = {what: tally.finding(row.wanted, chance) for what, tally in tallies.items()}
     for what, tally in tallies.items():
         n = len(tally.claims)
         state = f"known ({row.fails_at})" if row.fails_at and n else "FAILS"
         print(
-            f"{row.fault_class:44} {what:15} {n:5} {percent(tally.covered, n)} "
+            f"{row.fault_class:44} {what + below:15} {n:5} {percent(tally.covered, n)} "
             f"{percent(tally.warned, n)} {percent(len(tally.silent) - tally.silent_covered, n)} "
             f"{tally.width:6.2f}  {row.wanted:18}  "
             f"{f'{state}: {findings[what]}' if findings[what] else 'holds'}"

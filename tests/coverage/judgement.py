@@ -23,6 +23,8 @@ FAR_OFF = 3.0
 WIDEST = 12.0
 # The same where nothing is wrong, but u holds a bound of what the data cannot exclude: 1.5 times 2.
 WIDEST_BOUND = 3.0
+# As many as such a U holds.
+PROBABILITY_OF_BOUND = 0.9973
 # By how much U of a mean may exceed what Student's factor alone, as stated, makes of the errors.
 BEYOND_STUDENT = 1.2
 # Sync is always connected here.
@@ -240,11 +242,12 @@ class Tally:
             return finding or self._too_wide(self._widest_at_all(chance))
         if wanted == COVERED_AS_STUDENT:
             return self._too_wide(self.widest_mean(chance))
+        most = PROBABILITY_OF_BOUND if wanted == COVERED_WITH_BOUND else PROBABILITY
+        if too_many(self.covered, n, most, chance):
+            return f"{self.covered} of {n} are covered: u is too large"
         if wanted == COVERED_WITH_BOUND:
             widest = widest_of(WIDEST_BOUND, n, chance)
             return self._flagged_clean(n, chance) or self._too_wide(widest)
-        if too_many(self.covered, n, PROBABILITY, chance):
-            return f"{self.covered} of {n} are covered: u is too large"
         if wanted == COVERED_NO_MORE:
             return ""
         widest = self.widest_mean(chance) if self.few_repeats else widest_of(2.0, n, chance)

@@ -14,6 +14,7 @@ import bench_simulator
 import coverage
 import expected_outcomes
 import fault_classes
+from expected_row import PHASE, Row
 from judgement import (
     COVERED,
     COVERED_AS_STUDENT,
@@ -98,8 +99,17 @@ class TallyOfClaims(unittest.TestCase):
         self.assertIn(
             "times the rms", Tally(normal_claims(360, 1 / 1.8)).finding(COVERED_WITH_BOUND)
         )
+        self.assertIn(
+            "u is too large", Tally(normal_claims(5000, 1 / 1.8)).finding(COVERED_WITH_BOUND)
+        )
         claims = normal_claims(69) + normal_claims(3, flagged=True)
         self.assertIn("carry a flag", Tally(claims).finding(COVERED_WITH_BOUND))
+
+    def test_a_row_may_judge_low_frequencies_alone_and_never_passes_over_a_refusal(self):
+        row = Row("a class", PHASE, COVERED_NO_FLAG, below_hz=30.0)
+        self.assertTrue(row.judges(Claim(frequency="20")))
+        self.assertFalse(row.judges(Claim(frequency="210")))
+        self.assertTrue(row.judges(Claim(refused=True)))
 
     def test_an_interval_that_holds_everything_is_found_everywhere(self):
         for wanted in (COVERED_NO_FLAG, COVERED, COVERED_NO_MORE, COVERED_OR_FLAGGED):
