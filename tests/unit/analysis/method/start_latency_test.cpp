@@ -67,12 +67,12 @@ TEST(StartLatency, AScatterThatNeitherExplainsIsUndecided) {
 
 // What scatter hides: the mean of the latency, of which the shots show nothing.
 template <class Draw>
-void expect_covered_or_undecided(std::size_t shots, Draw latency_of, const char* what) {
+void expect_covered(std::size_t shots, Draw latency_of, const char* what) {
   std::mt19937_64 random(7);
   std::normal_distribution<double> noise(0.0, u_s);
   int wrong = 0;
-  int silent = 0;
-  constexpr int runs = 200;
+  constexpr int runs = 400;
+  constexpr int most = 31; // of a probability of 4.55 %: more only once in a thousand
   for (int run = 0; run < runs; ++run) {
     std::vector<double> offsets(shots);
     double mean = 0.0;
@@ -85,22 +85,20 @@ void expect_covered_or_undecided(std::size_t shots, Draw latency_of, const char*
     const bool covered =
         std::abs(mean - start.latency_s) <= 2.0 * std::hypot(start.u_latency_s, scatter);
     wrong += covered ? 0 : 1;
-    silent += start.kind != StartKind::undecided && !covered ? 1 : 0;
   }
-  EXPECT_LE(wrong, runs / 10) << what;
-  EXPECT_LE(silent, runs / 10) << what;
+  EXPECT_LE(wrong, most) << what;
 }
 
 TEST(StartLatency, ItsUncertaintyHoldsTheMeanOfWhateverScatters) {
   for (const std::size_t shots : {5U, 12U}) {
     for (const double part : {0.25, 0.5, 0.75, 1.0}) {
       std::uniform_real_distribution<double> start(0.0, part * sample_s);
-      expect_covered_or_undecided(shots, start, "within a part of a sample");
+      expect_covered(shots, start, "within a part of a sample");
     }
     std::exponential_distribution<double> wait(1.0 / 50e-6);
-    expect_covered_or_undecided(shots, wait, "waiting");
+    expect_covered(shots, wait, "waiting");
     std::normal_distribution<double> jitter(0.0, 50e-6);
-    expect_covered_or_undecided(shots, jitter, "jitter");
+    expect_covered(shots, jitter, "jitter");
   }
 }
 
