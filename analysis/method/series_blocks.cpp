@@ -269,11 +269,11 @@ void judge_mean(const Blocks& all, const TimePolynomials& powers, SeriesAgreemen
   result.magnitudes_change = of_magnitude > (blocks - 1.0) * chi_squared_limit(blocks - 1.0, rare);
   double square = 0.0;
   for (std::size_t order = 2; order < TimePolynomials::orders; ++order) {
-    const double bend = powers.coefficient(order, phase.data());
-    const double u_bend = powers.u_of_coefficient(order, u);
-    if (std::abs(bend) > noticed * u_bend) {
-      square += (bend * bend - u_bend * u_bend) * std::pow(powers.at_start(order), 2);
-    }
+    const double turn = powers.coefficient(order, phase.data()) * powers.at_start(order);
+    const double u_turn = powers.u_of_coefficient(order, u) * std::abs(powers.at_start(order));
+    result.bend.turn_rad[order - 2] = turn;
+    result.bend.u_rad[order - 2] = u_turn;
+    square += std::abs(turn) > noticed * u_turn ? turn * turn - u_turn * u_turn : 0.0;
   }
   result.u_phase_rad = std::sqrt(square);
 }

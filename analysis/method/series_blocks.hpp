@@ -24,6 +24,7 @@
 // thread.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -34,6 +35,12 @@
 
 namespace dyncal::analysis {
 
+// What bends all series of a step alike, in orders 2 and 3 of the time.
+struct SeriesBend {
+  std::array<double, 2> turn_rad{}; // of the first sample
+  std::array<double, 2> u_rad{};
+};
+
 struct SeriesAgreement {
   bool rates_differ = false;
   bool phases_change = false;      // in a shot or in all, other than by a rate
@@ -41,6 +48,7 @@ struct SeriesAgreement {
   std::vector<double> turn_rad;    // of each shot; empty where rates do not differ
   double u_turn_rad = 0.0;         // of one of them
   double u_phase_rad = 0.0;        // of the first sample, common to all shots
+  SeriesBend bend;                 // what that is made of
   double rate_scatter_rel = 0.0;   // between shots, where rates differ, as it counts in a mean
   double largest_change_rad = 0.0; // of one block against its shot
 

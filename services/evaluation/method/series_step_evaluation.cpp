@@ -26,6 +26,7 @@ SeriesStepOutput without_result(const SeriesStepInput& input, const std::string&
   return {results_without_value(input.task.step(), input.task.recipe->dut(), problem),
           std::nullopt,
           input.start_so_far,
+          {},
           {}};
 }
 
@@ -181,6 +182,18 @@ void add_flags(const SeriesStepInput& input, const EvaluatedSeries& evaluated, s
   }
 }
 
+std::map<std::string, analysis::StepBend> bends_of(const analysis::SeriesStampingResult& result) {
+  std::map<std::string, analysis::StepBend> bends;
+  for (const analysis::SeriesChannelResult& channel : result.channels) {
+    if (channel.agreement) {
+      bends.insert_or_assign(
+          channel.channel,
+          analysis::StepBend{result.sync_acs.frequency.angular(), channel.agreement->bend});
+    }
+  }
+  return bends;
+}
+
 std::vector<std::size_t> columns_of(const SourceRecord& sensor,
                                     const std::vector<ChannelName>& dut) {
   std::vector<std::size_t> columns;
@@ -295,7 +308,7 @@ SeriesStepOutput evaluate_series_step(const SeriesStepInput& step) {
   }
   add_flags(step, *evaluated, shots.size(), flags);
   return {results_of(step, acs, shots, *evaluated, flags), evaluated->result.rate,
-          evaluated->start.kind, evaluated->start_evidence};
+          evaluated->start.kind, evaluated->start_evidence, bends_of(evaluated->result)};
 }
 
 void add_shared_start(const analysis::SharedStartScatter& start, StepResult& result) {

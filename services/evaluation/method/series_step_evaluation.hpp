@@ -11,11 +11,13 @@
 // the same records give the same bits.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "analysis/method/nominal_frequency.hpp"
+#include "analysis/method/shared_bend.hpp"
 #include "analysis/method/shared_start_scatter.hpp"
 #include "analysis/method/start_latency.hpp"
 #include "services/evaluation/method/step_task.hpp"
@@ -40,6 +42,7 @@ struct SeriesStepOutput {
   std::optional<analysis::NominalFrequency> rate;             // of the sensor, by eq. (6)
   analysis::StartKind start = analysis::StartKind::undecided; // for the steps that follow
   analysis::StartEvidence start_evidence{};                   // for all of them at the end
+  std::map<std::string, analysis::StepBend> bends{}; // by channel, for all of them at the end
 };
 
 [[nodiscard]] SeriesStepOutput evaluate_series_step(const SeriesStepInput& step);

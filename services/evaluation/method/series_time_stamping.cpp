@@ -1,6 +1,7 @@
 #include "services/evaluation/method/series_time_stamping.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 
 #include <fmt/core.h>
@@ -46,6 +47,31 @@ bool add_disagreement_of_most(std::span<StepResult> results) {
                        count.steps)});
       added = true;
     }
+  }
+  return added;
+}
+
+// A drift of the sensor's clock that another step shows.
+bool add_disagreement_of_another(const std::map<std::uint32_t, analysis::StepBend>& bends,
+                                 const std::string& channel, std::span<StepResult> results) {
+  std::vector<analysis::StepBend> steps;
+  for (const auto& [number, bend] : bends) {
+    steps.push_back(bend);
+  }
+  const std::vector<bool> bend = analysis::steps_that_bend(steps);
+  bool added = false;
+  for (StepResult& result : results) {
+    const auto found = result.channel == channel ? bends.find(result.step) : bends.end();
+    if (found == bends.end() || !result.valid || has_shots_that_disagree(result) ||
+        !bend[static_cast<std::size_t>(std::distance(bends.begin(), found))]) {
+      continue;
+    }
+    result.flags.push_back(
+        {ResultFlag::shots_disagree,
+         fmt::format("{}: {}: the clock drifts within the series, as other steps show; here it is "
+                     "hidden in their noise",
+                     channel, to_string(ResultFlag::shots_disagree))});
+    added = true;
   }
   return added;
 }
@@ -98,13 +124,20 @@ std::vector<StepResult> SeriesTimeStamping::evaluate(std::size_t step, const Run
     const std::size_t place = records.excitation().order().index(step);
     rates_.insert_or_assign(place, *evaluated.rate);
     starts_.insert_or_assign(place, evaluated.start_evidence);
+    for (const auto& [channel, bend] : evaluated.bends) {
+      bends_[channel].insert_or_assign(planned.step, bend);
+    }
   }
   shots_.forget_step(attempt);
   return std::move(evaluated.results);
 }
 
 bool SeriesTimeStamping::settle(std::span<StepResult> results) const {
-  const bool disagree = add_disagreement_of_most(results);
+  bool disagree = false;
+  for (const auto& [channel, bends] : bends_) {
+    disagree |= add_disagreement_of_another(bends, channel, results);
+  }
+  disagree |= add_disagreement_of_most(results);
   if (start_ == analysis::StartKind::uniform) {
     return disagree; // its scatter is known, and in u
   }

@@ -7,11 +7,14 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "analysis/method/nominal_frequency.hpp"
+#include "analysis/method/shared_bend.hpp"
 #include "analysis/method/shared_start_scatter.hpp"
 #include "analysis/method/start_latency.hpp"
 #include "services/evaluation/method/method.hpp"
@@ -32,7 +35,8 @@ public:
   [[nodiscard]] Evaluation evaluation(std::size_t step, const RunRecords& records) override;
   [[nodiscard]] bool can_run_ahead() const override { return false; } // rates, kind of start
   // By how much the start may scatter, as all steps together tell, is in u of each; with a flag
-  // where they show that it does. What changes within the series of most steps is flagged in all.
+  // where they show that it does. What changes within the series of most steps is flagged in all;
+  // so is a drift of the clock that one step shows in those that do not exclude it.
   [[nodiscard]] bool settle(std::span<StepResult> results) const override;
   [[nodiscard]] std::vector<ClockReport> clock_reports() const override;
 
@@ -46,6 +50,8 @@ private:
   // By step of the recipe.
   std::map<std::size_t, analysis::StartEvidence> starts_;
   std::map<std::size_t, analysis::NominalFrequency> rates_;
+  // By channel, then by number of the step.
+  std::map<std::string, std::map<std::uint32_t, analysis::StepBend>> bends_;
 };
 
 } // namespace dyncal::services

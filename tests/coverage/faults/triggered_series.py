@@ -174,6 +174,7 @@ CLASSES = {
     "series, sync distorted by 3 %": series(DistortedSync, part=0.03),
     # Inside a series.
     "series, clock drifts by 2 ppm": series(DriftingClock, change_rel=2e-6),
+    "series, clock drifts by 20 ppm": series(DriftingClock, change_rel=2e-5),
     "series, clock drifts by 100 ppm": series(DriftingClock, change_rel=1e-4),
     "series, clock drifts by 2000 ppm": series(DriftingClock, change_rel=2e-3),
     "series, rates scatter by 5 ppm": series(RateOfShot, scatter_rel=5e-6),

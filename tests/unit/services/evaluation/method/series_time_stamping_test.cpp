@@ -321,6 +321,38 @@ TEST_P(DisagreeingSteps, FlagTheOthersWhereTheyAreMost) {
   }
 }
 
+// By 10 ppm in a second, which moves the first sample by 0.8 us.
+TEST_F(SeriesRun, AClockThatDriftsIsFlaggedWhereOnlyAnotherStepShowsIt) {
+  run_.steps = {{"20", 10.0}, {"25", 10.0}, {"160", 10.0}};
+  wire::Measurement message = measurement();
+  message.steps(run_.measurement().steps());
+  start(message);
+  for (std::uint32_t step = 1; step <= 3; ++step) {
+    const double frequency_hz = std::stod(run_.steps[step - 1].frequency_hz);
+    for (std::uint64_t number = 5 * step + 1; number <= 5 * step + 5; ++number) {
+      auto records = shot(number, step, frequency_hz);
+      std::mt19937_64 random(number);
+      std::normal_distribution<double> noise(0.0, 1e-3);
+      for (std::size_t n = 0; n < records.second.values().size(); ++n) {
+        const double since_s = static_cast<double>(n) / real_rate_hz;
+        const double t = dso_delay_s + since_s + 0.5 * 1e-5 * since_s * since_s - delay_s;
+        const double turn = 2.0 * std::numbers::pi * frequency_hz * t + beta_rad[number % 5];
+        records.second.values()[n] = 10.0 * (magnitude * std::sin(turn) + noise(random));
+      }
+      add(records);
+    }
+  }
+  const EvaluationOutput output = finish();
+  ASSERT_EQ(output.settled.size(), 3U);
+  for (const StepResult& result : output.settled) {
+    EXPECT_THAT(kinds_of(result), testing::Contains(ResultFlag::shots_disagree)) << result.step;
+    EXPECT_EQ(testing::Matches(testing::Contains(HasSubstr("as other steps show")))(
+                  sentences_of(result.flags)),
+              result.step < 3)
+        << result.step;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(NoneOneOrMost, DisagreeingSteps, testing::Values(0U, 1U, 2U));
 
 TEST_F(SeriesRun, ATraceThatIsCutOffIsFlaggedAndRefusesNothing) {
