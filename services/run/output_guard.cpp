@@ -12,6 +12,7 @@
 #include <fmt/core.h>
 #include <spawn.h>
 #include <sys/wait.h>
+#include <syslog.h>
 #include <unistd.h>
 
 #include "drivers/generator/generator_output.hpp"
@@ -22,8 +23,6 @@ namespace dyncal::services {
 namespace {
 
 constexpr char farewell = '.';
-// A link that is pulled and put back, an instrument that is switched off and on.
-constexpr std::chrono::minutes try_limit{10};
 constexpr std::chrono::milliseconds pause{500}; // where a connection is refused at once
 // What ends a terminal's programs, a process group or a systemd unit ends the run; its guard is for
 // what comes after that.
@@ -35,30 +34,40 @@ Error cannot_start(const std::string& why) {
           fmt::format("the guard of the generator's output cannot be started: {}", why)};
 }
 
-int switch_off(const std::string& generator_address) {
-  const auto deadline = std::chrono::steady_clock::now() + try_limit;
+// The terminal of the program that died may be gone, too.
+void say(const std::string& sentence, int priority) {
+  fmt::print(stderr, "dyncal: {}\n", sentence);
+  syslog(LOG_USER | priority, "dyncal: %s", sentence.c_str());
+}
+
+int switch_off(const std::string& generator_address, std::chrono::milliseconds limit) {
+  const auto deadline = std::chrono::steady_clock::now() + limit;
   for (int attempt = 1;; ++attempt) {
     const auto off = drivers::generator::switch_output_off(generator_address);
     if (off) {
-      fmt::print(
-          stderr,
-          "dyncal: the run has ended without it; the output of the generator {} was switched "
-          "off now\n",
-          generator_address);
+      say(fmt::format("the run has ended without it; the output of the generator {} was switched "
+                      "off now",
+                      generator_address),
+          LOG_WARNING);
       return 0;
     }
     if (std::chrono::steady_clock::now() > deadline) {
-      return report_error({ErrorCode::device,
-                           fmt::format("the output of the generator {} MAY STILL BE ON after {} "
-                                       "min of trying: switch it off by hand ({})",
-                                       generator_address, try_limit.count(), off.error().message)});
+      const Error error{ErrorCode::device,
+                        fmt::format("THE OUTPUT OF THE GENERATOR {} MAY BE ON after {:.3g} min of "
+                                    "trying, which end now: switch it off by hand ({})",
+                                    generator_address,
+                                    std::chrono::duration<double, std::ratio<60>>(limit).count(),
+                                    off.error().message)};
+      syslog(LOG_USER | LOG_CRIT, "dyncal: %s", error.message.c_str());
+      return report_error(error);
     }
     if (attempt == quiet_attempts) {
-      fmt::print(
-          stderr,
-          "dyncal: the run has ended and the output of the generator {} MAY BE ON: switch it "
-          "off by hand if you can; trying for {} min ({})\n",
-          generator_address, try_limit.count(), off.error().message);
+      say(fmt::format("the run has ended and the output of the generator {} MAY BE ON: switch it "
+                      "off by hand if you can; trying for {:.3g} min ({})",
+                      generator_address,
+                      std::chrono::duration<double, std::ratio<60>>(limit).count(),
+                      off.error().message),
+          LOG_CRIT);
     }
     std::this_thread::sleep_for(pause);
   }
@@ -111,7 +120,8 @@ void OutputGuard::dismiss() {
   waitpid(process_, nullptr, 0);
 }
 
-int guard_output(const std::string& generator_address, int input) {
+int guard_output(const std::string& generator_address, int input,
+                 std::chrono::milliseconds limit) {
   close_range(STDERR_FILENO + 1, ~0U, 0); // sockets of the guarded program, which must end with it
   std::signal(SIGPIPE, SIG_IGN);
   for (const int signal : outlived_signals) {
@@ -125,7 +135,7 @@ int guard_output(const std::string& generator_address, int input) {
   if (count == 1 && byte == farewell) {
     return 0;
   }
-  return switch_off(generator_address);
+  return switch_off(generator_address, limit);
 }
 
 } // namespace dyncal::services

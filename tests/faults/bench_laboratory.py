@@ -73,11 +73,22 @@ def take_terminal():
     fcntl.ioctl(0, termios.TIOCSCTTY)
 
 
+def guards_output(process):
+    try:
+        command = pathlib.Path(f"/proc/{process}/cmdline").read_bytes()
+    except OSError:
+        return False  # it has ended
+    return b"guard-output" in command.split(b"\0")
+
+
 class Program:
-    """`terminal`: the end of a pseudo terminal that is the program's own, as in a window."""
+    """`terminal`: the end of a pseudo terminal that is the program's own, as in a window.
+
+    What guards its generator's output outlives it, and is ended with it by end() alone."""
 
     def __init__(self, command, log, environment=None, terminal=None):
         self.log = log
+        self.guards = set()  # of its output, that were seen
         with open(log, "w", encoding="utf-8") as errors:
             self.process = subprocess.Popen(
                 command,
@@ -105,7 +116,19 @@ class Program:
         if text not in self.errors():
             raise Failure(f"{self.log}: ended with {self.process.returncode}: {self.errors()}")
 
+    def look_for_guards(self):
+        parent = self.process.pid
+        try:
+            children = pathlib.Path(f"/proc/{parent}/task/{parent}/children").read_text("ascii")
+        except OSError:
+            return  # it has ended
+        self.guards |= {int(child) for child in children.split() if guards_output(child)}
+
+    def is_guarded(self):
+        return any(guards_output(guard) for guard in self.guards)
+
     def send(self, number):
+        self.look_for_guards()
         if self.runs():
             self.process.send_signal(number)
 
@@ -123,6 +146,8 @@ class Program:
         except subprocess.TimeoutExpired:
             self.process.kill()
             self.process.wait()
+        for guard in filter(guards_output, self.guards):
+            os.kill(guard, signal.SIGKILL)
 
 
 class BenchLaboratory:

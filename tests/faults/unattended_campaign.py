@@ -299,8 +299,12 @@ def calibration(arguments, number):
                 row.took_s = output.expect_off(limit_s, since_s, watch_s, delay)
             row.figures = off_after(row.took_s)
             row.figures += ", said to be on" if MAY_BE_ON in calibrate.errors() else ""
+            if not calibrate.guards:
+                raise Failure("no process was seen that guards the output")
             proxy.begin("sound")
-            wait_until(lambda: not is_on(), "the process that guards the output", 30.0)
+            wait_until(lambda: not calibrate.is_guarded(), "the guard of the output to end", 30.0)
+            if is_on():
+                raise Failure("the process that guards the output has ended, and it is on")
         finally:
             for program in (calibrate, bench):
                 if program:
