@@ -16,10 +16,12 @@
 #include "services/contract/time_name.hpp"
 #include "services/contract/topics.hpp"
 #include "services/doctor/unheard_analysis.hpp"
+#include "services/printable_text.hpp"
 #include "services/program/bench_program.hpp"
 #include "services/program/watched_network.hpp"
 #include "services/report/show_outcome.hpp"
 #include "services/run/bench_queue.hpp"
+#include "services/run/guard_watch.hpp"
 #include "services/run/run_plan.hpp"
 #include "services/run_folder/run_folder.hpp"
 
@@ -180,10 +182,25 @@ Expected<ConductedRun> conduct_as_asked(const Conduct& run) {
   return conduct_new(run);
 }
 
+// What guards say of the exciter after the run, of which they hear more than its generator says.
+void take_words_of_guards(bus::Reader<wire::ServiceStatus>& statuses, const BenchFile& bench,
+                          RunOutcome& outcome) {
+  const auto now = bus::system_clock().now();
+  GuardWatch guards(bench.bench, bench.generator.address, now);
+  statuses.take([&](const wire::ServiceStatus& status) { guards.take(status, now); });
+  const std::string failure = guards.failure(now);
+  if (bench.generator.driver == GeneratorDriver::scpi && !failure.empty()) {
+    outcome.output_may_be_on = true;
+    outcome.problem += (outcome.problem.empty() ? "" : "; ") + one_line(failure);
+  }
+}
+
 // The folder first, which is what is left if the rest fails; then the database, which may let wait.
 // What is kept is evaluated once more at the end.
-Expected<void> show_and_keep(const RunCommand& command, ConductedRun& run,
-                             const std::stop_token& stop) {
+Expected<void> show_and_keep(const Conduct& conduct, ConductedRun& run) {
+  const RunCommand& command = conduct.command;
+  auto statuses = conduct.participant.reader(bus::topics::service_status, conduct.bench.bench,
+                                             std::make_shared<bus::WakeUp>());
   const auto kept = run.kept->finish(run.outcome);
   auto shown = show_outcome(run.outcome, command.json, command.figures);
   if (const auto folder = run.kept->folder(); folder && kept) {
@@ -195,7 +212,11 @@ Expected<void> show_and_keep(const RunCommand& command, ConductedRun& run,
   if (!done && run.outcome.output_may_be_on) {
     done.error().message += "; " + output_warning(run.outcome);
   }
-  return done.and_then([&] { return run.kept->hold_against_recording(run.outcome, stop); });
+  done = done.and_then([&] { return run.kept->hold_against_recording(run.outcome, conduct.stop); });
+  if (statuses) { // all this has taken a while
+    take_words_of_guards(*statuses, conduct.bench, run.outcome);
+  }
+  return done;
 }
 
 // What this host hears instead of an analysis, in brackets. `links` as they were at the beginning.
@@ -265,10 +286,10 @@ Expected<RunOutcome> conduct_run(const RunCommand& command, const std::stop_toke
     excited = excited || state.step > 0;
     progress.show(state);
   };
-  auto run = conduct_as_asked(
-      {command, *bench, *adc, network, (*joined)->participant, show, stop, newest});
+  const Conduct conduct{command, *bench, *adc, network, (*joined)->participant, show, stop, newest};
+  auto run = conduct_as_asked(conduct);
   progress.end();
-  const auto shown = run ? show_and_keep(command, *run, stop) : fail(run.error());
+  const auto shown = run ? show_and_keep(conduct, *run) : fail(run.error());
   auto heard = (*joined)->outcome(shown);
   if (!heard && newest.misses_analysis) {
     joined->reset(); // what is looked for may be in its way

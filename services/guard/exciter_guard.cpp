@@ -68,10 +68,20 @@ ExciterGuard::create(bus::Participant& participant, const ProgramIdentity& own,
     spdlog::info("bench {}: run {} drove the generator when this guard was last there",
                  exciter.bench, watch.run().run);
   }
-  return std::unique_ptr<ExciterGuard>(
-      new ExciterGuard(status_of(own, exciter), exciter, std::move(watch), std::move(output),
-                       std::move(record), clock, std::move(wake_up),
-                       {std::move(*excitation), std::move(*measurement), std::move(*status)}));
+  std::optional<ReferenceWatch> reference;
+  if (exciter.reference) {
+    std::vector<double> planned_hz;
+    for (const OutputSettings& settings : exciter.planned) {
+      planned_hz.push_back(settings.frequency_hz);
+    }
+    // Its blocks do not wake the guard up: it looks often enough.
+    reference.emplace(participant, exciter.bench, *exciter.reference, planned_hz,
+                      std::make_shared<bus::WakeUp>());
+  }
+  return std::unique_ptr<ExciterGuard>(new ExciterGuard(
+      status_of(own, exciter), exciter, std::move(watch), std::move(reference), std::move(output),
+      std::move(record), clock,
+      {std::move(*excitation), std::move(*measurement), std::move(*status), std::move(wake_up)}));
 }
 
 void ExciterGuard::serve(const std::stop_token& stop, const std::function<void()>& turned) {
@@ -79,7 +89,7 @@ void ExciterGuard::serve(const std::stop_token& stop, const std::function<void()
     if (turned) {
       turned();
     }
-    clock_.wait(*wake_up_, clock_.now() + look_interval);
+    clock_.wait(*endpoints_.wake_up, clock_.now() + look_interval);
     work();
   }
 }
@@ -87,6 +97,7 @@ void ExciterGuard::serve(const std::stop_token& stop, const std::function<void()
 void ExciterGuard::work() {
   take_messages();
   act();
+  look_at_reference();
   keep_record();
   report();
   if (clock_.now() >= next_status_) {
@@ -95,9 +106,7 @@ void ExciterGuard::work() {
 }
 
 GuardFigures ExciterGuard::figures() const {
-  return {.bench = exciter_.bench,
-          .switched_off = times_switched_off_,
-          .may_be_on = !watch_.may_be_on().empty()};
+  return {.bench = exciter_.bench, .switched_off = times_switched_off_, .may_be_on = may_be_on()};
 }
 
 void ExciterGuard::publish() {
@@ -166,6 +175,32 @@ void ExciterGuard::act() {
   }
 }
 
+void ExciterGuard::look_at_reference() {
+  if (!reference_) {
+    return;
+  }
+  using Phase = ReferenceWatch::Phase;
+  const auto& settings = watch_.run().settings;
+  Phase phase = Phase::off;
+  switch (watch_.state()) {
+  case State::idle: // what goes on is said until it does not
+    phase = reference_->still_driven().empty() ? Phase::unwatched : Phase::off;
+    break;
+  case State::begins:
+    phase = Phase::quiet;
+    break;
+  case State::driven:
+    phase = Phase::driven;
+    break;
+  case State::silent:
+    phase = watch_.has_switched_off() ? Phase::off : Phase::driven;
+    break;
+  case State::ended:
+    break;
+  }
+  reference_->look(phase, settings.empty() ? 0.0 : settings.back().frequency_hz, clock_.now());
+}
+
 void ExciterGuard::keep_record() {
   if (watch_.run() == recorded_) {
     return;
@@ -179,11 +214,23 @@ void ExciterGuard::keep_record() {
   record_failed_ = !written;
 }
 
+bool ExciterGuard::may_be_on() const {
+  const bool is_persons = watch_.left_on().has_value();
+  return !watch_.may_be_on().empty() ||
+         (reference_ && !is_persons && !reference_->still_driven().empty());
+}
+
 std::string ExciterGuard::message() const {
   if (!watch_.may_be_on().empty()) {
     return fmt::format("nothing is heard of run {}, and THE OUTPUT OF THE GENERATOR MAY BE ON: "
                        "switch it off by hand if you can; trying again until it is off ({})",
                        watch_.run().run, watch_.may_be_on());
+  }
+  if (may_be_on()) { // the same words until that ends: a run passes each on
+    return fmt::format("the generator answers that its output is off, but {}: THE OUTPUT OF THE "
+                       "GENERATOR MAY BE ON, or something else drives the exciter; switch it off "
+                       "by hand",
+                       reference_->still_driven());
   }
   if (watch_.left_on()) {
     return fmt::format("the output of the generator is on ({}), which is not what run {} drove: it "
@@ -200,7 +247,7 @@ std::string ExciterGuard::message() const {
 
 // As soon as it has changed.
 void ExciterGuard::report() {
-  const bool has_failed = !watch_.may_be_on().empty();
+  const bool has_failed = may_be_on();
   if (has_failed && clock_.now() >= next_report_) {
     next_report_ = clock_.now() + report_interval;
     spdlog::error("bench {}: {}", exciter_.bench, message());

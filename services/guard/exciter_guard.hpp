@@ -5,7 +5,9 @@
 // conductor repeats it every half second while it has hold of the generator (idl/README.md, "The
 // run protocol"); nothing heard for `unattended_limit` means that nobody attends, whatever else is
 // heard of the run. What is done then, and what the generator is asked for, stands in
-// exciter_watch.hpp; here are the bus, the generator, the record and the log.
+// exciter_watch.hpp; here are the bus, the generator, the record and the log. What the reference
+// shows of an exciter that goes on although its generator answers that it is off:
+// reference_watch.hpp.
 //
 // It says every second that it is there and which generator it guards (ServiceStatus), whether an
 // output may be on that it cannot switch off (FAILED), and in `run` which run it does not hear:
@@ -19,6 +21,7 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -29,16 +32,18 @@
 #include "services/guard/driven_record.hpp"
 #include "services/guard/exciter_watch.hpp"
 #include "services/guard/guarded_output.hpp"
+#include "services/guard/reference_watch.hpp"
 #include "services/supervision/daemon_metrics.hpp"
 
 namespace dyncal::services {
 
 struct GuardedExciter {
   std::string bench;
-  std::string generator;               // its address
-  std::vector<OutputSettings> planned; // by the bench file
-  double level_per_volt = 1.0;         // m/s^2 per V
-  bool has_closed_loop = false;        // of the level: the voltage is not known before
+  std::string generator;                  // its address
+  std::vector<OutputSettings> planned;    // by the bench file
+  double level_per_volt = 1.0;            // m/s^2 per V
+  bool has_closed_loop = false;           // of the level: the voltage is not known before
+  std::optional<ChannelName> reference{}; // where an ACS records it
 };
 
 class ExciterGuard {
@@ -68,29 +73,32 @@ private:
     bus::Reader<wire::Excitation> excitation;
     bus::Reader<wire::Measurement> measurement;
     bus::Writer<wire::ServiceStatus> status;
+    std::shared_ptr<bus::WakeUp> wake_up; // of the readers
   };
 
   ExciterGuard(wire::ServiceStatus status, GuardedExciter exciter, ExciterWatch watch,
-               std::unique_ptr<GuardedOutput> output, DrivenRecord record, bus::Clock& clock,
-               std::shared_ptr<bus::WakeUp> wake_up, Endpoints endpoints)
-      : exciter_(std::move(exciter)), watch_(std::move(watch)), output_(std::move(output)),
-        record_(std::move(record)), clock_(clock), wake_up_(std::move(wake_up)),
+               std::optional<ReferenceWatch> reference, std::unique_ptr<GuardedOutput> output,
+               DrivenRecord record, bus::Clock& clock, Endpoints endpoints)
+      : exciter_(std::move(exciter)), watch_(std::move(watch)), reference_(std::move(reference)),
+        output_(std::move(output)), record_(std::move(record)), clock_(clock),
         endpoints_(std::move(endpoints)), status_(std::move(status)), recorded_(watch_.run()) {}
 
   void take_messages();
   void act();
+  void look_at_reference();
   void keep_record();
   void report();
   void publish();
   [[nodiscard]] OutputSettings settings_of(const wire::Excitation& excitation) const;
+  [[nodiscard]] bool may_be_on() const;
   [[nodiscard]] std::string message() const;
 
   GuardedExciter exciter_;
   ExciterWatch watch_;
+  std::optional<ReferenceWatch> reference_;
   std::unique_ptr<GuardedOutput> output_;
   DrivenRecord record_;
   bus::Clock& clock_;
-  std::shared_ptr<bus::WakeUp> wake_up_;
   Endpoints endpoints_;
   wire::ServiceStatus status_; // as published last
   DrivenRun recorded_;

@@ -18,13 +18,17 @@ namespace {
 
 constexpr std::chrono::milliseconds unattended_limit{2000};
 
-// The settings of the generator that a bench file plans.
+// The settings of the generator that a bench file plans, and the reference that shows them.
 GuardedExciter exciter_of(const BenchFile& bench) {
   GuardedExciter exciter;
   exciter.bench = bench.bench;
   exciter.generator = bench.generator.address;
   exciter.level_per_volt = bench.generator.level_per_volt;
   exciter.has_closed_loop = bench.generator.level_tolerance_rel.has_value();
+  const SourceSettings* acs = bench.source(bench.method.reference.source);
+  if (acs != nullptr && acs->is<SocketSourceSettings>()) {
+    exciter.reference = bench.method.reference;
+  }
   for (std::size_t i = 0; i < bench.excitation.frequencies_hz.size(); ++i) {
     OutputSettings settings;
     const std::string& text = bench.excitation.frequencies_hz[i];

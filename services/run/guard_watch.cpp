@@ -22,16 +22,25 @@ void GuardWatch::take(const wire::ServiceStatus& status, Instant now) {
                       status.health() == wire::HEALTH_FAILED ? status.message() : "", now};
 }
 
+std::string GuardWatch::failure(Instant now) const {
+  for (const auto& [service, guard] : guards_) {
+    if (now - guard.heard <= limit && !guard.message.empty() &&
+        may_be_one_generator(guard.generator, generator_)) {
+      return fmt::format("dyncal-guard on {}: {}", guard.host, guard.message);
+    }
+  }
+  return "";
+}
+
 std::string GuardWatch::lack(Instant now) const {
+  if (std::string failed = failure(now); !failed.empty()) {
+    return failed;
+  }
   const Guard* newest = nullptr;
   bool is_watched = false;
   for (const auto& [service, guard] : guards_) {
-    if (now - guard.heard <= limit && may_be_one_generator(guard.generator, generator_)) {
-      if (!guard.message.empty()) {
-        return fmt::format("dyncal-guard on {}: {}", guard.host, guard.message);
-      }
-      is_watched = true;
-    }
+    is_watched = is_watched ||
+                 (now - guard.heard <= limit && may_be_one_generator(guard.generator, generator_));
     if (newest == nullptr || newest->heard < guard.heard) {
       newest = &guard;
     }

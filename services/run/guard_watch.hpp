@@ -37,6 +37,9 @@ public:
   // What the operator is to know now, once until it changes.
   [[nodiscard]] std::optional<std::string> notice(Instant now);
 
+  // What a guard of this generator says of an output that may be on; empty: none says so.
+  [[nodiscard]] std::string failure(Instant now) const;
+
   // Which guard of this generator does not hear `run`, as a sentence; empty: none says so.
   [[nodiscard]] std::string deafness(const std::string& run, Instant now) const;
 

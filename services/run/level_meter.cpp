@@ -40,18 +40,19 @@ LevelMeter::LevelMeter(ChannelName reference, bus::Reader<wire::SourceDescriptio
     : reference_(std::move(reference)), descriptions_(std::move(descriptions)),
       samples_(std::move(samples)), record_(reference_.source, max_samples) {}
 
-Expected<LevelMeter> LevelMeter::create(bus::Participant& participant, const BenchFile& bench,
+Expected<LevelMeter> LevelMeter::create(bus::Participant& participant, const std::string& bench,
+                                        ChannelName reference,
                                         const std::shared_ptr<bus::WakeUp>& wake_up) {
-  auto descriptions = participant.reader(bus::topics::source_description, bench.bench, wake_up);
+  auto descriptions = participant.reader(bus::topics::source_description, bench, wake_up);
   if (!descriptions) {
     return fail(descriptions.error());
   }
-  auto samples = participant.reader<wire::SampleBlock>(
-      bus::topics::acs_samples, bus::Profile::live_samples, bench.bench, wake_up);
+  auto samples = participant.reader<wire::SampleBlock>(bus::topics::acs_samples,
+                                                       bus::Profile::live_samples, bench, wake_up);
   if (!samples) {
     return fail(samples.error());
   }
-  return LevelMeter(bench.method.reference, std::move(*descriptions), std::move(*samples));
+  return LevelMeter(std::move(reference), std::move(*descriptions), std::move(*samples));
 }
 
 void LevelMeter::take(double bench_time_s) {

@@ -27,8 +27,8 @@
 #include <vector>
 
 #include "analysis/base/frequency.hpp"
-#include "services/bench/bench_file.hpp"
 #include "services/bus/bus.hpp"
+#include "services/contract/channel_name.hpp"
 #include "services/evaluation/record/source_record.hpp"
 #include "services/run/level_reading.hpp"
 
@@ -36,9 +36,9 @@ namespace dyncal::services {
 
 class LevelMeter {
 public:
-  // Of the channel that is the bench's reference. Fails as readers do.
+  // `reference`: a channel of an ACS. Fails as readers do.
   [[nodiscard]] static Expected<LevelMeter> create(bus::Participant& participant,
-                                                   const BenchFile& bench,
+                                                   const std::string& bench, ChannelName reference,
                                                    const std::shared_ptr<bus::WakeUp>& wake_up);
 
   // Takes what has come; `bench_time_s` is the bench's time now.

@@ -120,8 +120,7 @@ void OutputGuard::dismiss() {
   waitpid(process_, nullptr, 0);
 }
 
-int guard_output(const std::string& generator_address, int input,
-                 std::chrono::milliseconds limit) {
+int guard_output(const std::string& generator_address, int input, std::chrono::milliseconds limit) {
   close_range(STDERR_FILENO + 1, ~0U, 0); // sockets of the guarded program, which must end with it
   std::signal(SIGPIPE, SIG_IGN);
   for (const int signal : outlived_signals) {

@@ -99,7 +99,7 @@ drivers::generator::LevelTarget StepExcitation::target_of(const wire::PlannedSte
 // Only while steps are excited: a reader that nobody empties would hold the source up.
 Expected<void> StepExcitation::begin() {
   if (bench_.generator.level_tolerance_rel) {
-    auto meter = LevelMeter::create(participant_, bench_, wake_up_);
+    auto meter = LevelMeter::create(participant_, bench_.bench, bench_.method.reference, wake_up_);
     if (!meter) {
       return fail(meter.error());
     }

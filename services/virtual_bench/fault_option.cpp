@@ -300,6 +300,14 @@ Expected<void> read_no_reset(FaultText& text, BenchFaults& faults) {
   return {};
 }
 
+Expected<void> read_output_stays_on(FaultText& text, BenchFaults& faults) {
+  if (text.has_value()) {
+    return text.refuse("takes no value");
+  }
+  faults.output_stays_on = true;
+  return {};
+}
+
 Expected<void> read_stamp_fault(FaultText& text, BenchFaults& faults) {
   const auto probability = text.value("PROBABILITY", 0.0, 1.0);
   if (!probability) {
@@ -315,7 +323,7 @@ struct Fault {
   Expected<void> (*read)(FaultText&, BenchFaults&);
 };
 
-constexpr std::array<Fault, 18> known_faults{{
+constexpr std::array<Fault, 19> known_faults{{
     {"over-range", "over-range=LIMIT,at=CHANNEL", read_over_range},
     {"soft-ends", "soft-ends=LIMIT,at=CHANNEL[,end=upper|lower]", read_soft_ends},
     {"held", "held=PART,at=CHANNEL", read_held},
@@ -334,6 +342,7 @@ constexpr std::array<Fault, 18> known_faults{{
     {"generator-offset", "generator-offset=VOLTS", read_left_offset},
     {"generator-burst", "generator-burst", read_left_burst},
     {"generator-no-reset", "generator-no-reset", read_no_reset},
+    {"output-stays-on", "output-stays-on", read_output_stays_on},
 }};
 
 std::vector<std::string> forms() {

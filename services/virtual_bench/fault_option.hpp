@@ -15,10 +15,11 @@
 //   start-jitter=SECONDS               standard deviation of its start from shot to shot
 //   exciter-gain=FACTOR                times the acceleration that a volt should give
 //   ring-down=SECONDS                  time constant of the exciter after a step, 0.04 as a rule
-//   generator-offset=VOLTS             DC offset that another program left, as a front panel shows
-//   it generator-burst                    likewise its burst generator-no-reset takes resets of
-//   what was left without an error, and keeps it NAME=PROBABILITY                   per sample, of
-//   a stamp (stamp_faults.hpp)
+//   generator-offset=VOLTS             DC offset that another program left
+//   generator-burst                    likewise its burst
+//   generator-no-reset                 resets of what was left are taken, and it is kept
+//   output-stays-on                    once on, although the generator answers that it is off
+//   NAME=PROBABILITY                   per sample, of a stamp (stamp_faults.hpp)
 //
 // CHANNEL is sensor, reference, sync_acs or sync_dau. Fails (bad_argument) with the whole option.
 // Any thread.

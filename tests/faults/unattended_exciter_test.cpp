@@ -107,6 +107,46 @@ TEST_P(UnattendedExciter, IsLeftToAPersonAfterTheRun) {
   EXPECT_TRUE(bench.wait_for_output("OFF")) << guard.errors();
 }
 
+// With steps of a second and a half.
+LiveBenchSettings faulty(const std::vector<std::string>& faults) {
+  LiveBenchSettings settings = long_steps("cyclonedds");
+  settings.excitation = "frequencies_hz = [\"40\", \"80\"]\nlevel = 20.0\n"
+                        "settling_s = 0.5\nduration_s = 1.5\nattempts = 1\n";
+  for (const std::string& fault : faults) {
+    settings.bench_arguments.insert(settings.bench_arguments.end(), {"--fault", fault});
+  }
+  return settings;
+}
+
+// Its generator answers that the output is off.
+TEST(ExciterThatGoesOn, IsSeenByTheReferenceAndSaid) {
+  LiveBench bench(fresh_folder("exciter_that_goes_on"), faulty({"output-stays-on"}));
+  ProgramRun& guard = bench.start_service("dyncal-guard");
+  ProgramRun& run = bench.start({"run", bench.bench_file()});
+  ASSERT_TRUE(guard.wait_for_error_text("watching over run", patience));
+  EXPECT_TRUE(guard.wait_for_error_text("but acs/reference still shows the", patience));
+  EXPECT_EQ(bench.ask_generator(":OUTPut1?"), "OFF");
+  EXPECT_THAT(guard.errors(), HasSubstr("THE OUTPUT OF THE GENERATOR MAY BE ON"));
+  EXPECT_TRUE(run.wait(patience));
+  EXPECT_THAT(run.errors(), HasSubstr("MAY BE ON: nobody has confirmed that it is off"));
+  ProgramRun& next = bench.start({"run", bench.bench_file()}); // before which it was seen
+  EXPECT_TRUE(next.wait_for_error_text("but acs/reference still shows the", patience));
+  EXPECT_TRUE(next.wait(patience));
+}
+
+TEST(ExciterThatGoesOn, IsNotTakenForOneThatRingsNorForHum) {
+  for (const char* fault : {"ring-down=1.0", "hum=1.0,at=reference,frequency=80"}) {
+    LiveBench bench(fresh_folder("exciter_that_rings_or_hums"), faulty({fault}));
+    ProgramRun& guard = bench.start_service("dyncal-guard");
+    ProgramRun& run = bench.start({"run", bench.bench_file()});
+    EXPECT_TRUE(run.wait(patience));
+    std::this_thread::sleep_for(std::chrono::seconds(5)); // the time in which it would be said
+    EXPECT_THAT(guard.errors(), HasSubstr("watching over run"));
+    EXPECT_THAT(guard.errors(), testing::Not(HasSubstr("MAY BE ON"))) << fault;
+    EXPECT_THAT(run.errors(), testing::Not(HasSubstr("MAY BE ON"))) << fault;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(EachVendor, UnattendedExciter, testing::Values("fastdds", "cyclonedds"),
                          [](const auto& vendor) { return vendor.param; });
 

@@ -14,8 +14,9 @@
 //   knock      half a sine of 10 ms, so long after each change of the generator
 //
 // Hum and drift are in parts of the signal: of the highest level, or of the amplitude of sync.
-// The generator may hold what another program left, and keep it. Stamps have faults of their own
-// (stamp_faults.hpp), as have datagrams (wire/datagram_path.hpp). Plain data; any thread.
+// The generator may hold what another program left, and keep it, or not switch off. Stamps have
+// faults of their own (stamp_faults.hpp), as have datagrams (wire/datagram_path.hpp). Plain data;
+// any thread.
 #pragma once
 
 #include <cstddef>
@@ -83,8 +84,9 @@ struct BenchFaults {
   std::size_t fifo_samples = 0; // of the sensor: read so many at once, stamped 10 ns apart
   DelayChange delay_change;
   Wandering wandering;
-  double exciter_gain = 1.0; // times level_per_volt: an amplifier that somebody turned up
-  double ring_down_s = 0.0;  // time constant of the exciter after a step; 0: its usual one
+  double exciter_gain = 1.0;    // times level_per_volt: an amplifier that somebody turned up
+  double ring_down_s = 0.0;     // time constant of the exciter after a step; 0: its usual one
+  bool output_stays_on = false; // once it was on, although the generator answers that it is off
 };
 
 } // namespace dyncal::drivers::virtual_bench

@@ -102,7 +102,7 @@ ScpiInstrument::Reply ScpiInstrument::query(const std::string& header, std::stri
     return {number_text(2.0 * bench_.drive().amplitude_v), {}};
   }
   if (header == "OUTP1" || header == "OUTP1:STAT") {
-    return {left_over_.state_text(bench_.drive().on), {}};
+    return {left_over_.state_text(is_on_), {}};
   }
   if (header == "BENC:TIME") {
     return {time_text(bench_.now_s()), {}};
@@ -126,6 +126,7 @@ void ScpiInstrument::set(const std::string& header, std::string_view argument) {
     errors_.clear();
   } else if (header == "*RST") {
     bench_.set_drive(Drive{});
+    is_on_ = false;
     left_over_.reset();
   } else if (header == "SOUR1:FREQ") {
     set_frequency(argument);
@@ -196,7 +197,8 @@ void ScpiInstrument::set_output(std::string_view argument) {
     return;
   }
   Drive drive = bench_.drive();
-  drive.on = on;
+  is_on_ = on;
+  drive.on = on || (drive.on && bench_.settings().faults.output_stays_on);
   bench_.set_drive(drive);
 }
 

@@ -49,6 +49,7 @@ private:
 
   VirtualBench& bench_;
   LeftOverSettings left_over_;
+  bool is_on_ = false;             // the output, as it answers
   std::deque<std::string> errors_; // at most 20, the last one says that there were more
 };
 

@@ -38,6 +38,7 @@ TEST(FaultOption, EveryFaultReachesItsPlaceInTheDescription) {
                                         "generator-offset=-1.5",
                                         "generator-burst",
                                         "generator-no-reset",
+                                        "output-stays-on",
                                         "hum=0.002,at=sensor,frequency=16.7,while=driven",
                                         "second-slip=0.001",
                                         "knock=5,at=reference,after=1.5",
@@ -67,6 +68,7 @@ TEST(FaultOption, EveryFaultReachesItsPlaceInTheDescription) {
   EXPECT_EQ(faults.left_in_generator.offset_v, -1.5);
   EXPECT_TRUE(faults.left_in_generator.in_burst);
   EXPECT_TRUE(faults.left_in_generator.is_kept);
+  EXPECT_TRUE(faults.output_stays_on);
   EXPECT_EQ(faults.sensor.hum_hz, 16.7);
   EXPECT_TRUE(faults.sensor.hum_while_driven);
   EXPECT_FALSE(faults.sync_dau.hum_while_driven);

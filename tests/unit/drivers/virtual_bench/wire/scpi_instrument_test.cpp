@@ -114,6 +114,23 @@ INSTANTIATE_TEST_SUITE_P(
                              ":SOURce1:VOLTage:OFFSet 0", "+0.00000000000000E+00"},
                     LeftOver{keysight, ":SOUR1:BURS:STAT?", "1", ":SOURce1:BURSt:STATe 0", "0"}));
 
+TEST(ScpiOutput, StaysOnWhereThatIsItsFaultAndAnswersThatItIsOff) {
+  for (const bool stays_on : {false, true}) {
+    BenchSettings settings;
+    settings.preset = *preset_by_name("bma280");
+    settings.faults.output_stays_on = stays_on;
+    VirtualBench bench(settings);
+    ScpiInstrument instrument(bench);
+    static_cast<void>(instrument.execute(":OUTPut1 OFF"));
+    EXPECT_FALSE(bench.drive().on) << "it was never on";
+    static_cast<void>(instrument.execute(":OUTPut1 ON"));
+    EXPECT_EQ(instrument.execute(":OUTPut1?").line, "ON");
+    static_cast<void>(instrument.execute(":OUTPut1 OFF"));
+    EXPECT_EQ(instrument.execute(":OUTPut1?").line, "OFF");
+    EXPECT_EQ(bench.drive().on, stays_on);
+  }
+}
+
 TEST_F(Scpi, SetsAndResetsWhatIsLeftOver) {
   EXPECT_EQ(ask(":OUTPut1:POLarity?"), "NORMAL");
   for (const char* command : {":OUTPut1:POLarity INVerted", ":SOURce1:MOD:STATe ON",
