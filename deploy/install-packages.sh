@@ -30,6 +30,7 @@ optional_build_packages=(
   libhdf5-dev        # recordings as HDF5, files of the SmartUp receiver
   libxml2-dev libxmlsec1-dev # certificates: dyncal certify, dyncal verify
   cmark-gfm python3          # the guide as HTML
+  help2man                   # manual pages
   libcpp-httplib-dev # dyncal-web
 )
 run_packages=(

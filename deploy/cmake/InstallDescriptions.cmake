@@ -1,26 +1,36 @@
-# Manual pages and completion for shells, made by the programs themselves from the description that
-# their --help has as well: `all` makes them below build/described, `cmake --install` brings them to
-# where man, bash, zsh and fish look. Pages of subcommands are made with that of their program.
+# Manual pages, which help2man makes of each command's --help, and completion for shells, which the
+# programs themselves make of the same description: `all` makes them below build/described,
+# `cmake --install` brings them to where man, bash, zsh and fish look.
+find_program(HELP2MAN help2man)
+if(NOT HELP2MAN)
+  message(STATUS "help2man is not there: no manual pages are made (Debian: help2man)")
+endif()
+set(write_man_pages ${CMAKE_CURRENT_LIST_DIR}/write-man-pages.sh)
 set(described ${CMAKE_BINARY_DIR}/described)
 set(described_files "")
 foreach(program dyncal dyncal-acs dyncal-analysis dyncal-can dyncal-dau dyncal-dso dyncal-guard
                 dyncal-recorder dyncal-virtual-bench)
   set(pages ${described}/man/${program})
-  set(files ${described}/${program}.stamp ${pages}/${program}.1 ${described}/bash/${program}
-    ${described}/zsh/_${program} ${described}/fish/${program}.fish)
+  set(files ${described}/bash/${program} ${described}/zsh/_${program}
+    ${described}/fish/${program}.fish)
   add_custom_command(OUTPUT ${files}
-    COMMAND ${CMAKE_COMMAND} -E rm -rf ${pages}
     COMMAND ${CMAKE_COMMAND} -E make_directory ${described}/bash ${described}/zsh ${described}/fish
-    COMMAND ${program} --write-man ${pages}
     COMMAND ${program} --print-completion bash > ${described}/bash/${program}
     COMMAND ${program} --print-completion zsh > ${described}/zsh/_${program}
     COMMAND ${program} --print-completion fish > ${described}/fish/${program}.fish
-    COMMAND ${CMAKE_COMMAND} -E touch ${described}/${program}.stamp
     DEPENDS ${program}
-    COMMENT "Writing manual pages and completion of ${program}"
+    COMMENT "Writing completion of ${program}"
     VERBATIM)
   list(APPEND described_files ${files})
-  install(DIRECTORY ${pages}/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT programs)
+  if(HELP2MAN)
+    add_custom_command(OUTPUT ${pages}/${program}.1
+      COMMAND ${write_man_pages} $<TARGET_FILE:${program}> ${pages}
+      DEPENDS ${program} ${write_man_pages}
+      COMMENT "Writing manual pages of ${program}"
+      VERBATIM)
+    list(APPEND described_files ${pages}/${program}.1)
+    install(DIRECTORY ${pages}/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT programs)
+  endif()
 endforeach()
 add_custom_target(dyncal_described ALL DEPENDS ${described_files})
 

@@ -12,8 +12,8 @@
 
 #include "services/nearest_name.hpp"
 #include "services/printable_text.hpp"
+#include "services/program/command_tree.hpp"
 #include "services/program/completion.hpp"
-#include "services/program/man_page.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -168,6 +168,13 @@ std::string sentence_about(const CLI::App& app, const CLI::ParseError& error,
   return what;
 }
 
+void print_commands(const DescribedCommand& command) {
+  fmt::print("{}\t{}\n", command.path, command.description);
+  for (const DescribedCommand& inner : command.commands) {
+    print_commands(inner);
+  }
+}
+
 // What --help does not list; nothing when the first argument is none of it.
 std::optional<Expected<void>> print_description(const CLI::App& app,
                                                 const std::vector<std::string>& words) {
@@ -178,12 +185,9 @@ std::optional<Expected<void>> print_description(const CLI::App& app,
     const auto script = completion_script(app, words.size() > 1 ? words[1] : "");
     return script.map([](const std::string& text) { fmt::print("{}", text); });
   }
-  if (words[0] == "--print-man") {
-    const auto page = man_page(app, {words.begin() + 1, words.end()});
-    return page.map([](const std::string& text) { fmt::print("{}", text); });
-  }
-  if (words[0] == "--write-man" && words.size() == 2) {
-    return write_man_pages(app, words[1]);
+  if (words[0] == "--print-commands") {
+    print_commands(describe_commands(app));
+    return Expected<void>{};
   }
   return std::nullopt;
 }

@@ -1,10 +1,9 @@
 // The command line of every program: read by CLI11, with one line for what is wrong with it.
 //
 // A program describes its commands and options once, in a CLI::App. That description serves the
-// parser, --help, the manual pages (man_page.hpp) and the shells (completion.hpp); for the last two
-// every program has options that --help does not list: `--print-man [COMMAND...]`,
-// `--write-man FOLDER` (all pages, COMMAND.1) and `--print-completion bash|zsh|fish`, each as the
-// first argument.
+// parser, --help, from which the manual pages are made, and the shells (completion.hpp). For the
+// last two every program has options that --help does not list: `--print-commands` (each with what
+// it is for) and `--print-completion bash|zsh|fish`, each as the first argument.
 //
 // What is wrong is one sentence that names the command or option and, when it is unknown, the one
 // that was probably meant; the exit status is 2. Belongs to the main thread.

@@ -47,8 +47,6 @@ void read_type(const CLI::Option& option, DescribedOption& described) {
     for (std::string& choice : described.choices) {
       choice = choice.substr(0, choice.find("->")); // the rest is the program's own value
     }
-  } else {
-    described.range = check;
   }
 }
 
@@ -64,11 +62,7 @@ DescribedOption describe(const CLI::Option& option) {
     described.names.push_back("--" + name);
   }
   read_type(option, described);
-  described.otherwise = option.get_default_str();
-  described.environment = option.get_envname();
   described.description = option.get_description();
-  described.required = option.get_required();
-  described.repeatable = option.get_items_expected_max() > 1;
   return described;
 }
 
@@ -76,7 +70,6 @@ DescribedCommand describe(const CLI::App& app, const std::string& before) {
   DescribedCommand command;
   command.path = before.empty() ? app.get_name() : before + " " + app.get_name();
   command.description = app.get_description();
-  command.footer = app.get_footer();
   for (const CLI::Option* option : app.get_options()) {
     if (!option->get_group().empty()) {
       (option->get_positional() ? command.arguments : command.options).push_back(describe(*option));
@@ -94,12 +87,6 @@ DescribedCommand describe(const CLI::App& app, const std::string& before) {
 
 std::string DescribedCommand::name() const {
   return path.substr(path.find_last_of(' ') + 1);
-}
-
-std::string DescribedCommand::page() const {
-  std::string page = path;
-  std::replace(page.begin(), page.end(), ' ', '-');
-  return page;
 }
 
 DescribedCommand describe_commands(const CLI::App& app) {

@@ -1,5 +1,6 @@
 // What a CLI::App describes, as plain data: for those who write it down for others than its parser
-// (man_page.hpp, completion.hpp). Hidden commands and options are left out. Any thread.
+// (completion.hpp, and whoever lists the commands). Hidden commands and options are left out. Any
+// thread.
 #pragma once
 
 #include <string>
@@ -15,24 +16,17 @@ struct DescribedOption {
   std::vector<std::string> names; // "-h", "--help"; of an argument by its place, "BENCH.toml"
   std::string value;              // what follows it: "FILE", "NUMBER"; empty: nothing
   std::vector<std::string> choices;
-  std::string range; // "INT in [0 - 232]"
-  std::string otherwise;
-  std::string environment; // variable that gives it, too
   std::string description;
-  bool required = false;
-  bool repeatable = false;
 };
 
 struct DescribedCommand {
   std::string path; // "dyncal calibrate adc"
   std::string description;
-  std::string footer;
   std::vector<DescribedOption> options;
   std::vector<DescribedOption> arguments; // by their place
   std::vector<DescribedCommand> commands;
 
   [[nodiscard]] std::string name() const; // "adc"
-  [[nodiscard]] std::string page() const; // "dyncal-calibrate-adc"
 };
 
 [[nodiscard]] DescribedCommand describe_commands(const CLI::App& app);

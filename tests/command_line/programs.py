@@ -43,21 +43,9 @@ def output_of(program, *arguments):
 
 
 def commands_of(program):
-    """The commands of a program, each as a list of words, from its own manual page."""
-    found = []
-
-    def add(words):
-        page = output_of(program, "--print-man", *words)
-        listed = page.split(".SH COMMANDS\n")
-        if len(listed) < 2:
-            return
-        for entry in listed[1].split(".SH ")[0].split(".TP\n")[1:]:
-            name = entry.split("\n")[0].replace("\\fB", "").replace("\\fR", "").replace("\\-", "-")
-            found.append([*words, name])
-            add([*words, name])
-
-    add([])
-    return found
+    """The commands of a program, each as a list of words."""
+    lines = output_of(program, "--print-commands").splitlines()
+    return [line.split("\t")[0].split()[1:] for line in lines[1:]]
 
 
 # What a sanitizer is to pass over: without it, it reports on the terminal.

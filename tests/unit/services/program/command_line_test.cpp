@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include "services/program/completion.hpp"
-#include "services/program/man_page.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -100,23 +99,23 @@ TEST(CommandLine, WhatIsMissingOrCannotBe) {
 }
 
 TEST(CommandLine, EverySentenceIsOneLine) {
-  for (const auto& words : std::vector<std::vector<const char*>>{
-           {}, {"rum"}, {"run", "--"}, {"run", "x", "--domain", "a\nb"}, {"--print-man", "no"}}) {
+  for (const auto& words : std::vector<std::vector<const char*>>{{},
+                                                                 {"rum"},
+                                                                 {"run", "--"},
+                                                                 {"run", "x", "--domain", "a\nb"},
+                                                                 {"--print-completion", "no"}}) {
     EXPECT_EQ(problem(words).find('\n'), std::string::npos);
   }
 }
 
-TEST(CommandLine, ManPageHasWhatHelpHas) {
-  const Program program;
-  const auto page = man_page(program.app, {"run"});
-  ASSERT_TRUE(page.has_value());
-  for (const char* part :
-       {".TH \"DYNCAL\\-TRY\\-RUN\" 1", "\\-\\-domain", "BENCH.toml", "File\\(aqs name", "fir|iir",
-        ".SH EXIT STATUS", "dyncal\\-try\\fR(1)"}) {
-    EXPECT_THAT(*page, HasSubstr(part));
-  }
-  EXPECT_FALSE(man_page(program.app, {"walk"}).has_value());
-  EXPECT_THAT(*man_page(program.app, {}), testing::Not(HasSubstr("hidden")));
+TEST(CommandLine, ListsItsCommandsButHiddenOnes) {
+  Program program;
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(program.parse({"--print-commands"}).value_or(true), false);
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "dyncal-try\tTries command lines.\n"
+                                                    "dyncal-try run\trun it\n"
+                                                    "dyncal-try calibrate\tan instrument\n"
+                                                    "dyncal-try calibrate adc\tof a DAU\n");
 }
 
 TEST(CommandLine, CompletionOfThreeShells) {
