@@ -1,11 +1,7 @@
-// What everything that reads or writes HDF5 shares: handles that close themselves, one lock, and
-// whether a file that dyncal has written is still as it was.
+// What everything that reads or writes HDF5 shares: handles that close themselves, and one lock.
 //
 // The library may be used by one thread at a time: hold a Hdf5Lock as long as handles are used. It
-// prints nothing of its own while one is held. A file that dyncal writes begins with a user block
-// of 512 bytes, which other readers skip: a text that ends with the CRC-32 of everything behind
-// it, so that no changed byte gets as far as the library. Files of others have no such text and are
-// taken as they are.
+// prints nothing of its own while one is held.
 #pragma once
 
 #include <cstdint>
@@ -48,14 +44,7 @@ private:
   Close close_ = nullptr;
 };
 
-inline constexpr std::uint64_t hdf5_user_block_bytes = 512;
-
-// Writes the user block of a file that is complete and closed. `descriptor`: open for reading and
-// writing. False: errno has the cause.
-[[nodiscard]] bool seal_hdf5(int descriptor, const std::string& software);
-
-// Opens for reading. Fails (not_found) when there is no such file, (malformed) when it is not HDF5,
-// or is one of dyncal's that was changed since.
+// Opens for reading. Fails (not_found) when there is no such file, (malformed) when it is not HDF5.
 [[nodiscard]] Expected<Hdf5Handle> open_hdf5(const std::filesystem::path& path);
 
 // Names of the members of a group, in alphabetical order; none if there is no such group.

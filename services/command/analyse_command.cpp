@@ -208,9 +208,18 @@ Expected<RunOutcome> analyse(const AnalyseCommand& command, const std::stop_toke
   if (is_recording(command.bench_file)) {
     return analyse_recording(command, stop, progress.count());
   }
+  const auto suffix = command.bench_file.extension();
+  if (suffix == ".h5" || suffix == ".hdf5") {
+    return fail(
+        ErrorCode::bad_argument,
+        fmt::format("{}: an HDF5 file is not evaluated as a run: give the recording (.mcap) "
+                    "that it was exported from, or name it as the file of a source in a "
+                    "bench file",
+                    command.bench_file.string()));
+  }
   if (command.recipe || !command.run.empty()) {
     return fail(ErrorCode::bad_argument,
-                fmt::format("{}: --run and --recipe are for recordings (.mcap, .h5)",
+                fmt::format("{}: --run and --recipe are for recordings (.mcap)",
                             command.bench_file.string()));
   }
   const auto bench = read_bench_or_folder(command.bench_file);

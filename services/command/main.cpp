@@ -109,8 +109,8 @@ void add_analyse(CLI::App& app, AnalyseCommand& analyse) {
   take_run(
       *command
            ->add_option("BENCH.toml", analyse.bench_file,
-                        "bench file, the folder of a run, or a recording (.mcap, or .h5 of 'dyncal "
-                        "export'), which gives the results of the live run")
+                        "bench file, the folder of a run, or a recording (.mcap), which gives the "
+                        "results of the live run")
            ->required());
   command->add_option("--run", analyse.run, "run of the recording (default: the only one)");
   command->add_option("--recipe", analyse.recipe,

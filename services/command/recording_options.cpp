@@ -40,15 +40,14 @@ void add_export(CLI::App& app, ExportCommand& exported) {
   CLI::App* command = app.add_subcommand(
       "export", "a recording for other programs: HDF5, NumPy, CSV, or MCAP with one message a "
                 "sample");
-  take_run(*command
-                ->add_option("SOURCE", exported.recording,
-                             "folder of a run, recording (.mcap), or HDF5 export (.h5)")
-                ->required());
+  take_run(
+      *command->add_option("SOURCE", exported.recording, "folder of a run, or recording (.mcap)")
+           ->required());
   command
       ->add_option("--to", exported.to, "file to write, a folder for csv; nothing is overwritten")
       ->required();
   command->add_option("--format", exported.format,
-                      "hdf5 (complete: 'dyncal analyse' reads it), npz, csv or mcap-rows (for "
+                      "hdf5, npz, csv or mcap-rows (for "
                       "PlotJuggler, Foxglove, Lichtblick); default: by the name (.h5, .npz, .mcap, "
                       "else csv)");
   command->add_option("--channel", exported.channels,

@@ -4,7 +4,6 @@
 
 #include "services/exchange/exported_runs.hpp"
 #include "services/exchange/hdf5_export.hpp"
-#include "services/exchange/hdf5_import.hpp"
 #include "services/exchange/opened_recording.hpp"
 #include "services/exchange/row_formats.hpp"
 #include "services/output/output_stream.hpp"
@@ -50,7 +49,7 @@ ExportedFigures figures_of(const ExportedRecording& recording, std::vector<std::
 Expected<ExportFormat> parse_export_format(const std::string& name,
                                            const std::filesystem::path& to) {
   const std::string suffix = to.extension().string();
-  if (name == "hdf5" || (name.empty() && is_hdf5(to))) {
+  if (name == "hdf5" || (name.empty() && (suffix == ".h5" || suffix == ".hdf5"))) {
     return ExportFormat::hdf5;
   }
   if (name == "npz" || (name.empty() && suffix == ".npz")) {
@@ -73,8 +72,7 @@ Expected<ExportFormat> parse_export_format(const std::string& name,
 Expected<ExportedFigures> export_recording(const ExportWish& wish, const ExportProgress& progress) {
   if (wish.format == ExportFormat::hdf5 && !wish.channels.empty()) {
     return fail(ErrorCode::bad_argument,
-                "--channel is for csv, npz and mcap-rows: an HDF5 file holds the whole recording, "
-                "so that it can be evaluated");
+                "--channel is for csv, npz and mcap-rows: an HDF5 file holds the whole recording");
   }
   const bool is_folder = wish.format == ExportFormat::csv;
   if (auto is_new = is_folder ? Expected<void>{} : check_new_output(wish.to); !is_new) {

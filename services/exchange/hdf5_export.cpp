@@ -3,31 +3,15 @@
 #ifdef DYNCAL_HAVE_HDF5
 
 #include <cerrno>
-#include <map>
-#include <memory>
-#include <tuple>
 
 #include <fmt/core.h>
 
 #include "services/exchange/hdf5_samples.hpp"
-#include "services/exchange/message_digest.hpp"
 #include "services/output/output_stream.hpp"
-#include "services/recording/recorded_topics.hpp"
 #include "services/version.hpp"
 
 namespace dyncal::services {
 namespace {
-
-constexpr std::size_t max_waiting_messages = 4096;
-constexpr std::size_t max_waiting_bytes = std::size_t{1} << 20U;
-
-std::vector<std::string> topics_of_recordings() {
-  std::vector<std::string> topics;
-  for (const recording::Channel& channel : recording::recorded_channels()) {
-    topics.push_back(channel.topic);
-  }
-  return topics;
-}
 
 std::vector<std::string> run_names(const RecordingContents& contents) {
   std::vector<std::string> names;
@@ -43,7 +27,7 @@ public:
   Hdf5Export(const ExportedRecording& recording, const ExportedRuns& runs, OutputStream& output,
              const ExportProgress& progress)
       : recording_(recording), runs_(runs), output_(output), progress_(progress),
-        run_numbers_(run_names(recording.contents())), topics_(topics_of_recordings()) {}
+        run_numbers_(run_names(recording.contents())) {}
 
   [[nodiscard]] Expected<void> write() {
     errno = 0;
@@ -55,19 +39,10 @@ public:
         return written;
       }
     }
-    if (auto written = write_messages(); !written) {
-      return written;
-    }
     return write_tables() && write_texts_of_file() && close() ? Expected<void>{} : not_written();
   }
 
 private:
-  struct InColumns {
-    std::int32_t source = 0;
-    std::uint64_t row = 0;
-  };
-  using Place = std::pair<std::uint64_t, std::uint64_t>;
-
   [[nodiscard]] tl::unexpected<Error> not_written() const {
     return output_.not_written(errno == 0 ? EIO : errno);
   }
@@ -75,11 +50,9 @@ private:
   [[nodiscard]] bool create() {
     // The newest format that MATLAB and programs of ten years ago read; its heads have checksums.
     const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-    const Hdf5Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
     H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_V18);
-    H5Pset_userblock(creation.id(), drivers::files::hdf5_user_block_bytes);
     file_ = Hdf5Handle(
-        H5Fcreate(output_.unfinished_path().c_str(), H5F_ACC_TRUNC, creation.id(), access.id()),
+        H5Fcreate(output_.unfinished_path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()),
         H5Fclose);
     if (!file_.is_open()) {
       return false;
@@ -87,12 +60,7 @@ private:
     raw_ = make_group(file_.id(), "RAWDATA");
     triggered_ = make_group(file_.id(), "TRIGGERED");
     own_ = make_group(file_.id(), "DYNCAL");
-    blocks_ = make_group(own_.id(), "Blocks");
-    messages_ = Hdf5List::create(own_.id(), "Messages", hdf5_type<Hdf5Message>());
-    bytes_ = Hdf5List::create(own_.id(), "Message_bytes",
-                              Hdf5Handle(H5Tcopy(H5T_NATIVE_UINT8), H5Tclose));
-    return raw_.is_open() && triggered_.is_open() && own_.is_open() && blocks_.is_open() &&
-           messages_.is_open() && bytes_.is_open();
+    return raw_.is_open() && triggered_.is_open() && own_.is_open();
   }
 
   [[nodiscard]] Expected<void> write_source(const ExportedSource& source) {
@@ -102,22 +70,17 @@ private:
 
   template <class T>
   [[nodiscard]] Expected<void> write_samples(const ExportedSource& source) {
-    Hdf5Samples samples(source, source.recorded->triggered ? triggered_.id() : raw_.id(),
-                        blocks_.id());
+    Hdf5Samples samples(source, source.recorded->triggered ? triggered_.id() : raw_.id());
     if (!samples.is_open()) {
       return not_written();
     }
-    sources_.push_back(source.name);
-    std::uint64_t row = 0;
-    const auto number = static_cast<std::int32_t>(sources_.size() - 1);
     auto written = recording_.for_each<T>(source, [&](const InOrder<T>& one) -> Expected<void> {
-      places_.emplace(Place(one.place.chunk, one.place.position), InColumns{number, row++});
       samples_done_ += one.message.sample_count();
       if (!go_on()) {
         return fail(ErrorCode::interrupted,
                     "stopped before everything was written: nothing is left");
       }
-      return samples.add(one, run_numbers_) ? Expected<void>{} : Expected<void>(not_written());
+      return add(samples, one) ? Expected<void>{} : Expected<void>(not_written());
     });
     if (!written) {
       return written;
@@ -126,80 +89,15 @@ private:
   }
 
   [[nodiscard]] bool go_on() const {
-    const auto samples = static_cast<double>(recording_.samples());
-    const auto messages = static_cast<double>(recording_.contents().report.messages);
-    return progress_(0.2 + 0.6 * static_cast<double>(samples_done_) / samples +
-                     0.2 * static_cast<double>(messages_done_) / messages);
+    return progress_(0.2 + 0.8 * static_cast<double>(samples_done_) /
+                               static_cast<double>(recording_.samples()));
   }
 
-  // Whether the message can be made again from its columns: if its bytes are those that this
-  // program makes of it.
-  [[nodiscard]] static bool is_canonical(const recording::MessageInFile& message) {
-    bool same = false;
-    recording::for_each_recorded_topic([&]<class T>(const bus::Topic<T>& topic) {
-      if constexpr (recording::is_of_source<T>) {
-        if (message.channel.topic == topic.name) {
-          const auto decoded = recording::decode<T>(message.message.data);
-          same = decoded && recording::encode(*decoded) == message.message.data;
-        }
-      }
-    });
-    return same;
+  [[nodiscard]] static bool add(Hdf5Samples& samples, const InOrder<wire::SampleBlock>& one) {
+    return samples.add(one);
   }
-
-  [[nodiscard]] bool add_message(const recording::MessageInFile& message) {
-    const auto topic = std::find(topics_.begin(), topics_.end(), message.channel.topic);
-    if (topic == topics_.end()) {
-      return true; // no dyncal has ever written it
-    }
-    digest_.add(message.channel.topic, message.message);
-    Hdf5Message one;
-    one.log_time = message.message.log_time;
-    one.publish_time = message.message.publish_time;
-    one.sequence = message.message.sequence;
-    one.topic = static_cast<std::uint32_t>(topic - topics_.begin());
-    one.length = message.message.data.size();
-    const auto in_columns = places_.find(Place(message.chunk, message.position));
-    if (in_columns != places_.end() && is_canonical(message)) {
-      one.source = in_columns->second.source;
-      one.place = in_columns->second.row;
-    } else {
-      one.place = bytes_.size() + bytes_waiting_.size();
-      bytes_waiting_ += message.message.data;
-    }
-    messages_waiting_.push_back(one);
-    const bool is_full = messages_waiting_.size() >= max_waiting_messages ||
-                         bytes_waiting_.size() >= max_waiting_bytes;
-    return !is_full || flush_messages();
-  }
-
-  [[nodiscard]] bool flush_messages() {
-    const bool written = bytes_.append(bytes_waiting_.data(), bytes_waiting_.size()) &&
-                         messages_.append(messages_waiting_.data(), messages_waiting_.size());
-    bytes_waiting_.clear();
-    messages_waiting_.clear();
-    return written;
-  }
-
-  [[nodiscard]] Expected<void> write_messages() {
-    bool written = true;
-    bool stopped = false;
-    const auto report =
-        recording_.reader().scan({.message =
-                                      [&](const recording::MessageInFile& message) {
-                                        ++messages_done_;
-                                        stopped = stopped || !go_on();
-                                        written = written && !stopped && add_message(message);
-                                      },
-                                  .attachment = {},
-                                  .metadata = {}});
-    if (!report) {
-      return fail(report.error());
-    }
-    if (stopped) {
-      return fail(ErrorCode::interrupted, "stopped before everything was written: nothing is left");
-    }
-    return written && flush_messages() ? Expected<void>{} : not_written();
+  [[nodiscard]] bool add(Hdf5Samples& samples, const InOrder<wire::TriggeredRecord>& one) {
+    return samples.add(one, run_numbers_);
   }
 
   // For people: what the messages say, too.
@@ -265,19 +163,13 @@ private:
     return written && write_text(file_.id(), "Software", software_version()) &&
            write_count(own_.id(), "Layout", hdf5_layout) &&
            write_text(own_.id(), "Library", report.library) &&
-           write_texts(own_.id(), "Topics", topics_) &&
-           write_texts(own_.id(), "Sources", sources_) &&
-           write_texts(own_.id(), "Runs", run_numbers_.names()) &&
-           write_text(own_.id(), "Messages_sha256", digest_.hex()) &&
            write_long_text(own_.id(), "Damages", all_damages) &&
            write_long_text(own_.id(), "Contents_json", contents_json(recording_, runs_));
   }
 
   [[nodiscard]] bool close() {
-    messages_ = {};
-    bytes_ = {};
     bool closed = true;
-    for (Hdf5Handle* handle : {&blocks_, &own_, &triggered_, &raw_}) {
+    for (Hdf5Handle* handle : {&own_, &triggered_, &raw_}) {
       closed = handle->close() && closed;
     }
     return file_.close() && closed;
@@ -288,22 +180,12 @@ private:
   OutputStream& output_;
   const ExportProgress& progress_;
   RunNumbers run_numbers_;
-  std::vector<std::string> topics_;
-  std::vector<std::string> sources_;
-  std::map<Place, InColumns> places_;
-  MessageDigest digest_;
   std::uint64_t samples_done_ = 0;
-  std::uint64_t messages_done_ = 0;
-  std::vector<Hdf5Message> messages_waiting_;
-  std::string bytes_waiting_;
   // What is in the file is closed before the file.
   Hdf5Handle file_;
   Hdf5Handle raw_;
   Hdf5Handle triggered_;
   Hdf5Handle own_;
-  Hdf5Handle blocks_;
-  Hdf5List messages_;
-  Hdf5List bytes_;
 };
 
 } // namespace
@@ -320,9 +202,6 @@ Expected<void> export_hdf5(const ExportedRecording& recording, const ExportedRun
     if (auto written = file.write(); !written) {
       return written;
     }
-  }
-  if (!drivers::files::seal_hdf5(output->descriptor(), software_version())) {
-    return output->not_written(errno);
   }
   return output->finish();
 }

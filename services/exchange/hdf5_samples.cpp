@@ -46,8 +46,9 @@ void append(std::vector<T>& to, std::span<const T> values, std::size_t count) {
 } // namespace
 
 std::vector<Hdf5Quantity> quantities_of(const std::vector<drivers::ChannelDescription>& channels) {
-  std::set<std::string> taken{"Absolutetime", "Absolutetime_uncertainty", "Sample_number",
-                              "Stamp_flags", "Time_ticks"};
+  std::set<std::string> taken{"Absolutetime",  "Absolutetime_uncertainty",
+                              "Sample_number", "Session",
+                              "Stamp_flags",   "Time_ticks"};
   std::vector<Hdf5Quantity> quantities;
   std::vector<std::pair<std::string, std::string>> kinds; // stem and unit
   for (std::size_t i = 0; i < channels.size(); ++i) {
@@ -78,12 +79,12 @@ std::uint32_t RunNumbers::operator()(const std::string& name) {
   return static_cast<std::uint32_t>(found - names_.begin()) + 1;
 }
 
-Hdf5Samples::Hdf5Samples(const ExportedSource& source, hid_t place, hid_t tables)
+Hdf5Samples::Hdf5Samples(const ExportedSource& source, hid_t place)
     : group_(make_group(place, source.name)), quantities_(quantities_of(source.channels)),
       triggered_(source.recorded->triggered), channels_waiting_(source.channels.size()) {
   const hid_t group = group_.id();
   if (triggered_) {
-    rows_ = Hdf5List::create(group, "Shots", hdf5_type<Hdf5Shot>());
+    shots_ = Hdf5List::create(group, "Shots", hdf5_type<Hdf5Shot>());
   } else {
     const bool is_local =
         source.description && source.description->time_base() == wire::TIME_BASE_LOCAL;
@@ -93,9 +94,10 @@ Hdf5Samples::Hdf5Samples(const ExportedSource& source, hid_t place, hid_t tables
         Hdf5Matrix::create(group, "Absolutetime_uncertainty", H5T_NATIVE_UINT32, 1, source.samples);
     numbers_ = Hdf5Matrix::create(group, "Sample_number", H5T_NATIVE_UINT64, 1, source.samples);
     flags_ = Hdf5Matrix::create(group, "Stamp_flags", H5T_NATIVE_UINT8, 1, source.samples);
-    rows_ = Hdf5List::create(tables, source.name, hdf5_type<Hdf5Block>());
+    sessions_ = Hdf5Matrix::create(group, "Session", H5T_NATIVE_UINT64, 1, source.samples);
   }
-  open_ = group_.is_open() && rows_.is_open() && add_quantities(source) && describe(source);
+  open_ = group_.is_open() && shots_.is_open() == triggered_ && add_quantities(source) &&
+          describe(source);
 }
 
 bool Hdf5Samples::describe(const ExportedSource& source) const {
@@ -118,11 +120,13 @@ bool Hdf5Samples::describe(const ExportedSource& source) const {
     return written;
   }
   const double standard = 1.0;
-  return stamps_.is_open() && uncertainties_.is_open() && numbers_.is_open() && flags_.is_open() &&
+  return stamps_.is_open() && uncertainties_.is_open() && numbers_.is_open() &&
+         sessions_.is_open() && flags_.is_open() &&
          write_text(stamps_.id(), "Unit", "\\nano\\second") &&
          write_text(uncertainties_.id(), "Unit", "\\nano\\second") &&
          write_numbers(uncertainties_.id(), "Coverage_factor", {&standard, 1}) &&
-         write_text(numbers_.id(), "Unit", "\\one") && write_text(flags_.id(), "Unit", "\\one");
+         write_text(numbers_.id(), "Unit", "\\one") &&
+         write_text(sessions_.id(), "Unit", "\\one") && write_text(flags_.id(), "Unit", "\\one");
 }
 
 bool Hdf5Samples::add_quantities(const ExportedSource& source) {
@@ -168,26 +172,8 @@ void Hdf5Samples::add_values(std::span<const double> values, std::size_t samples
   buffered_ += samples;
 }
 
-bool Hdf5Samples::add(const InOrder<wire::SampleBlock>& one, RunNumbers& runs) {
-  const wire::SampleBlock& message = one.message;
-  const SourceBlock block = view_block(message);
-  Hdf5Block row;
-  row.session = block.session;
-  row.block = block.number;
-  row.first_sample = block.first_sample;
-  row.first_column = columns_;
-  row.lost_before = one.lost_before;
-  row.origin_ns = message.origin_ns();
-  row.interval_numerator_ns = message.interval_numerator_ns();
-  row.interval_denominator = message.interval_denominator();
-  row.received_utc_ns = message.received_utc_ns();
-  row.sample_count = message.sample_count();
-  row.acknowledged_run = runs(message.acknowledged_run());
-  row.end_of_stream = block.end_of_stream ? 1 : 0;
-  row.has_stamps = block.stamps_ns.empty() ? 0 : 1;
-  row.has_uncertainty = block.stamp_uncertainty_ns.empty() ? 0 : 1;
-  row.has_flags = block.flags.empty() ? 0 : 1;
-  blocks_waiting_.push_back(row);
+bool Hdf5Samples::add(const InOrder<wire::SampleBlock>& one) {
+  const SourceBlock block = view_block(one.message);
   append(stamps_waiting_, block.stamps_ns, block.stamps_ns.size());
   for (std::size_t i = block.stamps_ns.size(); i < block.samples; ++i) {
     stamps_waiting_.push_back(block.clock.stamp_ns(block.first_sample + i));
@@ -198,6 +184,7 @@ bool Hdf5Samples::add(const InOrder<wire::SampleBlock>& one, RunNumbers& runs) {
   numbers_waiting_.resize(first + block.samples);
   std::iota(numbers_waiting_.begin() + static_cast<std::ptrdiff_t>(first), numbers_waiting_.end(),
             block.first_sample);
+  sessions_waiting_.resize(first + block.samples, one.session + 1); // as rows count them
   add_values(block.values, block.samples);
   return flush_if_full();
 }
@@ -231,11 +218,11 @@ bool Hdf5Samples::flush() {
   if (buffered_ == 0) {
     return true;
   }
-  bool written = triggered_ ? rows_.append(shots_waiting_.data(), shots_waiting_.size())
-                            : rows_.append(blocks_waiting_.data(), blocks_waiting_.size()) &&
-                                  stamps_.append(stamps_waiting_.data(), buffered_) &&
+  bool written = triggered_ ? shots_.append(shots_waiting_.data(), shots_waiting_.size())
+                            : stamps_.append(stamps_waiting_.data(), buffered_) &&
                                   uncertainties_.append(uncertainties_waiting_.data(), buffered_) &&
                                   numbers_.append(numbers_waiting_.data(), buffered_) &&
+                                  sessions_.append(sessions_waiting_.data(), buffered_) &&
                                   flags_.append(flags_waiting_.data(), buffered_);
   for (std::size_t i = 0; written && i < quantities_.size(); ++i) {
     std::vector<double> rows;
@@ -248,11 +235,11 @@ bool Hdf5Samples::flush() {
   stamps_waiting_.clear();
   uncertainties_waiting_.clear();
   numbers_waiting_.clear();
+  sessions_waiting_.clear();
   flags_waiting_.clear();
   for (auto& channel : channels_waiting_) {
     channel.clear();
   }
-  blocks_waiting_.clear();
   shots_waiting_.clear();
   return written;
 }

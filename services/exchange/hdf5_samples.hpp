@@ -1,5 +1,5 @@
 // The samples of one source on their way into the columns of an HDF5 file: buffered, in the order
-// of sessions and numbers. Which message stands where is noted for the list of messages.
+// of sessions and numbers.
 //
 // Functions return false when the library reports an error. REQUIRES: a Hdf5Lock is held.
 #pragma once
@@ -36,11 +36,11 @@ private:
 
 class Hdf5Samples {
 public:
-  // `place`: RAWDATA or TRIGGERED, `tables`: where the list of blocks or shots goes.
-  Hdf5Samples(const ExportedSource& source, hid_t place, hid_t tables);
+  // `place`: RAWDATA or TRIGGERED.
+  Hdf5Samples(const ExportedSource& source, hid_t place);
 
   [[nodiscard]] bool is_open() const { return open_; }
-  [[nodiscard]] bool add(const InOrder<wire::SampleBlock>& one, RunNumbers& runs);
+  [[nodiscard]] bool add(const InOrder<wire::SampleBlock>& one);
   [[nodiscard]] bool add(const InOrder<wire::TriggeredRecord>& one, RunNumbers& runs);
   [[nodiscard]] bool flush();
 
@@ -54,10 +54,11 @@ private:
   Hdf5Matrix stamps_;
   Hdf5Matrix uncertainties_;
   Hdf5Matrix numbers_;
+  Hdf5Matrix sessions_;
   Hdf5Matrix flags_;
   std::vector<Hdf5Quantity> quantities_;
   std::vector<Hdf5Matrix> values_;
-  Hdf5List rows_;
+  Hdf5List shots_;
   bool triggered_;
   bool open_ = false;
   std::uint64_t columns_ = 0; // so far
@@ -66,9 +67,9 @@ private:
   std::vector<std::int64_t> stamps_waiting_;
   std::vector<std::uint32_t> uncertainties_waiting_;
   std::vector<std::uint64_t> numbers_waiting_;
+  std::vector<std::uint64_t> sessions_waiting_;
   std::vector<std::uint8_t> flags_waiting_;
   std::vector<std::vector<double>> channels_waiting_;
-  std::vector<Hdf5Block> blocks_waiting_;
   std::vector<Hdf5Shot> shots_waiting_;
 };
 

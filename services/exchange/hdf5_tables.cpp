@@ -44,29 +44,6 @@ Hdf5Handle compound(std::size_t bytes, std::initializer_list<Member> members) {
   }
 
 template <>
-Hdf5Handle hdf5_type<Hdf5Message>() {
-  using T = Hdf5Message;
-  return compound(sizeof(T),
-                  {DYNCAL_MEMBER(T, log_time), DYNCAL_MEMBER(T, publish_time),
-                   DYNCAL_MEMBER(T, sequence), DYNCAL_MEMBER(T, topic), DYNCAL_MEMBER(T, source),
-                   DYNCAL_MEMBER(T, place), DYNCAL_MEMBER(T, length)});
-}
-
-template <>
-Hdf5Handle hdf5_type<Hdf5Block>() {
-  using T = Hdf5Block;
-  return compound(sizeof(T),
-                  {DYNCAL_MEMBER(T, session), DYNCAL_MEMBER(T, block),
-                   DYNCAL_MEMBER(T, first_sample), DYNCAL_MEMBER(T, first_column),
-                   DYNCAL_MEMBER(T, lost_before), DYNCAL_MEMBER(T, origin_ns),
-                   DYNCAL_MEMBER(T, interval_numerator_ns), DYNCAL_MEMBER(T, interval_denominator),
-                   DYNCAL_MEMBER(T, received_utc_ns), DYNCAL_MEMBER(T, sample_count),
-                   DYNCAL_MEMBER(T, acknowledged_run), DYNCAL_MEMBER(T, end_of_stream),
-                   DYNCAL_MEMBER(T, has_stamps), DYNCAL_MEMBER(T, has_uncertainty),
-                   DYNCAL_MEMBER(T, has_flags)});
-}
-
-template <>
 Hdf5Handle hdf5_type<Hdf5Shot>() {
   using T = Hdf5Shot;
   return compound(sizeof(T),

@@ -1,5 +1,5 @@
-// The tables of an HDF5 file of ours that readers of others do not need, as they lie in memory and
-// in the file: which samples are which message (README.md has the layout).
+// The tables of an exported HDF5 file, as they lie in memory and in the file: which samples are
+// which shot, steps and results (README.md has the layout).
 #pragma once
 
 #include <cstddef>
@@ -11,39 +11,7 @@ namespace dyncal::services {
 
 using drivers::files::Hdf5Handle;
 
-inline constexpr std::uint32_t hdf5_layout = 1;
-
-// A message in the order of the recording.
-struct Hdf5Message {
-  std::uint64_t log_time = 0;
-  std::uint64_t publish_time = 0;
-  std::uint32_t sequence = 0;
-  std::uint32_t topic = 0;  // by its place in the attribute Topics
-  std::int32_t source = -1; // by its place in the attribute Sources; -1: in Message_bytes
-  std::uint32_t reserved = 0;
-  std::uint64_t place = 0;  // row of Blocks or Shots, or the first byte
-  std::uint64_t length = 0; // bytes
-};
-
-// A block of samples: what is not in the columns.
-struct Hdf5Block {
-  std::uint64_t session = 0;
-  std::uint64_t block = 0;
-  std::uint64_t first_sample = 0;
-  std::uint64_t first_column = 0;
-  std::uint64_t lost_before = 0;
-  std::int64_t origin_ns = 0;
-  std::int64_t interval_numerator_ns = 0;
-  std::int64_t interval_denominator = 0;
-  std::int64_t received_utc_ns = 0;
-  std::uint32_t sample_count = 0;
-  std::uint32_t acknowledged_run = 0; // by its place in the attribute Runs, from 1; 0: none
-  std::uint8_t end_of_stream = 0;
-  std::uint8_t has_stamps = 0; // else its clock gives them
-  std::uint8_t has_uncertainty = 0;
-  std::uint8_t has_flags = 0;
-  std::uint32_t reserved = 0;
-};
+inline constexpr std::uint32_t hdf5_layout = 2;
 
 // A record of a shot.
 struct Hdf5Shot {

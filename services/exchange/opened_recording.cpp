@@ -4,7 +4,6 @@
 
 #include "services/bench/named_files.hpp"
 #include "services/byte_count.hpp"
-#include "services/exchange/hdf5_import.hpp"
 #include "services/exchange/temporary_recording.hpp"
 #include "services/recording/recorded_topics.hpp"
 
@@ -90,18 +89,12 @@ Expected<OpenedRecording> join(const std::filesystem::path& folder,
 } // namespace
 
 bool is_recording(const std::filesystem::path& path) {
-  return path.extension() == ".mcap" || is_hdf5(path) ||
-         std::filesystem::exists(path / recording_file_name);
+  return path.extension() == ".mcap" || std::filesystem::exists(path / recording_file_name);
 }
 
 Expected<OpenedRecording> open_recording(const std::filesystem::path& path,
                                          const SharedWorkCount& count,
                                          const std::stop_token& stop) {
-  if (is_hdf5(path)) {
-    return import_hdf5(path, count, stop).map([](ImportedRecording imported) {
-      return OpenedRecording{std::move(imported.reader), std::move(imported.warnings)};
-    });
-  }
   const auto files = recordings_in(path);
   if (files.size() > 1) {
     return join(path, files, count, stop);

@@ -1,5 +1,5 @@
-// A recording to read, in whichever form it is there: a file (.mcap), an HDF5 export of one (.h5,
-// .hdf5), or the folder of a run, with all the recordings of a run that was resumed as one.
+// A recording to read, in whichever form it is there: a file (.mcap), or the folder of a run, with
+// all the recordings of a run that was resumed as one.
 //
 // Fails (bad_file) with the file and what is wrong with it. One thread.
 #pragma once

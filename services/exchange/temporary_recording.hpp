@@ -1,4 +1,4 @@
-// A recording that is put together from something else (another format, several files) to be read
+// A recording that is put together from several files to be read
 // like one: in a folder of its own below TMPDIR that is gone as soon as it is read.
 //
 // Fails (bad_file) with the reason, such as no room in TMPDIR. One thread.

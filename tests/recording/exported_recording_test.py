@@ -1,5 +1,4 @@
-"""A run of a demo, exported, as other programs read it: values equal to the last bit, and the same
-results from the HDF5 file.
+"""A run of a demo, exported, as other programs read it: values equal to the last bit.
 
 exported_recording_test.py PROGRAMS PUBLISHER FOLDER [RECORDING...]; with RECORDINGS (.mcap) these
 are taken in place of a demo. Needs h5py and numpy in Debian's interpreter, else it is skipped.
@@ -19,13 +18,6 @@ PATIENCE_S = 300
 # Debian's interpreter by its path: another python3 may be in PATH.
 PYTHON = "/usr/bin/python3"
 COMPARE = pathlib.Path(__file__).resolve().with_name("exported_values.py")
-TIMES = ('"began_utc"', '"ended_utc"')
-
-
-def lines_without_times(path):
-    lines = path.read_text("utf-8").splitlines()
-    return [line for line in lines if not any(key in line for key in TIMES)]
-
 
 class ExportedRecording(unittest.TestCase):
     def setUp(self):
@@ -68,13 +60,8 @@ class ExportedRecording(unittest.TestCase):
         }
         for target in exported.values():
             self.run_dyncal("export", recording, "--to", target)
-        results = []
-        for source in (recording, exported["h5"]):
-            result = self.folder / f"{name}-{source.suffix[1:]}.json"
-            self.run_dyncal("analyse", source, "--json", result, status=(0, 1))
-            results.append(lines_without_times(result))
-        self.assertGreater(len(results[0]), 500)
-        self.assertEqual(results[0], results[1])
+        refused = self.run_dyncal("analyse", exported["h5"], status=(1, 2))
+        self.assertIn("the recording (.mcap)", refused.stderr)
         compared = subprocess.run(
             [PYTHON, str(COMPARE), *map(str, exported.values())],
             capture_output=True,
@@ -87,7 +74,7 @@ class ExportedRecording(unittest.TestCase):
         self.assertGreater(figures["samples"], 1000)
         self.assertGreater(figures["values"], figures["samples"])
 
-    def test_gives_the_same_values_and_results(self):
+    def test_gives_the_same_values(self):
         recordings = list(map(pathlib.Path, ARGUMENTS[3:])) or self.recorded_demo()
         for number, recording in enumerate(recordings):
             with self.subTest(recording=str(recording)):

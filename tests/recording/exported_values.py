@@ -48,6 +48,7 @@ def compare_source(name, rows, group, columns, messages):
         assert np.array_equal(rows["t_ns"], group["Absolutetime"][0].astype(np.int64)), name
         assert np.array_equal(rows["sample_number"], group["Sample_number"][0]), name
         assert np.array_equal(rows["stamp_flags"], group["Stamp_flags"][0]), name
+        assert np.array_equal(rows["session"], group["Session"][0]), name
         assert int(rows["lost_before"].sum()) == int(group.attrs["Lost_samples"]), name
     assert np.array_equal(rows["t_ns"], np.array(columns["t_ns"], dtype=np.int64)), name
     assert len(messages) == len(rows), name

@@ -11,7 +11,6 @@
 
 #include <gtest/gtest.h>
 
-#include "services/recording/recording_reader.hpp"
 #include "tests/unit/services/recording/example_recording.hpp"
 
 namespace dyncal::services {
@@ -150,26 +149,6 @@ inline void write_recorded_bench(const std::filesystem::path& path) {
   recording.add("DsoRecord", example_record(2));
   EXPECT_TRUE(recording.writer.add_metadata({"dyncal.losses", {{"dau.missing", "4"}}}));
   EXPECT_TRUE(recording.writer.close());
-}
-
-// Everything of a recording in its order, for comparison.
-inline std::vector<std::string> messages_of(recording::RecordingReader& reader) {
-  std::vector<std::string> messages;
-  const auto report = reader.scan(
-      {.message =
-           [&](const recording::MessageInFile& one) {
-             messages.push_back(one.channel.topic + " " + std::to_string(one.message.log_time) +
-                                " " + std::to_string(one.message.publish_time) + " " +
-                                std::to_string(one.message.sequence) + " " +
-                                std::string(one.message.data));
-           },
-       .attachment =
-           [&](const recording::Attachment& one) {
-             messages.push_back(one.name + one.media_type + one.data);
-           },
-       .metadata = {}});
-  EXPECT_TRUE(report);
-  return messages;
 }
 
 } // namespace dyncal::services
