@@ -17,8 +17,4 @@ namespace dyncal::drivers::smartup {
   return text;
 }
 
-[[nodiscard]] inline std::uint16_t board_of(std::uint32_t sensor) {
-  return static_cast<std::uint16_t>(sensor >> 16U);
-}
-
 } // namespace dyncal::drivers::smartup

@@ -242,12 +242,6 @@ Expected<std::vector<SourceStreams::Request>> SourceStreams::requests_due(Instan
   return due;
 }
 
-void SourceStreams::close_readers() {
-  block_readers_.clear();
-  record_readers_.clear();
-  answer_readers_.reset();
-}
-
 bool SourceStreams::is_triggered(const Stream& stream) {
   return stream.follower &&
          std::holds_alternative<StreamFollower<wire::TriggeredRecord>>(*stream.follower);

@@ -70,7 +70,6 @@ public:
   // What sources are to be asked for, by asker(). Fails as readers do.
   [[nodiscard]] Expected<std::vector<Request>> requests_due(Instant now);
   [[nodiscard]] const std::string& asker() const { return asker_; }
-  void close_readers();
 
   // One sentence about the first source that no longer has what it sent at the beginning of a run
   // that began before this service; empty if none. Steps would be taken for others.

@@ -51,11 +51,11 @@ bool ClockLine::stepped(const Point& point) {
   if (!ready_) {
     return false;
   }
-  last_delay_s_ = point.difference_s - (line_.at_zero_s + line_.slope * point.free_s);
-  if (last_delay_s_ < -options_.step_s) {
+  const double delay_s = point.difference_s - (line_.at_zero_s + line_.slope * point.free_s);
+  if (delay_s < -options_.step_s) {
     return true;
   }
-  far_above_ = last_delay_s_ > options_.step_s ? far_above_ + 1 : 0;
+  far_above_ = delay_s > options_.step_s ? far_above_ + 1 : 0;
   return far_above_ >= options_.step_points;
 }
 

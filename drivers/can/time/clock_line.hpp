@@ -52,8 +52,6 @@ public:
   // Standard uncertainty of the line at its worse end, from the distance to it of four lines
   // through every fourth chunk of the points. The least delay of all is not in it.
   [[nodiscard]] double u_s() const { return u_s_; }
-  // How far the last point lay above the line.
-  [[nodiscard]] double last_delay_s() const { return last_delay_s_; }
   [[nodiscard]] std::uint64_t restarts() const { return restarts_; }
 
 private:
@@ -86,7 +84,6 @@ private:
   Line line_;
   double rate_ = 0.0;
   double u_s_ = 0.0;
-  double last_delay_s_ = 0.0;
   bool ready_ = false;
   std::size_t far_above_ = 0;
   std::uint64_t restarts_ = 0;

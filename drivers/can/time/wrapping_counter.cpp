@@ -63,14 +63,4 @@ WrappingCounter::Reading WrappingCounter::read(std::uint64_t raw, std::int64_t t
   return {Step::forward, last_->value};
 }
 
-std::optional<std::int64_t> WrappingCounter::near_last(std::uint64_t raw) const {
-  if (!last_) {
-    return std::nullopt;
-  }
-  const std::uint64_t ahead = (raw - last_->raw) & mask();
-  const std::uint64_t half = std::uint64_t{1} << (bits_ - 1);
-  return ahead < half ? last_->value + static_cast<std::int64_t>(ahead)
-                      : last_->value - static_cast<std::int64_t>((last_->raw - raw) & mask());
-}
-
 } // namespace dyncal::drivers::can

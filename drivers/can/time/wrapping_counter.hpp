@@ -26,10 +26,6 @@ public:
   // `time_ns` of any clock that is right to some percent.
   Reading read(std::uint64_t raw, std::int64_t time_ns);
 
-  // What `raw` would be without changing anything: for frames that may come out of order. Nearest
-  // to the last reading.
-  [[nodiscard]] std::optional<std::int64_t> near_last(std::uint64_t raw) const;
-
 private:
   struct Last {
     std::uint64_t raw;
