@@ -213,8 +213,8 @@ void RunEvaluator::add(const std::string& source, TriggeredRecord record) {
   }
 }
 
-void RunEvaluator::announce(const StepAnnouncement& announcement) {
-  records_.announce(announcement);
+void RunEvaluator::announce(const StepAnnouncement& announcement, const SourceInstants& at) {
+  records_.announce(announcement, at);
 }
 
 void RunEvaluator::end_of_excitation(bool aborted) {

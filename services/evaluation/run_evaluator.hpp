@@ -103,7 +103,8 @@ public:
   [[nodiscard]] bool is_ready_for(const std::string& source, std::uint64_t session);
   // Of an instrument that records after a trigger, by its source.
   void add(const std::string& source, TriggeredRecord record);
-  void announce(const StepAnnouncement& announcement);
+  // `at`: record/run_records.hpp.
+  void announce(const StepAnnouncement& announcement, const SourceInstants& at = {});
   // Steps are announced in this run, although what was announced may come later.
   void expect_announcements() { records_.excitation().expect_announcements(); }
   // No excitation comes any more: the run is done, or was broken off after the steps announced so

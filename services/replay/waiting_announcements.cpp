@@ -13,11 +13,11 @@ void WaitingAnnouncements::add(const Instant& recorded, Announcement announcemen
   waiting_.push_back({recorded, std::move(announcement)});
 }
 
-void WaitingAnnouncements::hand_over(bool at_once,
-                                     const std::function<void(const Announcement&)>& take) {
+void WaitingAnnouncements::hand_over(
+    bool at_once, const std::function<void(const Announcement&, std::int64_t recorded_ns)>& take) {
   for (; !waiting_.empty() && (at_once || counts(waiting_.front().recorded));
        waiting_.pop_front()) {
-    take(waiting_.front().announcement);
+    take(waiting_.front().announcement, waiting_.front().recorded.time_ns);
   }
 }
 

@@ -38,8 +38,10 @@ public:
   // All that the source sent up to `sent_ns` is handed over; where the walk is now.
   void reach(const std::string& source, std::uint64_t place, std::int64_t sent_ns, bool is_ended);
   void add(const Instant& recorded, Announcement announcement);
-  // Calls `take` with those that count; `at_once`: with all, whatever the sources have sent.
-  void hand_over(bool at_once, const std::function<void(const Announcement&)>& take);
+  // Calls `take` with those that count, and when they were recorded; `at_once`: with all, whatever
+  // the sources have sent.
+  void hand_over(bool at_once,
+                 const std::function<void(const Announcement&, std::int64_t recorded_ns)>& take);
 
 private:
   struct Reached {

@@ -46,14 +46,20 @@ double uneven_ns(const SourceRecord& source) {
   return most_ns;
 }
 
-std::string likely_cause(const RunRecords& records, const RecipeStep& step,
-                         const std::string& name) {
+// Of what is known of the source; empty if nothing is.
+std::string known_cause(const RunRecords& records, std::size_t step, const std::string& name) {
   const SourceRecord& source = records.of(name);
   if (source.restarts() > 0) {
     return fmt::format(": source '{}' restarted during the run", name);
   }
   if (!source.newest_stamp_ns()) {
     return fmt::format(": source '{}' sent no samples", name);
+  }
+  if (records.began_after(name, step)) {
+    return fmt::format(": the record of source '{}' begins after it", name);
+  }
+  if (records.ended_before(name, step)) {
+    return fmt::format(": the record of source '{}' ends before it", name);
   }
   if (source.set_back_ns() > worth_naming_back_ns) {
     return fmt::format(": the clock of source '{}' was set back by {:.6g} s during the run", name,
@@ -70,11 +76,15 @@ std::string likely_cause(const RunRecords& records, const RecipeStep& step,
   if (const std::uint64_t lost = source.lost() + source.overflowed(); lost > 0) {
     return fmt::format(": source '{}' lost {} samples during the run", name, lost);
   }
+  return "";
+}
+
+std::string likely_cause(const SourceRecord& source, const RecipeStep& step) {
   const double uneven = uneven_ns(source);
   if (2.0 * std::numbers::pi * step.frequency.hz() * uneven * 1e-9 > worth_naming_rad) {
     return fmt::format(": the time stamps of source '{}' are up to {:.2g} ms off an even rate; are "
                        "its samples read in batches, or stamped in coarse ticks?",
-                       name, uneven * 1e-6);
+                       source.source(), uneven * 1e-6);
   }
   return "; is the sync signal connected?";
 }
@@ -109,9 +119,13 @@ std::string no_sine(const RunRecords& records, std::size_t step, const ChannelNa
   if (auto known = records.why_missing(step); !known.empty()) {
     return known;
   }
-  const RecipeStep& planned = records.planned(step);
-  return fmt::format("no steady sine of {} Hz was found in {}{}", planned.frequency_text_hz,
-                     sync.text(), likely_cause(records, planned, sync.source));
+  const std::string when = records.when_missing(step, sync.text());
+  std::string cause = known_cause(records, step, sync.source);
+  if (cause.empty() && when.empty()) {
+    cause = likely_cause(records.of(sync.source), records.planned(step));
+  }
+  return fmt::format("no steady sine of {} Hz was found in {}{}{}",
+                     records.planned(step).frequency_text_hz, sync.text(), when, cause);
 }
 
 } // namespace dyncal::services

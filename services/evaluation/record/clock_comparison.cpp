@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 namespace dyncal::services {
@@ -200,6 +200,16 @@ std::optional<bool> phases_have_one_offset(std::span<const ExcitationInBoth> pai
     }
   }
   return false;
+}
+
+bool are_one_excitation(const ExcitationInBoth& pair, std::int64_t offset_ns) {
+  TimeInterval shorter{pair.first->begin_ns() + offset_ns, pair.first->end_ns() + offset_ns};
+  TimeInterval longer{pair.second->begin_ns(), pair.second->end_ns()};
+  if (shorter.end_ns - shorter.begin_ns > longer.end_ns - longer.begin_ns) {
+    std::swap(shorter, longer);
+  }
+  const std::int64_t middle_ns = shorter.begin_ns + (shorter.end_ns - shorter.begin_ns) / 2;
+  return longer.begin_ns <= middle_ns && middle_ns <= longer.end_ns;
 }
 
 std::optional<bool> levels_agree(const ExcitationInBoth& one, const ExcitationInBoth& other) {

@@ -13,6 +13,7 @@
 // Plain functions, any thread.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 
@@ -50,6 +51,9 @@ phases_agree(const ExcitationInBoth& one, const ExcitationInBoth& other, const C
 // may be inverted in one of the records. Nothing where any offset might by chance.
 [[nodiscard]] std::optional<bool> phases_have_one_offset(std::span<const ExcitationInBoth> pairs,
                                                          const ClockRate& rate);
+// They are one excitation, where the clocks are `offset_ns` apart (second behind first): the middle
+// of the shorter one lies in the longer one.
+[[nodiscard]] bool are_one_excitation(const ExcitationInBoth& pair, std::int64_t offset_ns);
 // The amplitudes of sync have the ratio in both that they have in one; at one frequency only.
 [[nodiscard]] std::optional<bool> levels_agree(const ExcitationInBoth& one,
                                                const ExcitationInBoth& other);

@@ -23,6 +23,7 @@ struct FoundExcitation {
 
   [[nodiscard]] std::int64_t begin_ns() const { return window.excited_begin_ns; }
   [[nodiscard]] std::int64_t end_ns() const { return window.off_ns; }
+  [[nodiscard]] std::int64_t middle_ns() const { return begin_ns() + (end_ns() - begin_ns()) / 2; }
 };
 
 struct RecordedExcitations {

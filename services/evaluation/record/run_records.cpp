@@ -6,8 +6,6 @@
 
 #include <fmt/core.h>
 
-#include "services/evaluation/record/clock_comparison.hpp"
-
 namespace dyncal::services {
 
 RunRecords::RunRecords(const Recipe& recipe, const std::vector<SearchedChannel>& searched,
@@ -53,25 +51,50 @@ std::vector<std::string> RunRecords::undescribed() const {
   return names;
 }
 
-void RunRecords::announce(const StepAnnouncement& announcement) {
-  excitation_.announce(announcement);
+SourceInstants RunRecords::newest_stamps() const {
+  SourceInstants newest;
   for (const auto& [name, source] : records_) {
+    const auto stamp_ns = source->newest_stamp_ns();
+    newest[name] = {stamp_ns.value_or(std::numeric_limits<std::int64_t>::max()),
+                    stamp_ns.has_value()};
+  }
+  return newest;
+}
+
+void RunRecords::announce(const StepAnnouncement& announcement, const SourceInstants& at) {
+  instants_are_exact_ = instants_are_exact_ || !at.empty();
+  SourceInstants instants = at;
+  instants.merge(newest_stamps());
+  excitation_.announce(announcement);
+  for (const auto& [name, instant] : instants) {
     for (std::size_t step = 0; step < excitation_.steps_expected(); ++step) {
       if (excitation_.is_announced_over(step)) {
-        newest_when_over_ns_[name].emplace(
-            step, source->newest_stamp_ns().value_or(std::numeric_limits<std::int64_t>::max()));
+        instants_.add_over(name, step, instant.stamp_ns);
       }
     }
   }
+  add_offset(instants);
 }
 
-// The clock of a source that restarts may begin anew, and that of one that has sent nothing begins
-// with its first sample.
+void RunRecords::add_offset(const SourceInstants& at) {
+  if (searches_.size() != 2) {
+    return;
+  }
+  const auto& [first_ns, first_is_known] = at.at(searches_[0].source);
+  const auto& [second_ns, second_is_known] = at.at(searches_[1].source);
+  if (first_is_known && second_is_known) {
+    instants_.add_offset({of(searches_[0].source).restarts(), of(searches_[1].source).restarts()},
+                         second_ns - first_ns);
+  }
+}
+
 void RunRecords::follow_restarts() {
-  for (auto& [name, steps] : newest_when_over_ns_) {
-    const auto newest = of(name).newest_stamp_ns();
-    for (auto& [step, newest_then] : steps) {
-      newest_then = std::min(newest_then, newest.value_or(newest_then));
+  for (const auto& [name, source] : records_) {
+    const auto newest_ns = source->newest_stamp_ns();
+    const auto followed = followed_.find(name);
+    if (newest_ns && (followed == followed_.end() || followed->second != source->restarts())) {
+      instants_.follow(name, *newest_ns);
+      followed_[name] = source->restarts();
     }
   }
 }
@@ -81,14 +104,9 @@ bool RunRecords::is_over_in(const std::string& source, std::size_t step) const {
   if (excitation_.is_cut_short() || record.ended()) {
     return true;
   }
-  const auto steps = newest_when_over_ns_.find(source);
-  const auto newest = record.newest_stamp_ns();
-  if (steps == newest_when_over_ns_.end() || !newest) {
-    return false;
-  }
-  const auto then = steps->second.find(step);
-  return then != steps->second.end() && then->second <= *newest &&
-         *newest - then->second > grace.count();
+  const auto newest_ns = record.newest_stamp_ns();
+  const auto then_ns = instants_.over_ns(source, step);
+  return newest_ns && then_ns && *then_ns <= *newest_ns && *newest_ns - *then_ns > grace.count();
 }
 
 bool RunRecords::end_session(const std::string& source, std::size_t next_step) {
@@ -130,46 +148,101 @@ void RunRecords::search_all(std::size_t expected) {
 }
 
 void RunRecords::compare_instants() {
-  if (searches_.size() != 2 || !excitation_.is_conducted()) {
+  if (!excitation_.is_conducted()) {
     return;
   }
-  while (compared_ < excitation_.order().size() && is_searched(compared_)) {
-    compare_instants(compared_++);
+  for (; compared_ < excitation_.order().size() && is_searched(compared_); ++compared_) {
+    compare_with_announced(compared_);
+    compare_with_each_other(compared_);
   }
 }
 
-// By the last step before it that both have found in the same sessions.
-void RunRecords::compare_instants(std::size_t step) {
-  StepSearch& first = searches_[0].steps;
-  StepSearch& second = searches_[1].steps;
-  const ExcitationInBoth here{first.excitation(step), second.excitation(step)};
-  if (here.first == nullptr || here.second == nullptr || !may_be_another(step)) {
+// Of a source that was there from the beginning of the run, and goes on, the steps are in their
+// order; its samples may only be late.
+void RunRecords::compare_with_announced(std::size_t step) {
+  for (Search& search : searches_) {
+    const FoundExcitation* found = search.steps.excitation(step);
+    const auto over_ns = instants_.over_ns(search.source, step);
+    const std::uint32_t session = of(search.source).restarts();
+    if (found != nullptr && over_ns && search.steps.session(step) == session &&
+        (instants_are_exact_ || session > 0) && found->middle_ns() > *over_ns) {
+      pass_over(search, step, " before the step was over");
+    }
+  }
+}
+
+void RunRecords::compare_with_each_other(std::size_t step) {
+  if (searches_.size() != 2) {
     return;
   }
-  for (std::size_t before = step; before-- > 0;) {
-    if (!first.are_of_one_session(step, before) || !second.are_of_one_session(step, before)) {
-      continue;
-    }
-    const ExcitationInBoth there{first.excitation(before), second.excitation(before)};
+  const ExcitationInBoth here = in_both(step);
+  if (here.first == nullptr || here.second == nullptr) {
+    return;
+  }
+  if (const auto later = later_search(step, here)) {
+    pass_over(searches_[*later], step,
+              fmt::format(", when {} showed one", searches_[1 - *later].channel));
+  }
+}
+
+std::optional<std::size_t> RunRecords::later_search(std::size_t step,
+                                                    const ExcitationInBoth& here) const {
+  const auto [first_session, second_session] = sessions(step);
+  const bool restarted = first_session > 0 || second_session > 0;
+  if (!may_be_another(step, restarted ? excitation_.order().size() : excitation_.steps_begun())) {
+    return std::nullopt;
+  }
+  if (const auto before = known_before(step)) {
+    const ExcitationInBoth there = in_both(*before);
     const ClockRate rate = clock_rate(std::array{there, here});
-    if (!instants_agree(there, here, rate)) {
-      const bool second_is_late = lateness_s(there, here, rate) > 0.0;
-      (second_is_late ? second : first).pass_over(step);
-      lacking_[step] = searches_[second_is_late ? 1 : 0].channel;
-    }
-    return;
+    return instants_agree(there, here, rate)
+               ? std::nullopt
+               : std::optional<std::size_t>(lateness_s(there, here, rate) > 0.0 ? 1 : 0);
   }
+  const auto offset_ns = instants_.offset_ns({first_session, second_session});
+  if (!offset_ns) { // nothing tells what the new session shows
+    return restarted ? std::optional<std::size_t>(first_session > 0 ? 0 : 1) : std::nullopt;
+  }
+  const bool second_is_late = here.second->middle_ns() - here.first->middle_ns() > *offset_ns;
+  return are_one_excitation(here, *offset_ns) ? std::nullopt
+                                              : std::optional<std::size_t>(second_is_late ? 1 : 0);
 }
 
-// A later step of its frequency that samples may show by now.
-bool RunRecords::may_be_another(std::size_t step) const {
+// The last step before it that both have found in the same sessions.
+std::optional<std::size_t> RunRecords::known_before(std::size_t step) const {
+  for (std::size_t before = step; before-- > 0;) {
+    const ExcitationInBoth there = in_both(before);
+    if (there.first != nullptr && there.second != nullptr && sessions(before) == sessions(step)) {
+      return before;
+    }
+  }
+  return std::nullopt;
+}
+
+// A later step of its frequency, before `end_step`.
+bool RunRecords::may_be_another(std::size_t step, std::size_t end_step) const {
   const StepOrder& order = excitation_.order();
-  for (std::size_t later = step + 1; later < excitation_.steps_begun(); ++later) {
+  for (std::size_t later = step + 1; later < end_step; ++later) {
     if (order.step(later).frequency_text_hz == order.step(step).frequency_text_hz) {
       return true;
     }
   }
   return false;
+}
+
+// REQUIRES: two searches.
+ExcitationInBoth RunRecords::in_both(std::size_t step) const {
+  return {searches_[0].steps.excitation(step), searches_[1].steps.excitation(step)};
+}
+
+// REQUIRES: both have found it.
+AnnouncedInstants::Sessions RunRecords::sessions(std::size_t step) const {
+  return {*searches_[0].steps.session(step), *searches_[1].steps.session(step)};
+}
+
+void RunRecords::pass_over(Search& search, std::size_t step, std::string when) {
+  search.steps.pass_over(step);
+  lacking_[step].emplace(search.channel, std::move(when));
 }
 
 bool RunRecords::is_searched(std::size_t step) const {
@@ -217,9 +290,6 @@ bool RunRecords::agree_with_step_before(std::size_t step) const {
   if (searches_.size() != 2) {
     return true;
   }
-  const auto in_both = [&](std::size_t at) {
-    return ExcitationInBoth{searches_[0].steps.excitation(at), searches_[1].steps.excitation(at)};
-  };
   const ExcitationInBoth here = in_both(step);
   for (std::size_t before = step; before-- > 0;) {
     const ExcitationInBoth there = in_both(before);
@@ -235,13 +305,28 @@ bool RunRecords::agree_with_step_before(std::size_t step) const {
 }
 
 std::string RunRecords::why_missing(std::size_t step) const {
-  if (const auto lacking = lacking_.find(step); lacking != lacking_.end()) {
-    const std::string& channel = lacking->second;
-    return fmt::format("no steady sine of {} Hz was found in {}, when {} showed one",
-                       planned(step).frequency_text_hz, channel,
-                       searches_[searches_[0].channel == channel ? 1 : 0].channel);
-  }
   return schedule_ && step < schedule_->problems.size() ? schedule_->problems[step] : "";
+}
+
+std::string RunRecords::when_missing(std::size_t step, const std::string& channel) const {
+  const auto channels = lacking_.find(step);
+  if (channels == lacking_.end()) {
+    return "";
+  }
+  const auto found = channels->second.find(channel);
+  return found == channels->second.end() ? "" : found->second;
+}
+
+bool RunRecords::began_after(const std::string& source, std::size_t step) const {
+  const auto over_ns = instants_.over_ns(source, step);
+  const auto began_ns = of(source).began_ns();
+  return over_ns && began_ns && *over_ns < *began_ns;
+}
+
+bool RunRecords::ended_before(const std::string& source, std::size_t step) const {
+  const auto over_ns = instants_.over_ns(source, step);
+  const auto newest_ns = of(source).newest_stamp_ns();
+  return over_ns && newest_ns && *newest_ns < *over_ns;
 }
 
 bool RunRecords::is_uncertain(std::size_t step) const {

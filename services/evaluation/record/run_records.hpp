@@ -17,6 +17,8 @@
 #include <vector>
 
 #include "services/evaluation/recipe/recipe.hpp"
+#include "services/evaluation/record/announced_instants.hpp"
+#include "services/evaluation/record/clock_comparison.hpp"
 #include "services/evaluation/record/excitation_progress.hpp"
 #include "services/evaluation/record/run_schedule.hpp"
 #include "services/evaluation/record/source_record.hpp"
@@ -50,7 +52,9 @@ public:
   RunRecords& operator=(const RunRecords&) = delete;
 
   [[nodiscard]] ExcitationProgress& excitation() { return excitation_; }
-  void announce(const StepAnnouncement& announcement);
+  // `at`: in the clocks of the sources, where somebody knows it better than by what has come so
+  // far.
+  void announce(const StepAnnouncement& announcement, const SourceInstants& at = {});
   [[nodiscard]] const ExcitationProgress& excitation() const { return excitation_; }
   [[nodiscard]] const RecipeStep& planned(std::size_t step) const {
     return excitation_.order().step(step);
@@ -89,9 +93,15 @@ public:
   // Every search has found every step, all of it, and the instants of their excitations agree
   // between the searches. REQUIRES: all of the records was searched.
   [[nodiscard]] bool agree_with_plan() const;
-  // Why a step has no value, where one channel was found to lack it, or somebody has looked for it
-  // before (run_schedule.hpp).
+  // Why a step has no value, where somebody has looked for it before (run_schedule.hpp).
   [[nodiscard]] std::string why_missing(std::size_t step) const;
+  // When a channel did not show a step, where what it shows was found to be of a later one: the end
+  // of a sentence, else empty.
+  [[nodiscard]] std::string when_missing(std::size_t step, const std::string& channel) const;
+  // The step was announced to be over before the first sample of the source.
+  [[nodiscard]] bool began_after(const std::string& source, std::size_t step) const;
+  // Or behind its last one, so far.
+  [[nodiscard]] bool ended_before(const std::string& source, std::size_t step) const;
   // What was found of it may as well be another step of its frequency and level.
   [[nodiscard]] bool is_uncertain(std::size_t step) const;
 
@@ -114,11 +124,22 @@ private:
     StepSearch steps;
   };
 
+  [[nodiscard]] SourceInstants newest_stamps() const;
+  void add_offset(const SourceInstants& at);
   [[nodiscard]] bool agree_with_step_before(std::size_t step) const;
   void search_all(std::size_t expected);
+  // Passes over what was found of a step and is of a later one.
   void compare_instants();
-  void compare_instants(std::size_t step);
-  [[nodiscard]] bool may_be_another(std::size_t step) const;
+  void compare_with_announced(std::size_t step);
+  void compare_with_each_other(std::size_t step);
+  // The search that shows a later step than the other one.
+  [[nodiscard]] std::optional<std::size_t> later_search(std::size_t step,
+                                                        const ExcitationInBoth& here) const;
+  [[nodiscard]] std::optional<std::size_t> known_before(std::size_t step) const;
+  [[nodiscard]] bool may_be_another(std::size_t step, std::size_t end_step) const;
+  [[nodiscard]] ExcitationInBoth in_both(std::size_t step) const;
+  [[nodiscard]] AnnouncedInstants::Sessions sessions(std::size_t step) const;
+  void pass_over(Search& search, std::size_t step, std::string when);
   [[nodiscard]] std::shared_ptr<const SourceRecord> part_of(const SourceRecord& whole,
                                                             const TimeInterval& interval) const;
   void follow_restarts();
@@ -127,11 +148,13 @@ private:
   bool behind_; // samples come before what was announced about them
   std::shared_ptr<const RunSchedule> schedule_;
   std::map<std::string, std::unique_ptr<SourceRecord>> records_;
-  // By source and step: its newest stamp when the step was announced to be over.
-  std::map<std::string, std::map<std::size_t, std::int64_t>> newest_when_over_ns_;
+  AnnouncedInstants instants_;
+  std::map<std::string, std::uint32_t> followed_; // session of a source, once it has sent samples
+  bool instants_are_exact_ = false;               // no guess by what had come when they were heard
   std::vector<Search> searches_;
-  std::size_t compared_ = 0;                   // steps before this one
-  std::map<std::size_t, std::string> lacking_; // by step, the channel that lacks it
+  std::size_t compared_ = 0; // steps before this one
+  // By step and channel that shows a later one: when it shows none.
+  std::map<std::size_t, std::map<std::string, std::string>> lacking_;
   bool copies_ = false;
 };
 

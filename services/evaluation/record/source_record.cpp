@@ -90,6 +90,7 @@ void SourceRecord::append(const SourceBlock& block) {
       columns_[channel].insert(columns_[channel].end(), values.begin(), values.end());
     }
   }
+  began_ns_ = began_ns_.value_or(block.first_stamp_ns());
   newest_ns_ = stamps_ns_.back();
   find_unnumbered_gaps(block);
   drop_overflow();
@@ -169,6 +170,7 @@ void SourceRecord::restart() {
   forget(stamps_ns().size());
   gaps_.clear();
   overflow_.clear();
+  began_ns_.reset();
   newest_ns_.reset();
   latest_ns_.reset();
   set_back_ns_ = 0;

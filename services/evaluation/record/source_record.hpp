@@ -106,6 +106,8 @@ public:
   }
   // By how much the trusted stamps of this session have gone back at most: its clock was set back.
   [[nodiscard]] std::int64_t set_back_ns() const { return set_back_ns_; }
+  // First stamp of its session, which may be forgotten.
+  [[nodiscard]] std::optional<std::int64_t> began_ns() const { return began_ns_; }
   // Nothing before the first sample of its session.
   [[nodiscard]] std::optional<std::int64_t> newest_stamp_ns() const { return newest_ns_; }
 
@@ -147,6 +149,7 @@ private:
   std::vector<std::vector<double>> columns_;
   std::deque<Gap> gaps_;     // samples that did not come, in their order
   std::deque<Gap> overflow_; // samples that the buffer dropped, in their order
+  std::optional<std::int64_t> began_ns_;
   std::optional<std::int64_t> newest_ns_;
   std::optional<std::int64_t> latest_ns_; // of the trusted stamps
   std::int64_t set_back_ns_ = 0;

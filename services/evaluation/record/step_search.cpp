@@ -147,7 +147,11 @@ void StepSearch::expect() {
   const RecipeStep& step = order_.step(step_);
   const auto window = finder_->window();
   if (window && window->end_ns >= window->begin_ns + to_ns(step.settling_s + step.duration_s)) {
-    expected_ = {evaluated_part(*window), quiet_time(*window), {*window, finder_->frame_ns()}};
+    expected_ = {evaluated_part(*window),
+                 quiet_time(*window),
+                 {*window, finder_->frame_ns()},
+                 search_from_ns_,
+                 restarts_};
   }
 }
 
@@ -231,11 +235,9 @@ const FoundExcitation* StepSearch::excitation(std::size_t step) const {
   return found == found_.end() ? nullptr : &found->second.excitation;
 }
 
-bool StepSearch::are_of_one_session(std::size_t step, std::size_t other) const {
-  const auto one = found_.find(step);
-  const auto before = found_.find(other);
-  return one != found_.end() && before != found_.end() &&
-         one->second.session == before->second.session;
+std::optional<std::uint32_t> StepSearch::session(std::size_t step) const {
+  const auto found = found_.find(step);
+  return found == found_.end() ? std::nullopt : std::optional(found->second.session);
 }
 
 void StepSearch::pass_over(std::size_t step) {
@@ -243,7 +245,8 @@ void StepSearch::pass_over(std::size_t step) {
   if (found == found_.end()) {
     return;
   }
-  search_from_ns_ = found->second.searched_from_ns;
+  search_from_ns_ =
+      found->second.session == restarts_ ? found->second.searched_from_ns : beginning_of_time;
   found_.erase(found, found_.end());
   search_step(step + 1);
 }

@@ -54,9 +54,10 @@ public:
   [[nodiscard]] std::optional<std::int64_t> needed_for(std::size_t step) const;
   // Where the step was found; nothing for one that was not.
   [[nodiscard]] const FoundExcitation* excitation(std::size_t step) const;
-  // Both were found in one session of the source: its clock went on between them.
-  [[nodiscard]] bool are_of_one_session(std::size_t step, std::size_t other) const;
-  // What was found of the step is of a later one: this one, the record lacks.
+  // Of the source, that it was found in: in one session its clock goes on.
+  [[nodiscard]] std::optional<std::uint32_t> session(std::size_t step) const;
+  // What was found of the step is of a later one: this one, the record lacks. Those behind it are
+  // searched once more.
   void pass_over(std::size_t step);
   // Some step was found where the record begins: what is missing of it, the order does not tell.
   [[nodiscard]] bool begins_within_step() const;

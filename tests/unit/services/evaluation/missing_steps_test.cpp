@@ -101,6 +101,22 @@ TEST_P(MissingSteps, TwoStepsInARow) {
   }
 }
 
+// No step before tells how far the clocks are apart; what has come of both when steps were
+// announced does.
+TEST_P(MissingSteps, TheFirstOfAll) {
+  play({0.0, 10.0, 10.0, 10.0, 10.0});
+  ASSERT_EQ(results_.size(), 5U);
+  for (const StepResult& result : results_) {
+    EXPECT_EQ(result.valid, result.step != 1) << result.step << ": " << result.problem;
+    if (result.valid) {
+      EXPECT_EQ(step_of(result.samples[0]), static_cast<int>(result.step));
+      EXPECT_EQ(step_of(result.samples[1]), static_cast<int>(result.step));
+    } else {
+      EXPECT_THAT(result.problem, HasSubstr("was found in dau/sync, when acs/sync showed one"));
+    }
+  }
+}
+
 TEST_P(MissingSteps, NoneIsMissing) {
   play({10.0, 10.0, 10.0, 10.0, 10.0});
   ASSERT_EQ(results_.size(), 5U);

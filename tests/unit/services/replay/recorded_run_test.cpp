@@ -62,11 +62,14 @@ protected:
     description.session(description.session() + restarts);
     recording_.add("SourceDescription", description);
   }
-  // What its service sent after it had been started again.
+  // What its service sent after it had been started again, before anything else that is recorded:
+  // only the last block came at once.
   void add_restarted_dau(std::uint64_t restarts) {
     for (wire::SampleBlock block : dau_) {
+      const bool is_last = block.block() == dau_.back().block();
       block.session(block.session() + restarts);
-      block.received_utc_ns(block.received_utc_ns() + static_cast<std::int64_t>(restarts));
+      block.received_utc_ns(example_utc_ns +
+                            (is_last ? std::int64_t{recording_.sequence} * 1'000'000 : 0));
       recording_.add("DauSamples", block);
     }
   }

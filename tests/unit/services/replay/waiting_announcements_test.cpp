@@ -19,7 +19,10 @@ protected:
   }
   [[nodiscard]] std::vector<WaitingAnnouncements::Announcement> given(bool at_once = false) {
     std::vector<WaitingAnnouncements::Announcement> all;
-    announcements_.hand_over(at_once, [&](const auto& one) { all.push_back(one); });
+    announcements_.hand_over(at_once, [&](const auto& one, std::int64_t recorded_ns) {
+      EXPECT_GE(recorded_ns, 1000);
+      all.push_back(one);
+    });
     return all;
   }
   [[nodiscard]] bool counts() { return given().size() == 1; }

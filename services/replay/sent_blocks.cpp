@@ -1,0 +1,41 @@
+#include "services/replay/sent_blocks.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dyncal::services {
+
+void SentBlocks::add(const SourceBlock& block, std::int64_t sent_ns) {
+  if (block.samples == 0 || !block.is_consistent()) {
+    return;
+  }
+  if (blocks_.empty() || block.session != session_) {
+    session_ = block.session;
+    first_ns_ = block.first_stamp_ns();
+    blocks_.clear();
+  }
+  blocks_.push_back({blocks_.empty() ? sent_ns : std::max(sent_ns, blocks_.back().sent_ns),
+                     block.last_stamp_ns(), block.number});
+}
+
+std::optional<SourceInstant> SentBlocks::at(std::int64_t recorded_ns) const {
+  if (blocks_.empty()) {
+    return std::nullopt;
+  }
+  const auto next =
+      std::upper_bound(blocks_.begin(), blocks_.end(), recorded_ns,
+                       [](std::int64_t ns, const Sent& block) { return ns < block.sent_ns; });
+  if (next == blocks_.begin()) {
+    return SourceInstant{first_ns_ - 1, false};
+  }
+  const Sent& before = *(next - 1);
+  if (next == blocks_.end() || next->number != before.number + 1) {
+    return SourceInstant{before.last_ns + 1, false};
+  }
+  const double part = static_cast<double>(recorded_ns - before.sent_ns) /
+                      static_cast<double>(next->sent_ns - before.sent_ns);
+  return SourceInstant{before.last_ns +
+                       std::llround(part * static_cast<double>(next->last_ns - before.last_ns))};
+}
+
+} // namespace dyncal::services
