@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "analysis/base/statistics.hpp"
@@ -33,6 +34,16 @@ constexpr double on_slopes = 0.54;
 constexpr double at_end = 0.85;       // of the amplitude
 constexpr double batched = 0.05;      // of the mean interval
 constexpr double min_variance = 0.05; // of cos(2 phi), which is a half where phases are even
+// Distortion, folded as it may be, looks like scatter where two of its orders are 2 apart: their
+// product turns with 2 phi.
+constexpr int highest_distortion = 10;
+constexpr double lines_apart = 1.5; // in 1 / T
+constexpr int sweeps = 2;           // orders that fold beside each other are not quite orthogonal
+constexpr double lost_to_distortion = 2.0 * (highest_distortion - 1); // samples' worth
+constexpr double enough_samples = 4.0;                                // times that
+// Whole ticks in every interval of some; what they shorten, beside what is seen.
+constexpr std::size_t intervals_for_tick = 64;
+constexpr double ticks_explain = 0.1;
 
 struct Sample {
   double sine = 0.0; // of the phase of the fitted sine
@@ -195,6 +206,120 @@ std::uint64_t far_off(std::vector<Sample> samples) {
   return count >= min_far_off && (many || steep > on_slopes * all) ? count : 0;
 }
 
+// Orders whose folded lines are apart: what two orders differ by at one line, is the scatter
+// itself.
+std::vector<int> separate_orders(const Frequency& frequency,
+                                 std::span<const std::int64_t> stamps_ns) {
+  const double duration_s = 1e-9 * static_cast<double>(stamps_ns.back() - stamps_ns.front());
+  const double rate_hz = static_cast<double>(stamps_ns.size() - 1) / duration_s;
+  std::vector<double> taken{0.0};
+  std::vector<int> orders;
+  for (int order = 1; order <= highest_distortion; ++order) {
+    const double hz = order * frequency.hz();
+    const double line_hz = std::abs(hz - rate_hz * std::round(hz / rate_hz));
+    const bool apart = std::all_of(taken.begin(), taken.end(), [&](double other_hz) {
+      return std::abs(line_hz - other_hz) * duration_s > lines_apart;
+    });
+    if (apart) {
+      taken.push_back(line_hz);
+      orders.push_back(order);
+    }
+  }
+  return orders;
+}
+
+// Takes a sine of each of these multiples of the frequency, but the first, out of the residuals.
+void remove_distortion(const std::vector<int>& orders, Residuals& residuals) {
+  std::vector<Sample>& samples = residuals.samples;
+  std::vector<Sample> turned(samples); // sine and cosine of a multiple of the phase
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      turned[i] = samples[i];
+    }
+    for (int order = 2; order <= highest_distortion; ++order) {
+      double ss = 0.0, sc = 0.0, cc = 0.0, es = 0.0, ec = 0.0;
+      for (std::size_t i = 0; i < samples.size(); ++i) {
+        Sample& at = turned[i];
+        const double sine = at.sine * samples[i].cosine + at.cosine * samples[i].sine;
+        at.cosine = at.cosine * samples[i].cosine - at.sine * samples[i].sine;
+        at.sine = sine;
+        ss += at.sine * at.sine;
+        sc += at.sine * at.cosine;
+        cc += at.cosine * at.cosine;
+        es += samples[i].residual * at.sine;
+        ec += samples[i].residual * at.cosine;
+      }
+      const double determinant = ss * cc - sc * sc;
+      if (!std::binary_search(orders.begin(), orders.end(), order) ||
+          !(determinant > 0.1 * ss * cc)) {
+        continue;
+      }
+      const double by_sine = (es * cc - ec * sc) / determinant;
+      const double by_cosine = (ec * ss - es * sc) / determinant;
+      for (std::size_t i = 0; i < samples.size(); ++i) {
+        samples[i].residual -= by_sine * turned[i].sine + by_cosine * turned[i].cosine;
+      }
+    }
+  }
+  residuals.kept *= 1.0 - lost_to_distortion / static_cast<double>(samples.size());
+}
+
+// Whether stamps of whole ticks may take this off the amplitude: (w T)^2 / 24. Where they divide a
+// period, what they do is a distortion, too. Intervals that are all alike show no ticks.
+bool ticks_shorten(const Frequency& frequency, std::span<const std::int64_t> stamps_ns,
+                   double shortening) {
+  std::int64_t tick_ns = 0, shortest_ns = stamps_ns[1] - stamps_ns[0], longest_ns = shortest_ns;
+  const std::size_t end = std::min(stamps_ns.size(), intervals_for_tick + 1);
+  for (std::size_t i = 1; i < end; ++i) {
+    const std::int64_t interval_ns = stamps_ns[i] - stamps_ns[i - 1];
+    tick_ns = std::gcd(tick_ns, interval_ns);
+    shortest_ns = std::min(shortest_ns, interval_ns);
+    longest_ns = std::max(longest_ns, interval_ns);
+  }
+  const double turn = 1e-9 * frequency.angular() * static_cast<double>(tick_ns);
+  return longest_ns > shortest_ns && turn * turn / 24.0 > shortening;
+}
+
+// Of e^2 against cos(2 phi); no u where phases say nothing.
+struct Slope {
+  double v = 0.0; // V
+  double u = 0.0;
+};
+
+Slope slope_of_squares(const Residuals& residuals) {
+  const std::vector<Sample>& samples = residuals.samples;
+  const double n = static_cast<double>(samples.size());
+  double m = 0.0, mm = 0.0, squares = 0.0, products = 0.0;
+  for (const Sample& one : samples) {
+    const double turned = one.cosine * one.cosine - one.sine * one.sine; // cos(2 phi)
+    const double square = one.residual * one.residual;
+    m += turned;
+    mm += turned * turned;
+    squares += square;
+    products += square * turned;
+  }
+  const double mean = m / n, spread = mm - m * mean;
+  if (!(squares > 0.0) || spread < min_variance * n) {
+    return {};
+  }
+  const double slope = (products - squares * mean) / spread;
+  double about_line = 0.0;
+  for (const Sample& one : samples) {
+    const double turned = one.cosine * one.cosine - one.sine * one.sine - mean;
+    const double rest = one.residual * one.residual - squares / n - slope * turned;
+    about_line += turned * turned * rest * rest;
+  }
+  return {2.0 * slope / residuals.kept, std::sqrt(about_line) / spread / residuals.kept};
+}
+
+void take(const Slope& slope, double amplitude, double step, StampScatter& scatter) {
+  const double square = amplitude * amplitude;
+  const bool too_small = std::abs(slope.v) < step_part * step * step;
+  scatter.u_shortening_rel = slope.u / square;
+  scatter.shortening_rel =
+      too_small ? 0.0 : 1.0 - std::sqrt(std::clamp(1.0 - slope.v / square, 0.0, 2.0));
+}
+
 } // namespace
 
 double StampScatter::correction_rel() const {
@@ -214,27 +339,18 @@ StampScatter measure_stamp_scatter(const Frequency& frequency, const SineFit& fi
   if (stamps_ns.size() < min_samples || !(fit.amplitude() > 0.0)) {
     return scatter;
   }
-  const Residuals residuals =
+  Residuals residuals =
       residuals_of(frequency, fit, origin_ns, stamps_ns, values,
                    slow == SlowScatter::counts ? 0 : slow_block(frequency, stamps_ns));
   const std::vector<Sample>& samples = residuals.samples;
   const double n = static_cast<double>(samples.size());
   scatter.samples = samples.size();
   scatter.batched_part = batched_part(stamps_ns);
-  double m = 0.0, mm = 0.0, squares = 0.0, products = 0.0, second = 0.0, fourth = 0.0;
+  double second = 0.0, fourth = 0.0;
   for (const Sample& one : samples) {
-    const double turned = one.cosine * one.cosine - one.sine * one.sine; // cos(2 phi)
-    const double square = one.residual * one.residual;
-    m += turned;
-    mm += turned * turned;
-    squares += square;
-    const double whole = one.whole * one.whole;
-    second += whole;
-    fourth += whole * whole;
-    products += square * turned;
-  }
-  if (!(squares > 0.0)) {
-    return scatter;
+    const double square = one.whole * one.whole;
+    second += square;
+    fourth += square * square;
   }
   if (n * fourth > heavy_tails * second * second) {
     scatter.peak_jumps = peak_jumps(samples, fit.amplitude());
@@ -243,24 +359,13 @@ StampScatter measure_stamp_scatter(const Frequency& frequency, const SineFit& fi
   if (scatter.far_off == 0) {
     scatter.alternating = alternating_part(frequency, fit, origin_ns, stamps_ns, values);
   }
-  const double mean = m / n, spread = mm - m * mean;
-  if (spread < min_variance * n) {
-    return scatter;
+  take(slope_of_squares(residuals), fit.amplitude(), step, scatter);
+  const double shortening = scatter.correction_rel();
+  if (shortening > 0.0 && n > enough_samples * lost_to_distortion &&
+      !ticks_shorten(frequency, stamps_ns, ticks_explain * shortening)) {
+    remove_distortion(separate_orders(frequency, stamps_ns), residuals);
+    take(slope_of_squares(residuals), fit.amplitude(), step, scatter);
   }
-  const double slope = (products - squares * mean) / spread;
-  double about_line = 0.0;
-  for (const Sample& one : samples) {
-    const double turned = one.cosine * one.cosine - one.sine * one.sine - mean;
-    const double rest = one.residual * one.residual - squares / n - slope * turned;
-    about_line += turned * turned * rest * rest;
-  }
-  const double amplitude_square = fit.amplitude() * fit.amplitude();
-  const double v = 2.0 * slope / residuals.kept;
-  scatter.u_shortening_rel = std::sqrt(about_line) / spread / residuals.kept / amplitude_square;
-  if (std::abs(v) < step_part * step * step) {
-    return scatter;
-  }
-  scatter.shortening_rel = 1.0 - std::sqrt(std::clamp(1.0 - v / amplitude_square, 0.0, 2.0));
   return scatter;
 }
 

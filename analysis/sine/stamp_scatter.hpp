@@ -13,7 +13,8 @@
 // A. Jitter of the instants that the stamps show rightly leaves no such residuals. What is slow (an
 // exciter that wanders, a filter that switches, ticks that beat with the samples) is taken away by
 // a sine in each block where another correction takes care of it: blocks are as long as those in
-// which the ratio is compared (phasor_blocks.hpp).
+// which the ratio is compared (phasor_blocks.hpp). A distortion, folded as it may be, is taken away
+// as sines of the multiples 2 .. 10; but not where whole ticks explain what is seen.
 //
 // Evenly spaced blocks of at most 8192 samples in all. `peak_jumps` are residuals above the
 // amplitude at the ends of the sine where there are hardly any elsewhere: samples that a converter

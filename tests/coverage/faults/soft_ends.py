@@ -8,7 +8,7 @@ import functools
 
 import numpy as np
 
-from class_presets import SERIES, bench
+from class_presets import LITTLE_NOISE, SERIES, bench
 from expected_row import VALUE, Row
 from faults.fault import Fault
 
@@ -174,6 +174,13 @@ CLASSES = {
     "clean, exciter with harmonics of 3, 2, 1 %": bench(harmonics_rel=(0.03, 0.02, 0.01)),
     "clean, above rate / 8, exciter with eight harmonics": bench(
         HIGH, harmonics_rel=(0.003, 0.01, 0.002, 0.006, 0.001, 0.003, 0.001, 0.002)
+    ),
+    # Products of two orders turn with twice the phase, as what stamps that scatter leave does.
+    "clean, above rate / 8, exciter with harmonics of 3, 2, 1 %": bench(
+        HIGH, LITTLE_NOISE, harmonics_rel=(0.03, 0.02, 0.01)
+    ),
+    "clean, above rate / 8, sensor with harmonics of 3, 1 %": bench(
+        HIGH, LITTLE_NOISE, sensor_harmonics_rel=(0.03, 0.01)
     ),
     "clean, sensor with harmonics of its own": bench(
         LITTLE, sensor_harmonics_rel=(0.001, 0.0005)

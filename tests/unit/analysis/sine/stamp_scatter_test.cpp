@@ -117,6 +117,33 @@ TEST(StampScatter, NothingIsCorrectedInSoundRecords) {
   }
 }
 
+// Of any phases, folded or not; and beside it, scatter is found as without it.
+TEST(StampScatter, DistortionIsNotScatter) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> part(0.0, 1.0);
+  for (unsigned run = 0; run < 200; ++run) {
+    const double turned = 6.0 * part(random), size = 0.01 + 0.02 * part(random);
+    Recording recording{.frequency_hz = 90.0 + 170.0 * part(random), .noise = 0.002};
+    recording.samples = 1500;
+    const double w = 2.0 * std::numbers::pi * recording.frequency_hz;
+    recording.value = [=](std::size_t i, double y) {
+      const double phase = w * static_cast<double>(i) / rate_hz;
+      return y + size * std::sin(2.0 * phase + turned) + 0.7 * size * std::sin(3.0 * phase) +
+             0.5 * size * std::sin(4.0 * phase - turned);
+    };
+    EXPECT_EQ(measure(recording, run).scatter.correction_rel(), 0.0)
+        << "run " << run << ", " << recording.frequency_hz << " Hz";
+    recording.stamp_error_s = [](double, auto& draw) {
+      return std::normal_distribution<double>(0.0, 1e-4)(draw);
+    };
+    const StampScatter scatter = measure(recording, run).scatter;
+    const double expected = 1.0 - std::exp(-0.5 * w * w * 1e-8);
+    EXPECT_GT(scatter.correction_rel(), 0.5 * expected)
+        << "run " << run << ", " << recording.frequency_hz << " Hz";
+    EXPECT_NEAR(scatter.correction_rel(), expected, 4.0 * scatter.u_correction_rel() + 3e-4);
+  }
+}
+
 TEST(StampScatter, FilterThatSwitchesIsNotScatter) {
   Recording recording{.frequency_hz = 80.0, .samples = 4000};
   recording.stamp_error_s = [](double t, auto&) { return t > 2.0 ? 1e-4 : 0.0; };
