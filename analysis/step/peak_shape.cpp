@@ -14,6 +14,9 @@ using Complex = std::complex<double>;
 
 constexpr int max_harmonic = 10;
 constexpr double resolved = 1.5; // distance of lines in 1 / T
+// Of folded lines from the signal: an exciter whose level wanders has sidebands, which the
+// reference with its higher rate shows at other orders or at none.
+constexpr double sidebands_hz = 10.0;
 constexpr double min_periods = 4.0;
 constexpr std::size_t min_orders = 2;
 constexpr std::array widths_rad{0.1, 0.2, 0.35, 0.6, 0.9};
@@ -191,6 +194,20 @@ bool lacks_harmonics_of(const SineShape& sensor, const SineShape& reference, dou
   return square > 0.0 && shown + certain * std::sqrt(u2) < confirmed * square;
 }
 
+// Beyond noise, in the orders that both show.
+bool sensor_has_more(const SineShape& sensor, const SineShape& reference) {
+  double more = 0.0;
+  for (const ShapeHarmonic& one : sensor.harmonics) {
+    for (const ShapeHarmonic& other : reference.harmonics) {
+      if (other.order == one.order) {
+        more += std::norm(one.relative) - std::norm(other.relative) -
+                2.0 * (one.u * one.u - other.u * other.u);
+      }
+    }
+  }
+  return more > 0.0;
+}
+
 std::vector<Excess> own_shape(const SineShape& shape) {
   std::vector<Excess> excess;
   for (const ShapeHarmonic& one : shape.harmonics) {
@@ -216,11 +233,14 @@ std::vector<int> resolved_harmonics(double frequency_hz, double duration_s, doub
   const auto folded = [rate_hz](double hz) {
     return std::abs(hz - rate_hz * std::round(hz / rate_hz));
   };
-  std::vector<double> taken{0.0, folded(frequency_hz)};
+  const double signal = folded(frequency_hz);
+  std::vector<double> taken{0.0, signal};
   std::vector<int> orders;
   for (int k = 2; k <= max_harmonic; ++k) {
     const double line = folded(k * frequency_hz);
-    const bool apart = std::all_of(taken.begin(), taken.end(), [&](double other) {
+    const bool beside_signal =
+        k * frequency_hz > 0.5 * rate_hz && std::abs(line - signal) < sidebands_hz;
+    const bool apart = !beside_signal && std::all_of(taken.begin(), taken.end(), [&](double other) {
       return std::abs(line - other) * duration_s > resolved;
     });
     if (apart && (0.5 * rate_hz - line) * duration_s > 0.5 * resolved) {
@@ -264,8 +284,9 @@ BentPeaks find_bent_peaks(const SineShape& sensor, const SineShape& reference) {
   if (excess.size() < min_orders || sensor.periods < min_periods) {
     return {};
   }
-  const BentPeaks peaks = judged(excess);
+  BentPeaks peaks = judged(excess);
   if (peaks.found) {
+    peaks.of_either = (peaks.amplitude_error_rel > 0.0) != sensor_has_more(sensor, reference);
     return peaks;
   }
   const BentPeaks of_reference = bent_reference(sensor, reference);

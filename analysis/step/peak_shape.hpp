@@ -18,10 +18,11 @@
 // chance meets in fewer than one of 1000 steps. Power, with 1500 samples: an error of 0.12 % of the
 // amplitude is just found at 1 % noise, of 0.03 % at 0.1 %. Above an eighth of the sensor's rate
 // harmonics fold and filters take them away: 0.8 % at a fifth. The sensor is bent where the error
-// is positive, the reference where it is negative; that, too, where its own harmonics alone show it
-// and the sensor shows less than a quarter of those up to a quarter of its rate; or of all, where
-// four orders and more are those of a flat top but for a tenth. A soft knee may lose up to three
-// times as much. Any thread.
+// is positive, the reference where it is negative; either of the two where the other one has more
+// of the harmonics: a filter may have turned them. The reference, too, where its own harmonics
+// alone show it and the sensor shows less than a quarter of those up to a quarter of its rate; or
+// of all, where four orders and more are those of a flat top but for a tenth. A soft knee may lose
+// up to three times as much. Any thread.
 #pragma once
 
 #include <complex>
@@ -47,8 +48,8 @@ struct SineShape {
   std::vector<ShapeHarmonic> harmonics; // in rising order
 };
 
-// Orders whose folded frequencies are apart from the signal, the mean, half the rate (where only
-// one of sine and cosine is sampled) and each other.
+// Orders whose folded frequencies are apart from the signal (by 10 Hz, for the exciter may wander),
+// the mean, half the rate (where only one of sine and cosine is sampled) and each other.
 [[nodiscard]] std::vector<int> resolved_harmonics(double frequency_hz, double duration_s,
                                                   double rate_hz);
 
@@ -63,6 +64,7 @@ struct BentPeaks {
   double upper_rel = 0.0; // of it, at the upper peak
   double lower_rel = 0.0;
   bool found = false;
+  bool of_either = false; // which of the two is bent, the orders do not tell
 };
 
 [[nodiscard]] BentPeaks find_bent_peaks(const SineShape& sensor, const SineShape& reference);

@@ -57,7 +57,7 @@ void ChannelFaults::add(const StepResult& result) {
            .acceleration = result.fits.front().fit.amplitude(),
            .reference = result.fits.front().channel,
            .alternating = result.fits.back().scatter.alternating};
-  if (has_flag(result, ResultFlag::peaks_bent)) {
+  if (has_flag(result, ResultFlag::peaks_bent) && !(result.peaks && result.peaks->of_either)) {
     shown.bent = result.peaks;
   }
 }

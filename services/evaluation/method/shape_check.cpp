@@ -79,18 +79,27 @@ void check_peaks(const std::string& reference_name, const std::string& channel,
       error * result.magnitude < visible_error * result.u_magnitude) {
     return;
   }
-  const std::string& bent = peaks.amplitude_error_rel > 0.0 ? channel : reference_name;
+  const bool is_sensor = peaks.amplitude_error_rel > 0.0;
+  const std::string& bent = is_sensor ? channel : reference_name;
+  const std::string& other = is_sensor ? reference_name : channel;
   const double upper = std::abs(peaks.upper_rel), lower = std::abs(peaks.lower_rel);
   const char* where = upper > 3.0 * lower   ? "the upper ones"
                       : lower > 3.0 * upper ? "the lower ones"
                                             : "both";
-  add_flag(ResultFlag::peaks_bent, bent,
-           fmt::format("{}, about {} of the amplitude is lost", where, percent(error)), result);
+  const std::string lost =
+      fmt::format("{}, about {} of the amplitude is lost", where, percent(error));
+  if (peaks.of_either) {
+    add_flag(ResultFlag::peaks_bent, bent, fmt::format("{}; or those of {}", lost, other), result);
+    add_flag(ResultFlag::peaks_bent, other, fmt::format("{}; or those of {}", lost, bent), result);
+  } else {
+    add_flag(ResultFlag::peaks_bent, bent, lost, result);
+  }
   if (error > refused_bending) {
     add_refusal(
         fmt::format("the peaks of {} are bent, so that about {} of the amplitude is lost; lower "
                     "the level, or choose a wider range",
-                    bent, percent(error)),
+                    peaks.of_either ? fmt::format("{} or of {}", bent, other) : bent,
+                    percent(error)),
         result);
   }
 }

@@ -2,7 +2,8 @@
 // (analysis/step/peak_shape.hpp), stamps that scatter (analysis/sine/stamp_scatter.hpp), values
 // that are not of the instants of their stamps (analysis/step/held_values.hpp).
 //
-//   peaks_bent         the amplitude is wrong by more than half its u, and by 5 u of that finding
+//   peaks_bent         the amplitude is wrong by more than half its u, and by 5 u of that finding;
+//                      of both channels where their shapes do not tell which it is
 //   over_range         single samples jump by more than the amplitude at the peaks
 //   stamps_scatter     the amplitude was corrected by more than its u
 //   values_off_stamps  values are held so often that it moves the phase by a tenth of its u; a

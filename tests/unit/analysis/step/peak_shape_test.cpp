@@ -28,6 +28,8 @@ struct Channel {
   std::vector<double> own{};                    // of the channel itself
   std::size_t mean_of = 1;                      // samples of its filter, behind the ends
   double seconds = 1.5;
+  double modulated = 0.0; // of the level, at `by_hz`
+  double by_hz = 3.3;
 };
 
 SineShape shape_of(const Channel& channel, double exciter_phase, std::mt19937_64& random) {
@@ -44,7 +46,9 @@ SineShape shape_of(const Channel& channel, double exciter_phase, std::mt19937_64
       const double order = static_cast<double>(k + 2);
       value += channel.own[k] * std::sin(order * turn + 0.5 * std::numbers::pi * (order - 1.0));
     }
-    return std::clamp(value, -channel.lower, channel.upper);
+    const double level =
+        1.0 + channel.modulated * std::sin(2.0 * std::numbers::pi * channel.by_hz * t);
+    return std::clamp(level * value, -channel.lower, channel.upper);
   };
   std::vector<std::int64_t> stamps_ns;
   std::vector<double> values;
@@ -205,6 +209,44 @@ TEST(PeakShape, SoundChannelsRaiseNoAlarm) {
     }
   }
   EXPECT_LE(found, runs / 500) << which.str();
+}
+
+// Harmonics fold beside the signal, where an exciter that wanders has its sidebands.
+TEST(PeakShape, AnExciterThatWandersBendsNothing) {
+  int found = 0;
+  for (const double frequency_hz : {125.0, 160.0, 200.0, 250.0}) {
+    for (unsigned run = 0; run < 50; ++run) {
+      const double by_hz = 1.0 + 0.1 * run;
+      Channel sensor{.frequency_hz = frequency_hz, .modulated = 0.02, .by_hz = by_hz};
+      sensor.seconds = 3.0;
+      found += peaks_of(sensor, {.seconds = 3.0, .modulated = 0.02, .by_hz = by_hz}, run).found;
+    }
+  }
+  EXPECT_EQ(found, 0);
+}
+
+// A filter behind the ends that turns harmonics makes them those of a cut reference, but for where
+// they are.
+TEST(PeakShape, TurnedHarmonicsDoNotTellWhichIsBent) {
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    std::mt19937_64 random(seed);
+    Channel cut{.frequency_hz = 31.5};
+    cut.upper = cut.lower = 0.9;
+    const Channel sound{.frequency_hz = 31.5, .rate_hz = 5000.0, .delay_rad = 0.0};
+    SineShape sensor = shape_of(cut, 0.3, random);
+    const SineShape reference = shape_of(sound, 0.3, random);
+    EXPECT_FALSE(find_bent_peaks(sensor, reference).of_either);
+    for (ShapeHarmonic& one : sensor.harmonics) {
+      one.relative = -one.relative;
+    }
+    const BentPeaks turned = find_bent_peaks(sensor, reference);
+    EXPECT_TRUE(turned.found);
+    EXPECT_TRUE(turned.of_either);
+    const BentPeaks of_reference = find_bent_peaks(reference, shape_of(cut, 0.3, random));
+    EXPECT_TRUE(of_reference.found);
+    EXPECT_LT(of_reference.amplitude_error_rel, 0.0);
+    EXPECT_FALSE(of_reference.of_either);
+  }
 }
 
 // The step of a quarter in H between f and 2 f, 3 f of a sensor is not a bent peak.

@@ -59,6 +59,18 @@ TEST(ShapeCheck, NamesTheChannelWhosePeaksAreBent) {
   EXPECT_THAT(of_reference.flags[0].sentence, HasSubstr("acs/ref"));
 }
 
+// A filter behind the ends turns harmonics, as if the sensor had gained amplitude.
+TEST(ShapeCheck, NamesBothWhereTheShapesDoNotTellWhich) {
+  StepResult turned = result(1e-3);
+  check_shape(channel("acs/ref", 0.0), channel("dau/z", -0.02), turned);
+  ASSERT_THAT(kinds(turned), testing::ElementsAre(ResultFlag::peaks_bent, ResultFlag::peaks_bent));
+  EXPECT_THAT(turned.flags[0].sentence, testing::StartsWith("acs/ref: "));
+  EXPECT_THAT(turned.flags[0].sentence, HasSubstr("or those of dau/z"));
+  EXPECT_THAT(turned.flags[1].sentence, testing::StartsWith("dau/z: "));
+  EXPECT_THAT(turned.flags[1].sentence, HasSubstr("or those of acs/ref"));
+  EXPECT_THAT(turned.problem, HasSubstr("the peaks of acs/ref or of dau/z are bent"));
+}
+
 TEST(ShapeCheck, SaysNothingWhereUncertaintyCoversItOrBothHaveIt) {
   StepResult covered = result(0.02);
   check_shape(channel("acs/ref", 0.0), channel("dau/z", 0.005), covered);
