@@ -82,6 +82,7 @@ Expected<ComparisonResult> evaluate_absolute_time(const AbsoluteTimeInput& input
                                             {.link = link,
                                              .noise = noise,
                                              .systematic = systematic,
+                                             .reference = reference,
                                              .sync = std::nullopt,
                                              .denominator = blocks.pilot,
                                              .alignment = {},

@@ -115,6 +115,19 @@ std::optional<RatioInBlocks> compare(const std::optional<BlockSeries>& numerator
                                   : std::nullopt;
 }
 
+std::optional<SeenOffset> seen_offset(const RecordedChannel& numerator,
+                                      const RecordedChannel& denominator, double distance_s) {
+  const auto onset_of = [](const RecordedChannel& channel) {
+    const ChannelFit& result = channel.result;
+    return sine_onset(result.frequency, result.phase_origin_ns, result.fit, channel.samples.rise,
+                      channel.stamps_ns.front());
+  };
+  const auto a = onset_of(numerator), b = onset_of(denominator);
+  return a && b ? std::optional(SeenOffset{a->before_s - b->before_s - distance_s,
+                                           std::hypot(a->u_s, b->u_s)})
+                : std::nullopt;
+}
+
 void add_ratio_rows(Budget& budget, const std::optional<RatioInBlocks>& ratio,
                     double expected_magnitude_rel, double expected_phase_rad) {
   if (!ratio) {

@@ -31,6 +31,12 @@ struct BlocksOfClock {
                                                    const std::optional<BlockSeries>& denominator,
                                                    const BlockAlignment& alignment);
 
+// By how both signals began, where their records show it. `distance_s`: the first stamp of the
+// numerator after that of the time scale that its blocks are on.
+[[nodiscard]] std::optional<SeenOffset> seen_offset(const RecordedChannel& numerator,
+                                                    const RecordedChannel& denominator,
+                                                    double distance_s = 0.0);
+
 // A row of kind `structure`: what the scatter of the ratio along the records shows beyond the
 // expected uncertainties, and what is not known of its correction.
 void add_ratio_rows(Budget& budget, const std::optional<RatioInBlocks>& ratio,

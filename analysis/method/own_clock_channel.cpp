@@ -22,18 +22,23 @@ void add_jitter(Budget& budget, double w, double jitter_s, double samples) {
 }
 
 // In blocks on the pilot's time scale, `distance_s` of the first samples apart.
-std::optional<RatioInBlocks> ratio_in_blocks(std::optional<BlockSeries> sensor,
-                                             const OwnClockLink& link, double distance_s) {
-  if (!sensor) {
+std::optional<RatioInBlocks> ratio_in_blocks(RecordedChannel& sensor, const OwnClockLink& link,
+                                             double distance_s) {
+  std::optional<BlockSeries> blocks = learn_from_blocks(sensor);
+  if (!blocks) {
     return std::nullopt;
   }
-  for (double& time_s : sensor->time_s) {
+  for (double& time_s : blocks->time_s) {
     time_s += distance_s;
   }
   if (link.sync) {
-    refer_phase(*sensor, *link.sync, 0.0);
+    refer_phase(*blocks, *link.sync, 0.0);
   }
-  return compare(sensor, link.denominator, link.alignment);
+  BlockAlignment alignment = link.alignment;
+  if (alignment.reach_s > 0.0) {
+    alignment.seen = seen_offset(sensor, link.reference, distance_s);
+  }
+  return compare(blocks, link.denominator, alignment);
 }
 
 } // namespace
@@ -47,9 +52,8 @@ evaluate_own_clock_channel(const ChannelFit& pilot, std::int64_t pilot_first_ns,
   if (!sensor) {
     return fail(sensor.error());
   }
-  const std::optional<RatioInBlocks> ratio =
-      ratio_in_blocks(learn_from_blocks(*sensor), link,
-                      static_cast<double>(dut_stamps_ns.front() - pilot_first_ns) * 1e-9);
+  const std::optional<RatioInBlocks> ratio = ratio_in_blocks(
+      *sensor, link, static_cast<double>(dut_stamps_ns.front() - pilot_first_ns) * 1e-9);
   const double turns =
       pilot.frequency.reduced_turns(sensor->result.phase_origin_ns - pilot.phase_origin_ns);
   Budget budget;

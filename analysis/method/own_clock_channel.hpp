@@ -19,6 +19,7 @@
 #include <span>
 
 #include "analysis/base/error.hpp"
+#include "analysis/method/channels_of_one_clock.hpp"
 #include "analysis/method/step_findings.hpp"
 #include "analysis/method/transfer_point.hpp"
 #include "analysis/uncertainty/budget.hpp"
@@ -31,6 +32,7 @@ struct OwnClockLink {
   std::complex<double> link;
   const Budget& noise; // rows of the channels that all sensors share
   const Budget& systematic;
+  const RecordedChannel& reference;
   // In blocks, where they are known: sync on the pilot's time scale, and the reference.
   const std::optional<BlockSeries>& sync;
   const std::optional<BlockSeries>& denominator;

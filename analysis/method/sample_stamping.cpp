@@ -94,7 +94,8 @@ struct Comparison {
   std::complex<double> link;
   const Budget& noise;
   const Budget& systematic;
-  std::optional<BlockSeries> reference;
+  const RecordedChannel& reference;
+  std::optional<BlockSeries> blocks;
   BlockAlignment alignment;
   bool noise_unknown = false;
 };
@@ -107,7 +108,9 @@ TransferPoint evaluate_channel(const SampleStampingInput& input, const RecordedC
   add_sensor_rows(budget, dut, common_jitter_s(input.systematic));
   add_stamp_noise(budget, input, dut, sync_dau);
   budget.append(with.noise);
-  const auto ratio = compare(blocks, with.reference, with.alignment);
+  BlockAlignment alignment = with.alignment;
+  alignment.seen = seen_offset(dut, with.reference);
+  const auto ratio = compare(blocks, with.blocks, alignment);
   add_ratio_rows(budget, ratio, budget.u_magnitude_rel(), budget.u_phase_rad());
   budget.append(with.systematic);
   findings.points.push_back(findings_of(ratio, dut.noise_unknown || with.noise_unknown));
@@ -155,7 +158,8 @@ Expected<SampleStampingResult> evaluate_sample_stamping(const SampleStampingInpu
   const Comparison with{.link = link,
                         .noise = noise,
                         .systematic = systematic,
-                        .reference = acs_blocks.beside_pilot(0),
+                        .reference = reference,
+                        .blocks = acs_blocks.beside_pilot(0),
                         .alignment = alignment_of(input, *acs, dau->pilot),
                         .noise_unknown = reference.noise_unknown};
   SampleStampingResult result{reference.result, acs->pilot.result, dau->pilot.result, {}, {}};
@@ -174,8 +178,9 @@ Expected<SampleStampingResult> evaluate_sample_stamping(const SampleStampingInpu
         {.link = link,
          .noise = noise,
          .systematic = systematic,
+         .reference = reference,
          .sync = dau_blocks.pilot,
-         .denominator = with.reference,
+         .denominator = with.blocks,
          .alignment = with.alignment,
          .noise_unknown = with.noise_unknown},
         input.dut_stamps_ns, dut,

@@ -17,6 +17,7 @@
 #include "analysis/sine/sine_fit.hpp"
 #include "analysis/sine/stamp_scatter.hpp"
 #include "analysis/step/signal_integrity.hpp"
+#include "analysis/step/sine_onset.hpp"
 #include "analysis/uncertainty/contribution.hpp"
 
 namespace dyncal::analysis {
@@ -28,6 +29,7 @@ struct ChannelSamples {
   // What its integrity is held against; a resolution that is not stated is found in the values.
   SignalExpectation expected{};
   std::span<const double> mains_hz = usual_mains_hz; // lines that are looked for beside the sine
+  RisingSine rise{}; // of the same channel, before these samples; empty where it is not known
 };
 
 struct ChannelFit { // the sine fitted to one recorded channel

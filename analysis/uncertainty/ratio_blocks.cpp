@@ -23,6 +23,11 @@ constexpr double min_explained = 0.4;
 constexpr double longest_delay_s = 0.05;
 constexpr int delays = 8;
 constexpr double likely = 0.01; // of the largest weight
+// Offsets that are tried about one that was seen, in its u.
+constexpr double seen_reach = 2.5;
+constexpr double seen_step = 0.5;
+// Seen worse than this part of what the search leaves open, it tells nothing.
+constexpr double well_seen = 0.25;
 
 // d_k for one offset.
 struct Difference {
@@ -62,6 +67,35 @@ public:
 
   // All offsets that may be, with their weights; the largest weight of all is 1.
   [[nodiscard]] std::vector<Difference> candidates(const BlockAlignment& alignment) const {
+    std::vector<Difference> all =
+        tells_offset(alignment) ? about_seen(*alignment.seen) : within_reach(alignment);
+    const double margin_s = 0.5 * spacing_s(denominator_);
+    weigh(all, denominator_.time_s.front() - margin_s + alignment.reach_s,
+          denominator_.time_s.back() + margin_s - alignment.reach_s);
+    return all;
+  }
+
+  // Not where it lies beyond what the search leaves open: something else was seen.
+  [[nodiscard]] static bool tells_offset(const BlockAlignment& alignment) {
+    const auto& seen = alignment.seen;
+    const double within_s = alignment.reach_s + (seen ? 3.0 * seen->u_s : 0.0);
+    return seen && seen->u_s < well_seen * alignment.reach_s && seen->offset_s < within_s &&
+           seen->offset_s > -within_s - longest_delay_s;
+  }
+
+  [[nodiscard]] std::vector<Difference> about_seen(const SeenOffset& seen) const {
+    std::vector<Difference> all;
+    for (double z = -seen_reach; z <= seen_reach; z += seen_step) {
+      Difference difference = at(seen.offset_s + z * seen.u_s);
+      if (difference.values.size() >= min_blocks) {
+        difference.weight = std::exp(-0.5 * z * z);
+        all.push_back(std::move(difference));
+      }
+    }
+    return all;
+  }
+
+  [[nodiscard]] std::vector<Difference> within_reach(const BlockAlignment& alignment) const {
     std::vector<Difference> all;
     const double lowest = std::ceil((-alignment.reach_s - alignment.offset_s) / alignment.period_s);
     const double highest =
@@ -77,9 +111,6 @@ public:
         }
       }
     }
-    const double margin_s = 0.5 * spacing_s(denominator_);
-    weigh(all, denominator_.time_s.front() - margin_s + alignment.reach_s,
-          denominator_.time_s.back() + margin_s - alignment.reach_s);
     return all;
   }
 

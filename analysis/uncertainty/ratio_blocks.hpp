@@ -7,6 +7,7 @@
 //    and to `reach_s` from where the records begin (a triangle). Each candidate has the weight of
 //    that triangle and of the likelihood of its d_k, constant but for noise. The sensor's group
 //    delay, up to 50 ms or a period, shifts what both share as well: eight parts of it are tried.
+//    Where both records show how their signals began, this tells offset and delay together.
 // 2. Where either signal varies more than white noise does (once in 10^5), the ratio of the whole
 //    records is not the best estimate: blocks of different phase add to a shorter phasor, and the
 //    records do not cover the same part of what both share. `correction` is the weighted mean of
@@ -26,10 +27,18 @@
 
 namespace dyncal::analysis {
 
+struct SeenOffset {
+  double offset_s = 0.0; // added to the numerator's times
+  double u_s = 0.0;
+};
+
 struct BlockAlignment {
   double offset_s = 0.0; // added to the numerator's times
   double period_s = 0.0; // the offset is known modulo this ...
   double reach_s = 0.0;  // ... and below this; 0: it is known
+  // By how the two signals began (sine_onset.hpp): the numerator's onset before its first stamp,
+  // less the denominator's. The delay of one behind the other is in it.
+  std::optional<SeenOffset> seen{};
 };
 
 struct RatioChange { // after less before

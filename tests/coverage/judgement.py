@@ -25,6 +25,8 @@ WIDEST = 12.0
 WIDEST_BOUND = 3.0
 # As many as such a U holds.
 PROBABILITY_OF_BOUND = 0.9973
+# U against 2 rms of the errors, where nothing is wrong that U must hold.
+NARROWEST_CLEAN, WIDEST_CLEAN = 0.9, 1.5
 # By how much U of a mean may exceed what Student's factor alone, as stated, makes of the errors.
 BEYOND_STUDENT = 1.2
 # Sync is always connected here.
@@ -34,6 +36,7 @@ LOSSES = ("lost", "not_trusted", "not_measured", "out_of_order")
 
 # What is wanted of the claims of a class.
 COVERED_NO_FLAG = "covered, no flag"  # nothing is wrong, and no person is bothered
+COVERED_AND_NARROW = "covered, 0.9 to 1.5"  # the same, however few: U against 2 rms of the errors
 COVERED_WITH_BOUND = "covered, with a bound"  # nor is here, but u may be larger than errors say
 COVERED = "covered"  # flags are free
 COVERED_NO_MORE = "covered, no more"  # by as many as stated; for the scatter of repetitions
@@ -196,6 +199,12 @@ def widest_of(usual, n, chance=CHANCE):
     return usual / least if least > 0.0 else math.inf
 
 
+def most_rms(n, chance=CHANCE):
+    """What it exceeds by this chance."""
+    deviate = statistics.NormalDist().inv_cdf(1.0 - chance)
+    return (1.0 - 2.0 / (9.0 * n) + deviate * math.sqrt(2.0 / (9.0 * n))) ** 1.5
+
+
 @dataclasses.dataclass
 class Tally:
     """Claims of one quantity over all draws of a class. `few_repeats`: their intervals come from
@@ -242,6 +251,8 @@ class Tally:
             return finding or self._too_wide(self._widest_at_all(chance))
         if wanted == COVERED_AS_STUDENT:
             return self._too_wide(self.widest_mean(chance))
+        if wanted == COVERED_AND_NARROW:
+            return self._flagged_clean(n, chance) or self._not_as_wide_as_errors(n, chance)
         most = PROBABILITY_OF_BOUND if wanted == COVERED_WITH_BOUND else PROBABILITY
         if too_many(self.covered, n, most, chance):
             return f"{self.covered} of {n} are covered: u is too large"
@@ -259,6 +270,11 @@ class Tally:
 
     def _widest_at_all(self, chance):
         return max(WIDEST, widest_of(2.0, len(self.numbers), chance)) if self.numbers else WIDEST
+
+    def _not_as_wide_as_errors(self, n, chance):
+        least, most = 2.0 * NARROWEST_CLEAN / most_rms(n, chance), 2.0 * WIDEST_CLEAN
+        narrow = self.width < least
+        return f"U is {self.width:.1f} times the rms" if narrow else self._too_wide(most)
 
     def widest_mean(self, chance=CHANCE):
         """U against the rms of the errors, by the usual factor of those that the results state.

@@ -17,6 +17,7 @@ import fault_classes
 from expected_row import PHASE, Row
 from judgement import (
     COVERED,
+    COVERED_AND_NARROW,
     COVERED_AS_STUDENT,
     COVERED_NO_FLAG,
     COVERED_NO_MORE,
@@ -33,6 +34,7 @@ from judgement import (
 
 WANTED = (
     COVERED_NO_FLAG,
+    COVERED_AND_NARROW,
     COVERED_WITH_BOUND,
     COVERED,
     COVERED_NO_MORE,
@@ -110,6 +112,17 @@ class TallyOfClaims(unittest.TestCase):
         self.assertTrue(row.judges(Claim(frequency="20")))
         self.assertFalse(row.judges(Claim(frequency="210")))
         self.assertTrue(row.judges(Claim(refused=True)))
+
+    def test_clean_intervals_are_as_wide_as_errors_from_a_tenth_less_to_a_half_more(self):
+        for width in (1.0, 1.3):
+            self.assertEqual(Tally(normal_claims(360, 1 / width)).finding(COVERED_AND_NARROW), "")
+        for n in (72, 360):
+            self.assertIn(
+                "times the rms", Tally(normal_claims(n, 1 / 1.7)).finding(COVERED_AND_NARROW)
+            )
+        self.assertNotEqual(Tally(normal_claims(720, 1 / 0.8)).finding(COVERED_AND_NARROW), "")
+        claims = normal_claims(69) + normal_claims(3, flagged=True)
+        self.assertIn("carry a flag", Tally(claims).finding(COVERED_AND_NARROW))
 
     def test_an_interval_that_holds_everything_is_found_everywhere(self):
         for wanted in (COVERED_NO_FLAG, COVERED, COVERED_NO_MORE, COVERED_OR_FLAGGED):

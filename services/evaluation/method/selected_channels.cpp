@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -18,11 +19,37 @@ SelectedChannels::SelectedChannels(SourceInterval source, std::vector<ChannelNam
     columns_.push_back(*record().channel(name.channel));
   }
   samples_ = select_samples(record(), interval(), columns_);
+  rise_ = select_rise();
 }
 
 void SelectedChannels::narrow(const TimeInterval& interval) {
   source_.interval = interval;
   samples_ = select_samples(record(), interval, columns_);
+  rise_ = select_rise();
+}
+
+// What an interval was narrowed by belongs to it.
+StepSamples SelectedChannels::select_rise() const {
+  if (!source_.rise_record) {
+    return {};
+  }
+  StepSamples rise = select_samples(*source_.rise_record, source_.rise, columns_);
+  if (interval().begin_ns <= source_.rise.end_ns + 1) {
+    return rise;
+  }
+  const StepSamples more =
+      select_samples(record(), {source_.rise.end_ns + 1, interval().begin_ns - 1}, columns_);
+  const auto copies = std::make_shared<StepSamples::Copies>();
+  copies->columns.resize(columns_.size());
+  for (const StepSamples* part : {&std::as_const(rise), &more}) {
+    copies->stamps_ns.insert(copies->stamps_ns.end(), part->stamps_ns.begin(),
+                             part->stamps_ns.end());
+    for (std::size_t k = 0; k < part->columns.size(); ++k) {
+      copies->columns[k].insert(copies->columns[k].end(), part->columns[k].begin(),
+                                part->columns[k].end());
+    }
+  }
+  return {copies->stamps_ns, {copies->columns.begin(), copies->columns.end()}, 0, 0, copies};
 }
 
 void SelectedChannels::leave_out(const TimeInterval& interval) {
@@ -49,8 +76,13 @@ bool SelectedChannels::has(const std::string& channel) const {
 }
 
 analysis::ChannelSamples SelectedChannels::channel(std::size_t i) const {
-  return {names_[i].text(), samples_.columns[i], description(i).resolution,
-          expectation_of(description(i)), mains_hz_};
+  return {names_[i].text(),
+          samples_.columns[i],
+          description(i).resolution,
+          expectation_of(description(i)),
+          mains_hz_,
+          rise_.columns.empty() ? analysis::RisingSine{}
+                                : analysis::RisingSine{rise_.stamps_ns, rise_.columns[i]}};
 }
 
 std::vector<analysis::ChannelSamples> SelectedChannels::channels_from(std::size_t first) const {

@@ -53,10 +53,13 @@ public:
   [[nodiscard]] SourceSamples summary() const;
 
 private:
+  [[nodiscard]] StepSamples select_rise() const;
+
   SourceInterval source_;
   std::vector<ChannelName> names_;
   std::vector<std::size_t> columns_;
   StepSamples samples_;
+  StepSamples rise_; // before them, from before the excitation began
   std::span<const double> mains_hz_;
 };
 

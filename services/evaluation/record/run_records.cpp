@@ -351,6 +351,10 @@ SourceInterval RunRecords::samples(const std::string& source, const TimeInterval
       samples.quiet = *quiet;
       samples.quiet_record = part_of(whole, *quiet);
     }
+    if (const auto rise = search.steps.rise_before(interval)) {
+      samples.rise = *rise;
+      samples.rise_record = part_of(whole, *rise);
+    }
   }
   return samples;
 }

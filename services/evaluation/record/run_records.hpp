@@ -33,13 +33,16 @@ struct SearchedChannel {
   std::vector<std::string> sources;
 };
 
-// The samples of one source in one step, and those from before it, where nothing was excited: empty
-// where none are known. Passes into another thread when it holds copies.
+// The samples of one source in one step, those from before it, where nothing was excited, and those
+// of how its excitation began: empty where none are known. Passes into another thread when it holds
+// copies.
 struct SourceInterval {
   std::shared_ptr<const SourceRecord> record;
   TimeInterval interval;
   std::shared_ptr<const SourceRecord> quiet_record{};
   TimeInterval quiet{};
+  std::shared_ptr<const SourceRecord> rise_record{};
+  TimeInterval rise{};
 };
 
 class RunRecords {

@@ -147,11 +147,7 @@ void StepSearch::expect() {
   const RecipeStep& step = order_.step(step_);
   const auto window = finder_->window();
   if (window && window->end_ns >= window->begin_ns + to_ns(step.settling_s + step.duration_s)) {
-    expected_ = {evaluated_part(*window),
-                 quiet_time(*window),
-                 {*window, finder_->frame_ns()},
-                 search_from_ns_,
-                 restarts_};
+    expected_ = found(*window);
   }
 }
 
@@ -162,10 +158,8 @@ void StepSearch::accept(const analysis::ExcitationWindow& window) {
     search_step(step_ + 1);
     return;
   }
-  const TimeInterval part = evaluated_part(window);
-  if (part.end_ns > part.begin_ns) {
-    found_[step_] = {
-        part, quiet_time(window), {window, finder_->frame_ns()}, search_from_ns_, restarts_};
+  if (Found one = found(window); one.interval.end_ns > one.interval.begin_ns) {
+    found_[step_] = std::move(one);
   }
   search_from_ns_ = window.off_ns;
   search_step(step_ + 1);
@@ -198,6 +192,24 @@ std::optional<TimeInterval> StepSearch::quiet_time(const analysis::ExcitationWin
     quiet.begin_ns = search_from_ns_ + frame_ns;
   }
   return quiet.end_ns > quiet.begin_ns ? std::optional(quiet) : std::nullopt;
+}
+
+std::optional<TimeInterval> StepSearch::rise(const analysis::ExcitationWindow& window,
+                                             const TimeInterval& evaluated) const {
+  const std::int64_t begin_ns = window.excited_begin_ns - finder_->frame_ns();
+  const bool shown =
+      begin_ns >= search_from_ns_ && record_begin_ns_ && begin_ns > *record_begin_ns_;
+  return shown ? std::optional(TimeInterval{begin_ns, evaluated.begin_ns - 1}) : std::nullopt;
+}
+
+StepSearch::Found StepSearch::found(const analysis::ExcitationWindow& window) const {
+  const TimeInterval part = evaluated_part(window);
+  return {part,
+          quiet_time(window),
+          rise(window, part),
+          {window, finder_->frame_ns()},
+          search_from_ns_,
+          restarts_};
 }
 
 void StepSearch::end_session() {
@@ -251,14 +263,24 @@ void StepSearch::pass_over(std::size_t step) {
   search_step(step + 1);
 }
 
-std::optional<TimeInterval> StepSearch::quiet_before(const TimeInterval& interval) const {
+const StepSearch::Found* StepSearch::with_interval(const TimeInterval& interval) const {
   const auto found = std::find_if(found_.begin(), found_.end(), [&](const auto& one) {
     return one.second.interval.begin_ns == interval.begin_ns;
   });
   if (found != found_.end()) {
-    return found->second.quiet;
+    return &found->second;
   }
-  return expected_ && expected_->interval == interval ? expected_->quiet : std::nullopt;
+  return expected_ && expected_->interval == interval ? &*expected_ : nullptr;
+}
+
+std::optional<TimeInterval> StepSearch::quiet_before(const TimeInterval& interval) const {
+  const Found* found = with_interval(interval);
+  return found == nullptr ? std::nullopt : found->quiet;
+}
+
+std::optional<TimeInterval> StepSearch::rise_before(const TimeInterval& interval) const {
+  const Found* found = with_interval(interval);
+  return found == nullptr ? std::nullopt : found->rise;
 }
 
 std::optional<std::int64_t> StepSearch::needed_for(std::size_t step) const {
@@ -267,7 +289,8 @@ std::optional<std::int64_t> StepSearch::needed_for(std::size_t step) const {
     return std::nullopt;
   }
   const Found& one = found->second;
-  return one.quiet ? one.quiet->begin_ns : one.interval.begin_ns;
+  const TimeInterval& first = one.quiet ? *one.quiet : one.rise ? *one.rise : one.interval;
+  return first.begin_ns;
 }
 
 } // namespace dyncal::services

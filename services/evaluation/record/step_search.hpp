@@ -50,6 +50,9 @@ public:
   // Of the step that has this interval: up to two seconds before its excitation began, a frame of
   // the search away from it and from the excitation before. Empty where there is no such time.
   [[nodiscard]] std::optional<TimeInterval> quiet_before(const TimeInterval& interval) const;
+  // Of the same step: from a frame before its excitation began to its interval. Empty where the
+  // record does not show how it began.
+  [[nodiscard]] std::optional<TimeInterval> rise_before(const TimeInterval& interval) const;
   // The first instant of interest for this step, quiet time before it included.
   [[nodiscard]] std::optional<std::int64_t> needed_for(std::size_t step) const;
   // Where the step was found; nothing for one that was not.
@@ -75,6 +78,7 @@ private:
   struct Found {
     TimeInterval interval;
     std::optional<TimeInterval> quiet{};
+    std::optional<TimeInterval> rise{};
     FoundExcitation excitation{};
     std::int64_t searched_from_ns = 0;
     std::uint32_t session = 0;
@@ -92,6 +96,10 @@ private:
   [[nodiscard]] TimeInterval evaluated_part(const analysis::ExcitationWindow& window) const;
   [[nodiscard]] std::optional<TimeInterval>
   quiet_time(const analysis::ExcitationWindow& window) const;
+  [[nodiscard]] std::optional<TimeInterval> rise(const analysis::ExcitationWindow& window,
+                                                 const TimeInterval& evaluated) const;
+  [[nodiscard]] Found found(const analysis::ExcitationWindow& window) const;
+  [[nodiscard]] const Found* with_interval(const TimeInterval& interval) const;
 
   const Recipe& recipe_;
   const StepOrder& order_;

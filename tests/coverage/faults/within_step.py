@@ -12,7 +12,7 @@ import numpy as np
 from class_presets import LITTLE_NOISE, LOW_FREQUENCIES, bench
 from expected_row import VALUE, Row
 from faults.fault import Fault
-from judgement import COVERED, COVERED_NO_FLAG, COVERED_OR_FLAGGED, FLAGGED
+from judgement import COVERED, COVERED_AND_NARROW, COVERED_NO_FLAG, COVERED_OR_FLAGGED, FLAGGED
 
 KNOCK_S = 0.01
 SLEW_S = 0.5
@@ -38,6 +38,18 @@ class Wandering(Fault):
         level = 1.0 + self.ramp_rel * place + self.step_rel * (place > self.steps_at)
         angle = 2.0 * np.pi * self.by_hz * (times_s - step.begin_s) + self.turned_rad
         return signal * (level + self.modulated_rel * np.sin(angle))
+
+
+class Settling(Fault):
+    """The exciter's level, still a part above its end where the step is evaluated from."""
+
+    def __init__(self, calibration, rng, part, time_s):
+        super().__init__(calibration, rng)
+        self.part, self.time_s = part, time_s
+
+    def exciter(self, step, times_s, signal):
+        since_s = times_s - step.evaluated_s(self.settings)[0]
+        return signal * (1.0 + self.part * np.exp(-since_s / self.time_s))
 
 
 class Changing(Fault):
@@ -179,8 +191,12 @@ WANDERING = {
     "exciter modulated by 1 % at 0.4 Hz": {"modulated_rel": 0.01, "by_hz": 0.4},
     "exciter modulated by 2 % at 3.3 Hz": {"modulated_rel": 0.02, "by_hz": 3.3},
     "exciter steps by 1 %": {"step_rel": 0.01},
-    "amplifier steps by 20 %": {"step_rel": 0.2},
 }
+SETTLING = {
+    f"exciter settles by 0.3 % in {time_s:g} s": {"part": 0.003, "time_s": time_s}
+    for time_s in (0.3, 1.0, 3.0)
+}
+STEPPING = {"amplifier steps by 20 %": {"step_rel": 0.2}}
 CHANGING = {
     "sensor 0.2 us later within the step": ({"late_s": 2e-7}, COVERED_OR_FLAGGED),
     "sensor 0.1 ms later within the step": ({"late_s": 1e-4}, FLAGGED),
@@ -236,7 +252,11 @@ NOISES = {
 }
 
 CLASSES = {
-    **{name: with_fault(Wandering, QUIET, **options) for name, options in WANDERING.items()},
+    **{
+        name: with_fault(Wandering, QUIET, **options)
+        for name, options in (WANDERING | STEPPING).items()
+    },
+    **{name: with_fault(Settling, QUIET, **options) for name, options in SETTLING.items()},
     **{name: with_fault(Changing, QUIET, **options) for name, (options, _) in CHANGING.items()},
     **{name: with_fault(SlewingClock, QUIET, **options) for name, options in SLEWS.items()},
     **{name: with_fault(Knock, QUIET, **options) for name, options in KNOCKS.items()},
@@ -250,8 +270,11 @@ CLASSES = {
         for name, (preset, options) in NOISES.items()
     },
 }
+# Enough of them that the rms of the errors is known to a tenth.
+MORE_DRAWS = {name: 5 for name in (*WANDERING, *SETTLING)}
 EXPECTED = [
-    *(Row(name, VALUE, COVERED) for name in WANDERING),
+    *(Row(name, VALUE, COVERED_AND_NARROW) for name in (*WANDERING, *SETTLING)),
+    *(Row(name, VALUE, COVERED) for name in STEPPING),
     *(Row(name, VALUE, wanted) for name, (_, wanted) in CHANGING.items()),
     *(
         Row(name, VALUE, COVERED_OR_FLAGGED)

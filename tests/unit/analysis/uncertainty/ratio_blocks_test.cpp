@@ -101,6 +101,27 @@ TEST(RatioBlocks, ARampLeavesTheOffsetInTheUncertainty) {
   EXPECT_FALSE(ratio->change.has_value());
 }
 
+// How both began tells it, to what it is known; but not what lies where no record can begin, nor
+// what is hardly known.
+TEST(RatioBlocks, OnsetsTellTheOffsetOfARamp) {
+  const Envelope ramp = [](double t) { return 1.0 + 0.05 * t / 3.0; };
+  const Record late = record_of(0.05, 1e-4, 1, ramp), early = record_of(0.0, 1e-4, 2, ramp);
+  const double of_records = std::log(late.fit.amplitude() / early.fit.amplitude());
+  const auto with = [&](const SeenOffset& seen) {
+    return *compare_in_blocks(series_of(late), series_of(early),
+                              {.offset_s = 0.0, .period_s = 0.0125, .reach_s = 0.1, .seen = seen});
+  };
+  for (const double error_s : {-2e-3, 0.0, 2e-3}) {
+    const auto ratio = with({0.05 + error_s, 2e-3});
+    EXPECT_NEAR(of_records + ratio.correction.real(), 0.0,
+                2.0 * ratio.u_correction_magnitude_rel + 1e-5);
+    EXPECT_NEAR(ratio.u_correction_magnitude_rel, 0.05 / 3.0 * 2e-3, 0.05 / 3.0 * 5e-4);
+  }
+  for (const SeenOffset& seen : {SeenOffset{0.5, 2e-3}, {-0.5, 2e-3}, {0.05, 0.05}}) {
+    EXPECT_GT(with(seen).u_correction_magnitude_rel, 0.05 / 3.0 * 0.03);
+  }
+}
+
 struct Change {
   double gain_rel;
   double lag_rad;
