@@ -197,8 +197,9 @@ std::optional<TimeInterval> StepSearch::quiet_time(const analysis::ExcitationWin
 std::optional<TimeInterval> StepSearch::rise(const analysis::ExcitationWindow& window,
                                              const TimeInterval& evaluated) const {
   const std::int64_t begin_ns = window.excited_begin_ns - finder_->frame_ns();
-  const bool shown =
-      begin_ns >= search_from_ns_ && record_begin_ns_ && begin_ns > *record_begin_ns_;
+  // A record that begins later, or anew, has only some of it.
+  const auto held = record_.stamps_ns();
+  const bool shown = begin_ns >= search_from_ns_ && !held.empty() && held.front() <= begin_ns;
   return shown ? std::optional(TimeInterval{begin_ns, evaluated.begin_ns - 1}) : std::nullopt;
 }
 
