@@ -32,6 +32,14 @@ struct KnownSource {
   [[nodiscard]] std::optional<wire::SourceDescription> before() const {
     return earlier.empty() ? std::nullopt : std::optional(earlier.front());
   }
+  [[nodiscard]] bool says_that_it_is_silent() const {
+    return status &&
+           (status->state() == wire::SOURCE_SILENT || status->state() == wire::SOURCE_FAILED);
+  }
+  // ": " and what its status says; empty where that is nothing.
+  [[nodiscard]] std::string reason_given() const {
+    return status && !status->message().empty() ? ": " + status->message() : "";
+  }
   void take(const wire::SourceDescription& described);
   // Returns the description that is left, when one before it is the living session's.
   [[nodiscard]] std::optional<wire::SourceDescription> take(const wire::SourceStatus& reported);

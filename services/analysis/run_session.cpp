@@ -93,6 +93,7 @@ void RunSession::update(const wire::Measurement& measurement) {
     return;
   }
   last_heard_of_run_ = clock_.now();
+  is_resumed_ = is_resumed_ || measurement.conductor() != conductor_;
   conductor_ = measurement.conductor();
   if (measurement.state() == measurement_.state()) {
     return;
@@ -125,6 +126,13 @@ bool RunSession::is_of_this_run(const wire::Measurement& measurement) {
                  "the one of {}: give it another name",
                  bench_, run_, measurement.conductor(), other_recipe ? ", of another recipe" : "",
                  conductor_);
+  }
+  // Unless two have one name, of which one lives.
+  const bool resumes = measurement.state() == wire::MEASUREMENT_RUNNING &&
+                       measurement.conductor() != conductor_ &&
+                       clock_.now() - last_heard_of_run_ > bench_limit;
+  if (resumes && !finished()) {
+    requests_->ask_conductor_to_end(run_);
   }
   return false;
 }
@@ -338,6 +346,7 @@ void RunSession::watch_sources(Instant now) {
       streams_->lost_source(now, std::max(last_progress_, present_since_), silence_limit,
                             excited_by_steps_ && measurement_.state() == wire::MEASUREMENT_RUNNING);
   if (!lost) {
+    is_resumed_ = false;
     if (taking_over_) {
       waiting_since_ = now;
       status_.message = taking_over_sentence();
@@ -347,21 +356,25 @@ void RunSession::watch_sources(Instant now) {
       report(wire::HEALTH_OK, "");
     }
   } else if (lost->may_come_back) {
-    wait_for_source(std::move(lost->message), now);
+    wait_for_source(std::move(*lost), now);
   } else {
     report(wire::HEALTH_FAILED, std::move(lost->message));
   }
 }
 
-void RunSession::wait_for_source(std::string message, Instant now) {
+void RunSession::wait_for_source(LostSource lost, Instant now) {
   if (status_.health == wire::HEALTH_OK) {
     waiting_since_ = now;
   }
+  if (is_resumed_ && lost.is_other_device && now >= next_command_) {
+    next_command_ = now + command_interval;
+    requests_->ask_conductor_to_end(run_);
+  }
   if (now - std::max(waiting_since_, present_since_) > patience) {
     report(wire::HEALTH_FAILED,
-           fmt::format("{}, and nothing more for {} s", message, patience.count()));
-  } else if (status_.message != message) {
-    report(wire::HEALTH_WAITING, std::move(message));
+           fmt::format("{}, and nothing more for {} s", lost.message, patience.count()));
+  } else if (status_.message != lost.message) {
+    report(wire::HEALTH_WAITING, std::move(lost.message));
   }
 }
 

@@ -23,6 +23,9 @@
 // all that was planned, it waits for `announcement_limit` for who excites them, and may excite some
 // again.
 //
+// Who resumes it with another recipe, or while a source is another instrument than the run began
+// with, is asked to end (Command ABORT), and the run is left as it is.
+//
 // One bench, one run: what one run excites, another would take for its own. A run that finds
 // another of its bench before it waits for the end of that one, and is refused as soon as that one
 // shows that it lives, by its Measurement (every 2 s) or Excitation. A run of which nothing was
@@ -122,7 +125,7 @@ private:
   [[nodiscard]] bool is_played_to_its_end(Instant now) const;
   void report_work(Instant now);
   void report(wire::HealthState health, std::string message);
-  void wait_for_source(std::string message, Instant now);
+  void wait_for_source(LostSource lost, Instant now);
   void refuse(std::string message);
   [[nodiscard]] bool lacks_samples(Instant now) const;
   [[nodiscard]] bool waits_for_source() const {
@@ -150,6 +153,7 @@ private:
   std::deque<StepAnnouncement> announced_;
   std::optional<bool> excitation_ended_; // true: aborted
   bool other_run_said_ = false;
+  bool is_resumed_ = false;  // by another conductor, and its sources were not seen to be the run's
   bool taking_over_ = false; // what was measured before is not evaluated yet
   Instant created_;
   Instant arms_since_; // since when it has the bench to itself

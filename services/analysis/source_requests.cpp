@@ -26,9 +26,18 @@ SourceRequests::open(bus::Participant& participant, std::string bench, std::stri
 }
 
 void SourceRequests::ask_for_answer(const std::string& run, const std::string& source) {
+  command(wire::COMMAND_ARM, run, source);
+}
+
+void SourceRequests::ask_conductor_to_end(const std::string& run) {
+  command(wire::COMMAND_ABORT, run, "conductor");
+}
+
+void SourceRequests::command(wire::CommandKind kind, const std::string& run,
+                             const std::string& target) {
   wire::Command command;
-  command.target(source);
-  command.kind(wire::COMMAND_ARM);
+  command.target(target);
+  command.kind(kind);
   command.bench(bench_);
   command.run(run);
   command.sender(sender_);
@@ -52,8 +61,7 @@ template <class Message>
 void SourceRequests::write(bus::Writer<Message>& writer, const Message& message,
                            const std::string& run) {
   if (writer.write(message, write_limit) != bus::WriteOutcome::written) {
-    spdlog::error("bench {}, run {}: a request to a source could not be written to the network",
-                  bench_, run);
+    spdlog::error("bench {}, run {}: a request could not be written to the network", bench_, run);
   }
 }
 

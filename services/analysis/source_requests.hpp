@@ -1,5 +1,6 @@
 // What the analysis service asks the sources of a bench: to answer in their sample stream, and to
-// send again what somebody has missed (idl/README.md, "The run protocol", "Who was away").
+// send again what somebody has missed (idl/README.md, "The run protocol", "Who was away"). Who
+// resumes a run that cannot go on as it is now is asked to end it.
 //
 // The runs of a bench share one object, and so two writers: one a run would have to be found anew
 // by every source at each beginning, and every new program of the network would be told of those of
@@ -26,12 +27,14 @@ public:
   void ask_for_answer(const std::string& run, const std::string& source);
   void ask_to_catch_up(const std::string& run, const std::string& source, const std::string& asker,
                        const CatchUp& what);
+  void ask_conductor_to_end(const std::string& run);
 
 private:
   SourceRequests(std::string bench, std::string sender, bus::Writer<wire::Command> command,
                  bus::Writer<wire::CatchUpRequest> catch_up)
       : bench_(std::move(bench)), sender_(std::move(sender)), command_(std::move(command)),
         catch_up_(std::move(catch_up)) {}
+  void command(wire::CommandKind kind, const std::string& run, const std::string& target);
   template <class Message>
   void write(bus::Writer<Message>& writer, const Message& message, const std::string& run);
 

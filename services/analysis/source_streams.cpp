@@ -13,20 +13,6 @@
 #include "services/contract/triggered_record.hpp"
 
 namespace dyncal::services {
-namespace {
-
-std::string reason_given_by(const KnownSource& source) {
-  const bool gives_one = source.status && !source.status->message().empty();
-  return gives_one ? ": " + source.status->message() : "";
-}
-
-bool says_that_it_is_silent(const KnownSource& source) {
-  return source.status && (source.status->state() == wire::SOURCE_SILENT ||
-                           source.status->state() == wire::SOURCE_FAILED);
-}
-
-} // namespace
-
 SourceStreams::SourceStreams(bus::Participant& participant, std::shared_ptr<bus::WakeUp> wake_up,
                              std::string bench, std::string run, RunEvaluator& evaluator,
                              Begin begin)
@@ -71,8 +57,7 @@ Expected<void> SourceStreams::describe(const std::string& name, Stream& stream,
                             stream.description->session() == description.session() &&
                             !is_triggered(stream);
   if (same_session) {
-    stream.description = description;
-    replace_unfit(stream);
+    take_description(stream, description);
     return {}; // what its samples mean was known from the beginning
   }
   if (stream.description || begin_ == Begin::behind) {
@@ -83,8 +68,7 @@ Expected<void> SourceStreams::describe(const std::string& name, Stream& stream,
   } else if (auto accepted = evaluator_.describe(name, from_message(description)); !accepted) {
     return accepted;
   }
-  stream.description = description;
-  replace_unfit(stream);
+  take_description(stream, description);
   const bool triggered = services::is_triggered(from_wire(description.kind()));
   if (!stream.follower) {
     stream.follower.emplace(make_follower(name, triggered));
@@ -106,6 +90,12 @@ std::string SourceStreams::why_unfit(const std::string& name,
   return accepted ? "" : accepted.error().message;
 }
 
+void SourceStreams::take_description(Stream& stream, const wire::SourceDescription& description) {
+  stream.description = description;
+  stream.described.add(description.session());
+  replace_unfit(stream);
+}
+
 bool SourceStreams::is_unfit(const Stream& stream, std::uint64_t session) {
   return stream.unfit && stream.unfit->description.session() == session;
 }
@@ -124,7 +114,12 @@ SourceStreams::Follower SourceStreams::make_follower(const std::string& name, bo
   if (triggered) {
     return StreamFollower<wire::TriggeredRecord>(
         run_, asker_, [this, name](const wire::TriggeredRecord& record) {
-          if (record.run() == run_ && !is_unfit(streams_.at(name), record.session())) {
+          Stream& stream = streams_.at(name);
+          if (record.run() != run_ || is_unfit(stream, record.session())) {
+            return;
+          }
+          stream.is_undescribed = !stream.described.contains(record.session());
+          if (!stream.is_undescribed) {
             evaluator_.add(name, from_message(record));
           }
         });
@@ -137,9 +132,11 @@ SourceStreams::Follower SourceStreams::make_follower(const std::string& name, bo
 void SourceStreams::hand_over(const std::string& name, Stream& stream,
                               const wire::SampleBlock& block) {
   if (!stream.waiting.empty() || is_unfit(stream, block.session()) ||
+      !stream.described.contains(block.session()) ||
       !evaluator_.is_ready_for(name, block.session())) {
     stream.waiting.add(block);
   } else {
+    stream.is_undescribed = false;
     evaluator_.add(name, view_block(block));
   }
 }
@@ -152,10 +149,17 @@ void SourceStreams::hand_over_waiting(const std::string& name, Stream& stream, I
   const bool overdue = now - stream.waiting_since > session_limit;
   while (!stream.waiting.empty()) {
     const wire::SampleBlock& block = stream.waiting.oldest();
-    if (is_unfit(stream, block.session()) ||
+    const bool is_undescribed = !stream.described.contains(block.session());
+    if (is_undescribed && overdue && !is_unfit(stream, block.session())) {
+      stream.is_undescribed = true;
+      stream.waiting.leave_out_session(block.session());
+      continue;
+    }
+    if (is_undescribed || is_unfit(stream, block.session()) ||
         (!overdue && !evaluator_.is_ready_for(name, block.session()))) {
       return;
     }
+    stream.is_undescribed = false;
     evaluator_.add(name, view_block(block));
     stream.waiting.take_off_oldest();
   }
@@ -312,9 +316,9 @@ SourceStreams::what_is_missing(const KnownSources& known) const {
                       name, bench_)};
     }
     const KnownSource& source = found->second;
-    if (says_that_it_is_silent(source)) {
+    if (source.says_that_it_is_silent()) {
       return Missing{fmt::format("source '{}' of bench '{}' is silent{}", name, bench_,
-                                 reason_given_by(source))};
+                                 source.reason_given())};
     }
     if (stream.twins.twins() || source.twins.twins()) {
       return Missing{two_send_as(bench_, name, stream.service_before, stream.service)};
@@ -324,7 +328,7 @@ SourceStreams::what_is_missing(const KnownSources& known) const {
     }
     if (!stream.follower) {
       return Missing{fmt::format("source '{}' of bench '{}' has not described its channels yet{}",
-                                 name, bench_, reason_given_by(source)),
+                                 name, bench_, source.reason_given()),
                      true, true};
     }
     if (!has_answered(stream)) {
@@ -360,7 +364,13 @@ std::optional<LostSource> SourceStreams::lost_source(Instant now, Instant watche
       return LostSource{two_send_as(bench_, name, stream.service_before, stream.service), false};
     }
     if (stream.unfit) {
-      return LostSource{stream.unfit->why};
+      return LostSource{stream.unfit->why, true, stream.unfit->is_other_device};
+    }
+    if (stream.is_undescribed) {
+      return LostSource{fmt::format("source '{}' of bench '{}' sends samples of a session that it "
+                                    "has not described; they are left out: start its service "
+                                    "again",
+                                    name, bench_)};
     }
     if (!stream.follower) {
       return LostSource{

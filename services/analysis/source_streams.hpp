@@ -9,10 +9,13 @@
 // for up to `session_limit` where the evaluator still needs what it sent before. One that describes
 // itself in the middle of a run as something the run cannot go by (other channels, another bench
 // file, another instrument) counts as lost until it describes itself otherwise. Samples wait
-// meanwhile (waiting_blocks.hpp). Belongs to the run's one thread.
+// meanwhile (waiting_blocks.hpp). Those of a session that describes itself in no way are left out
+// after `session_limit`, and its source counts as lost: another's description says nothing of them.
+// Belongs to the run's one thread.
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
@@ -20,6 +23,7 @@
 #include <variant>
 #include <vector>
 
+#include "services/analysis/described_sessions.hpp"
 #include "services/analysis/known_sources.hpp"
 #include "services/analysis/stream_follower.hpp"
 #include "services/analysis/twin_watch.hpp"
@@ -34,6 +38,7 @@ namespace dyncal::services {
 struct LostSource {
   std::string message;
   bool may_come_back = true;
+  bool is_other_device = false;
 };
 
 class SourceStreams {
@@ -109,6 +114,8 @@ private:
     std::optional<UnfitDescription> unfit{};            // a newer one
     // Of a session that the evaluator is not ready for, or whose description is unfit.
     WaitingBlocks waiting{};
+    DescribedSessions described{}; // as the evaluator knows it
+    bool is_undescribed = false;   // what came last, and was left out
     Instant waiting_since{};
     std::optional<Follower> follower; // from the first description on
     TwinWatch twins;
@@ -119,6 +126,7 @@ private:
   [[nodiscard]] static bool is_triggered(const Stream& stream);
   [[nodiscard]] static bool has_answered(const Stream& stream);
   [[nodiscard]] static bool is_unfit(const Stream& stream, std::uint64_t session);
+  static void take_description(Stream& stream, const wire::SourceDescription& description);
   static void replace_unfit(Stream& stream);
   [[nodiscard]] Expected<void> describe(const std::string& name, Stream& stream,
                                         const wire::SourceDescription& description, Instant now);

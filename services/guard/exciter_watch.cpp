@@ -164,11 +164,12 @@ void ExciterWatch::answered(const Expected<OutputReading>& answer, Instant now) 
   }
   if (!answer) {
     ++failures_;
+    last_failure_ = answer.error().message;
     answers_in_run_ = answers_in_run_ && state_ != State::driven;
-    const bool may_drive =
-        state_ == State::silent || (state_ == State::begins && run_.is_conducted);
-    if (may_drive && failures_ >= failures_of_silence) {
-      may_be_on_ = answer.error().message;
+    const bool may_have_begun =
+        state_ == State::begins && run_.is_conducted && failures_ >= failures_of_begin;
+    if (state_ == State::silent || may_have_begun) {
+      may_be_on_ = last_failure_;
     }
     return;
   }
@@ -216,7 +217,11 @@ bool ExciterWatch::may_ask(Instant now) const {
 
 ExciterWatch::Action ExciterWatch::due(Instant now) {
   if (state_ == State::driven && now - heard_ > unattended_limit_) {
+    const bool was_asked_in_vain = is_from_record_ && failures_ > 0;
     step_to(State::silent, now);
+    if (was_asked_in_vain) {
+      may_be_on_ = last_failure_;
+    }
   }
   if (must_be_off_) {
     return now >= next_attempt_ ? Action::switch_off : Action::none;

@@ -19,7 +19,8 @@
 // conducted (its Measurement is not over), also what the bench file plans: a conductor that is not
 // heard may drive on, or begin with a path that has just failed. Anything else is a person's: it is
 // said and left. An output that must be off is tried every second until it answers that it is, with
-// no limit; until then it may be on, as where a silent run's generator does not answer.
+// no limit; until then it may be on, as where a silent run's generator does not answer: after one
+// question without an answer, or two in begins, where the first may meet a conductor that connects.
 //
 // A generator that does not answer while it is driven takes one connection, the conductor's: it is
 // asked again when nothing was heard for 2 s. One thread.
@@ -69,7 +70,7 @@ public:
   // A conductor repeats its Measurement every 2 s.
   static constexpr std::chrono::milliseconds word_limit{2500};
   static constexpr std::chrono::seconds watched_after{120}; // a silence or a run
-  static constexpr int failures_of_silence = 2; // unanswered questions: a single one may be lost
+  static constexpr int failures_of_begin = 2;               // unanswered questions, in begins
   static constexpr std::size_t max_settings = 8;
 
   // `planned`: of the bench file.
@@ -112,6 +113,7 @@ private:
   bool has_switched_off_ = false;
   bool answers_in_run_ = true; // the generator, another connection than the conductor's
   int failures_ = 0;           // of questions, one after the other
+  std::string last_failure_;
   std::string may_be_on_;
   std::optional<OutputSettings> left_on_;
   std::optional<Instant> on_since_;  // ended: with the run's settings

@@ -189,6 +189,8 @@ void RecordedRunFeed::describe(const std::string& name, Source& source, std::uin
   }
   const auto of_session = source.recorded.descriptions.find(session);
   if (of_session == source.recorded.descriptions.end() && source.described) {
+    source.described = session;
+    source.is_unfit = true; // another session's description says nothing of its samples
     return;
   }
   const bool is_first = !source.described;

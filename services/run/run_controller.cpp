@@ -23,6 +23,9 @@ using Kind = RunOutlook::Kind;
 
 constexpr auto acknowledgment_limit = 2s;
 constexpr auto description_limit = 3s; // for what sources say of themselves
+// In which the analysis refuses another recipe, where neither folder nor results tell which it is:
+// it hears of this one every 2 s.
+constexpr auto recipe_limit = 2500ms;
 // A rate as it is set and one as a clock makes it are closer together.
 constexpr double rate_tolerance_rel = 0.01;
 
@@ -286,6 +289,7 @@ Expected<void> RunController::check_before_first_step(const std::stop_token& sto
 // Until the analysis attends to the run and all of its results so far have come.
 Expected<void> RunController::wait_until_known(const std::stop_token& stop) {
   Instant attended = clock_.now();
+  const Instant began = attended;
   std::size_t signs_before = watch_->signs_of_work();
   while (!stop.stop_requested()) {
     const auto& analysis = watch_->analysis();
@@ -294,7 +298,9 @@ Expected<void> RunController::wait_until_known(const std::stop_token& stop) {
     if (watch_->signs_of_work() != std::exchange(signs_before, watch_->signs_of_work())) {
       attended = clock_.now();
     }
-    if (const auto answer = answer_about_run(attended)) {
+    const bool may_be_another =
+        !keeping_.begun && outcome_.results.empty() && clock_.now() - began < recipe_limit;
+    if (const auto answer = answer_about_run(attended, may_be_another)) {
       return *answer;
     }
   }
@@ -302,7 +308,8 @@ Expected<void> RunController::wait_until_known(const std::stop_token& stop) {
               "interrupted before the run was resumed; nothing was excited");
 }
 
-std::optional<Expected<void>> RunController::answer_about_run(Instant attended) const {
+std::optional<Expected<void>> RunController::answer_about_run(Instant attended,
+                                                              bool may_be_another) const {
   const auto& analysis = watch_->analysis();
   if (watch_->has_other_recipe()) {
     return fail(other_bench_file(name()));
@@ -323,7 +330,11 @@ std::optional<Expected<void>> RunController::answer_about_run(Instant attended) 
   // when a step is announced.
   const RunOutlook outlook =
       run_outlook(analysis, clock_.now() - watch_->analysis_heard(), watch_->commands());
-  if (analysis && outlook.kind == Kind::well &&
+  if (analysis && outlook.kind == Kind::over && watch_->commands().aborted_by()) {
+    return fail(outlook.reason.code,
+                fmt::format("run '{}' is not resumed: {}", name(), outlook.reason.message));
+  }
+  if (analysis && outlook.kind == Kind::well && !may_be_another &&
       outcome_.results.size() >= analysis->results_published()) {
     watch_->notice(fmt::format("run '{}' is resumed, with {} results so far", name(),
                                outcome_.results.size()));

@@ -85,7 +85,9 @@ private:
   Expected<void> wait_until_known(const std::stop_token& stop);
   [[nodiscard]] Expected<void> check_same_instruments() const;
   // Nothing while the analysis may still tell what it holds of the run.
-  [[nodiscard]] std::optional<Expected<void>> answer_about_run(Instant attended) const;
+  // `may_be_another`: nothing tells yet that the analysis holds it with this recipe.
+  [[nodiscard]] std::optional<Expected<void>> answer_about_run(Instant attended,
+                                                               bool may_be_another) const;
   [[nodiscard]] Error refusal_of_run() const;
   void leave_out_foreign_means();
   // Nothing while the analysis may still answer.

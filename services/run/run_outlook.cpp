@@ -39,11 +39,23 @@ RunOutlook outlook_by(const wire::ServiceStatus& analysis) {
   return {};
 }
 
+// Why the analysis asks the conductor to end: a run that was resumed as it cannot go on.
+Error refusal_of_resumed(const wire::ServiceStatus& analysis) {
+  if (analysis.health() == wire::HEALTH_WAITING) {
+    return {ErrorCode::no_source, message_of(analysis, "waits for a source")};
+  }
+  return {ErrorCode::bad_file, "the analysis evaluates this run by another bench file than it is "
+                               "conducted by; begin a new run"};
+}
+
 } // namespace
 
 RunOutlook run_outlook(const std::optional<wire::ServiceStatus>& analysis,
                        std::chrono::nanoseconds unheard, const RunCommands& commands) {
   if (commands.aborted_by()) {
+    if (analysis && *commands.aborted_by() == analysis->service().to_string()) {
+      return {Kind::over, refusal_of_resumed(*analysis)};
+    }
     return {
         Kind::over,
         {ErrorCode::no_result, fmt::format("ended by a command of '{}'", *commands.aborted_by())}};

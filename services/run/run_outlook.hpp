@@ -4,7 +4,8 @@
 // It waits while the analysis is silent, is still taking the run over or waits itself (a source
 // that is away), and while it is paused by command. It ends when the analysis reports that the run
 // cannot be evaluated (a level far above the plan among others), refuses it, or has ended it, and
-// by command. Plain function; any thread.
+// by command; the analysis itself commands it of a run that was resumed with another bench file or
+// another instrument. Plain function; any thread.
 #pragma once
 
 #include <chrono>

@@ -4,9 +4,6 @@
 #include <array>
 #include <cstdlib>
 #include <cstring>
-#include <map>
-#include <mutex>
-#include <optional>
 
 #include <dds/dds.h>
 #include <dds/ddsi/ddsi_serdata.h>
@@ -15,11 +12,10 @@
 #include <dds/ddsrt/md5.h>
 
 #include "services/bus/cdr_key.hpp"
+#include "services/bus/cyclonedds/known_keys.hpp"
 
 namespace dyncal::bus {
 namespace {
-
-constexpr std::size_t max_known_keys = 100'000;
 
 KeyHash md5_of(const std::string& canonical) {
   KeyHash hash;
@@ -37,24 +33,7 @@ struct SerType : ddsi_sertype {
 
   const TypeSupport* type;
   const std::shared_ptr<MalformedMessages> malformed; // of the participant
-
-  // Keys seen so far, to tell from an MD5 whose instance has ended.
-  void remember(const KeyHash& hash, const Key& key) {
-    const std::lock_guard lock(mutex_);
-    if (known_keys_.size() >= max_known_keys) {
-      known_keys_.clear();
-    }
-    known_keys_.try_emplace(hash, key);
-  }
-  std::optional<Key> recall(const KeyHash& hash) {
-    const std::lock_guard lock(mutex_);
-    const auto known = known_keys_.find(hash);
-    return known == known_keys_.end() ? std::nullopt : std::optional(known->second);
-  }
-
-private:
-  std::mutex mutex_;
-  std::map<KeyHash, Key> known_keys_;
+  KnownKeys keys;
 };
 
 struct SerData : ddsi_serdata {
@@ -101,7 +80,7 @@ ddsi_serdata* from_payload(const ddsi_sertype* sertype, ddsi_serdata_kind kind,
   auto* serdata = new SerData(sertype, kind);
   serdata->set_payload(std::move(payload));
   serdata->set_key(type, std::move(*key));
-  type.remember(serdata->key_hash, serdata->key);
+  type.keys.remember(serdata->key_hash, serdata->key);
   return serdata;
 }
 
@@ -142,7 +121,7 @@ ddsi_serdata* from_ser_iov(const ddsi_sertype* sertype, ddsi_serdata_kind kind,
 ddsi_serdata* from_keyhash(const ddsi_sertype* sertype, const ddsi_keyhash* keyhash) {
   KeyHash hash;
   std::memcpy(hash.data(), keyhash->value, hash.size());
-  auto key = own(sertype).recall(hash);
+  auto key = own(sertype).keys.recall(hash);
   if (!key) {
     return nullptr;
   }

@@ -146,6 +146,7 @@ TEST_F(RunSessionCatchUp, TakesNoStepForOverInASourceThatIsSilent) {
   dau_.send({early});
   run_for(2500ms, {});
   dau_.restart();
+  describe(dau_);
   EXPECT_EQ(dau_.answer_requests().size(), 1U); // with nothing
   run_for(100ms, {});
   excite(wire::EXCITATION_DONE);
@@ -246,6 +247,124 @@ TEST_F(RunSessionCatchUp, TakesNothingOfAnotherInstrument) {
     EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_OK);
   }
   expect_the_step_without_value(); // its samples were those of another sensor
+}
+
+// A program that sends and never says what.
+TEST_F(RunSessionCatchUp, LeavesOutASessionThatIsNotDescribedAndNamesIt) {
+  const wire::SourceDescription before = dau_.description();
+  arm_and_run();
+  excite(wire::EXCITATION_SETTLING);
+  acs_.send(endless(synthetic_.acs_blocks()));
+  dau_.restart(before);
+  dau_.send(endless(synthetic_.dau_blocks()));
+  run_for(SourceStreams::session_limit - 1s, {&acs_, &dau_});
+  EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_OK);
+  run_for(2s, {&acs_, &dau_});
+  EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_WAITING);
+  EXPECT_THAT(published_.newest_status().message(),
+              testing::StartsWith("source 'dau' of bench 'synthetic' sends samples of a session "
+                                  "that it has not described"));
+  dau_.restart(before); // and now it does
+  describe(dau_);
+  run_for(1s, {&acs_, &dau_});
+  EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_OK);
+  expect_the_step_without_value();
+}
+
+TEST_F(RunSessionCatchUp, WaitsForADescriptionThatComesLate) {
+  const auto expected = UndisturbedRun().results();
+  const wire::SourceDescription before = dau_.description();
+  arm_and_run();
+  excite(wire::EXCITATION_SETTLING);
+  acs_.send(endless(synthetic_.acs_blocks()));
+  dau_.restart(before);
+  dau_.send(endless(synthetic_.dau_blocks()));
+  run_for(3s, {&acs_, &dau_});
+  describe(dau_);
+  run_for(1s, {&acs_, &dau_});
+  EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_OK);
+  excite(wire::EXCITATION_DONE);
+  run_for(1s, {&acs_, &dau_});
+  finish();
+  EXPECT_EQ(bits_of(published_.results()), expected);
+}
+
+// ---- resumed by who does not have the run's bench
+
+class ResumedSession : public RunSessionCatchUp {
+protected:
+  bus::Reader<wire::Command> commands_ =
+      participant_.reader(bus::topics::command, tests::played_bench, nullptr).value();
+
+  void hear_from(const std::string& conductor, const std::string& recipe = "") {
+    wire::Measurement measurement = synthetic_.measurement();
+    measurement.state(wire::MEASUREMENT_RUNNING);
+    measurement.conductor(conductor);
+    if (!recipe.empty()) {
+      measurement.recipe_sha256(recipe);
+    }
+    session_->update(measurement);
+    work();
+  }
+  std::size_t asked_to_end() {
+    std::size_t times = 0;
+    commands_.take([&](const wire::Command& command) {
+      if (command.target().to_string() == "conductor") {
+        ++times;
+        EXPECT_EQ(command.kind(), wire::COMMAND_ABORT);
+        EXPECT_EQ(command.run(), tests::played_run);
+        EXPECT_EQ(command.sender(), "analysis@test:1");
+      }
+    });
+    return times;
+  }
+  void run_as(const std::string& conductor, std::chrono::milliseconds time) {
+    for (; time > 0ms; time -= 100ms) {
+      clock_.advance(100ms);
+      hear_from(conductor);
+      acs_.send_nothing();
+      dau_.send_nothing();
+      work();
+    }
+  }
+};
+
+TEST_F(ResumedSession, AsksItsConductorToEndWhereTheInstrumentIsAnother) {
+  wire::SourceDescription before = dau_.description();
+  before.serial("1");
+  dau_.restart(before);
+  arm();
+  run_as("lab-1:7", 1s);
+  wire::SourceDescription other = before;
+  other.serial("2");
+  dau_.restart(other);
+  describe(dau_);
+  run_as("lab-1:7", 2s);
+  EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_WAITING);
+  EXPECT_EQ(asked_to_end(), 0U) << "who conducts it may put the other one back";
+  run_as("lab-2:9", 3s);
+  EXPECT_GE(asked_to_end(), 2U) << "one may be lost";
+  dau_.restart(before);
+  describe(dau_);
+  run_as("lab-3:9", 3s);
+  EXPECT_EQ(asked_to_end(), 0U) << "an honest resume";
+  EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_OK);
+  dau_.restart(other);
+  describe(dau_);
+  run_as("lab-3:9", 3s);
+  EXPECT_EQ(asked_to_end(), 0U) << "it is waited for";
+}
+
+TEST_F(ResumedSession, AsksWhoHasAnotherRecipeToEndUnlessItsConductorLives) {
+  arm();
+  run_as("lab-1:7", 1s);
+  hear_from("lab-2:9", "other");
+  EXPECT_EQ(asked_to_end(), 0U) << "two of one name";
+  clock_.advance(RunSession::bench_limit + 1ms);
+  hear_from("lab-2:9", "other");
+  EXPECT_EQ(asked_to_end(), 1U);
+  hear_from("lab-2:9");
+  EXPECT_EQ(asked_to_end(), 0U) << "now it has that of the run";
 }
 
 // A description that is completed, or comes again from a service that was restarted, is no other.

@@ -258,13 +258,32 @@ TEST_F(ExciterWatchTest, GoesOnUntilTheOutputAnswersThatItIsOff) {
 TEST_F(ExciterWatchTest, SaysThatItMayBeOnWhereASilentRunsGeneratorDoesNotAnswer) {
   restart({"r1", false, {of_step}});
   answers_ = false;
-  pass(5s);
+  pass(2s);
+  EXPECT_EQ(watch_.may_be_on(), "");
+  pass(100ms); // it was asked before
   EXPECT_EQ(watch_.may_be_on(), "no answer");
   pass(10min);
   EXPECT_EQ(watch_.may_be_on(), "no answer");
   answers_ = true;
   pass(1100ms);
   EXPECT_EQ(watch_.may_be_on(), "");
+}
+
+// It answered until the run fell silent.
+TEST_F(ExciterWatchTest, SaysSoAfterTheFirstQuestionOfASilenceWithoutAnAnswer) {
+  restart({"r1", false, {of_step}});
+  settings_ = of_person;
+  is_on_ = true;
+  pass(2100ms);
+  EXPECT_EQ(watch_.state(), State::silent);
+  EXPECT_EQ(watch_.may_be_on(), "");
+  answers_ = false;
+  pass(1100ms);
+  EXPECT_EQ(watch_.may_be_on(), "no answer");
+  answers_ = true;
+  pass(1100ms);
+  EXPECT_EQ(watch_.may_be_on(), "");
+  EXPECT_TRUE(is_on_) << "a person's";
 }
 
 TEST_F(ExciterWatchTest, AsksAGeneratorOfOneConnectionOnceTheConductorIsSilent) {

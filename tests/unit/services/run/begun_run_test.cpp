@@ -75,7 +75,8 @@ protected:
     clock_.every(500ms, [this, arm] {
       for (const wire::Measurement& measurement : analysis_.measurements()) {
         was_announced_ = true;
-        finished_ = finished_ || measurement.state() == wire::MEASUREMENT_DONE;
+        finished_ = finished_ || measurement.state() == wire::MEASUREMENT_DONE ||
+                    measurement.state() == wire::MEASUREMENT_ABORTED;
       }
       analysis_.report(finished_ ? wire::ARM_FINISHED : arm, failure_);
     });
@@ -149,6 +150,129 @@ TEST_F(BegunRunTest, IsNotResumedWithAnotherRecipe) {
   EXPECT_EQ(outcome.error().code, ErrorCode::bad_file);
   EXPECT_THAT(outcome.error().message, HasSubstr("(SHA-256 of its recipe other, of this one sha)"));
   EXPECT_FALSE(was_announced_); // nobody is told of it
+}
+
+// From another folder: what the run began with, only the analysis knows.
+class ElsewhereBegunRun : public BegunRunTest {
+protected:
+  bus::Participant analysis_host_ = network_.join("analysis host");
+  bus::Writer<wire::Command> commands_ = analysis_host_.writer(bus::topics::command, "b").value();
+
+  void ask_to_end(const std::string& sender = "analysis@test:1") {
+    wire::Command command;
+    command.bench("b");
+    command.target("conductor");
+    command.kind(wire::COMMAND_ABORT);
+    command.run("r1");
+    command.sender(sender);
+    commands_.write(command);
+  }
+};
+
+TEST_F(ElsewhereBegunRun, IsRefusedWithinThreeSecondsWithAnotherInstrument) {
+  clock_.every(500ms, [this] {
+    analysis_.report(wire::ARM_ARMED, wire::HEALTH_WAITING, "source 'dau' is another instrument");
+  });
+  clock_.at(2200ms, [this] { ask_to_end(); });
+  describe_both("2");
+  const auto outcome = resume(std::nullopt);
+  ASSERT_FALSE(outcome);
+  EXPECT_EQ(outcome.error().code, ErrorCode::no_source);
+  EXPECT_EQ(outcome.error().message, "run 'r1' is not resumed: source 'dau' is another instrument");
+  EXPECT_EQ(instrument_.connections, 0);
+  EXPECT_LT(clock_.elapsed(), 3s);
+}
+
+TEST_F(ElsewhereBegunRun, IsRefusedWithinThreeSecondsWithAnotherRecipeBeforeItsFirstResult) {
+  play_analysis();
+  clock_.at(2200ms, [this] { ask_to_end(); }); // it has heard of the run every 2 s
+  describe_both("1");
+  const auto outcome = resume(std::nullopt);
+  ASSERT_FALSE(outcome);
+  EXPECT_EQ(outcome.error().code, ErrorCode::bad_file);
+  EXPECT_THAT(outcome.error().message, HasSubstr("by another bench file"));
+  EXPECT_EQ(instrument_.connections, 0);
+  EXPECT_LT(clock_.elapsed(), 3s);
+}
+
+TEST_F(ElsewhereBegunRun, IsEndedByAPersonsCommand) {
+  clock_.every(500ms, [this] {
+    analysis_.report(wire::ARM_ARMED, wire::HEALTH_WAITING, "taking the run over");
+  });
+  clock_.at(1s, [this] { ask_to_end("ada@desk"); });
+  const auto outcome = resume(std::nullopt);
+  ASSERT_FALSE(outcome);
+  EXPECT_EQ(outcome.error().message, "run 'r1' is not resumed: ended by a command of 'ada@desk'");
+}
+
+TEST_F(ElsewhereBegunRun, IsResumedAtOnceWhereItsResultsHaveThisRecipe) {
+  play_analysis();
+  describe_both("1");
+  analysis_.publish(result(1, 1, 1.0));
+  clock_.at(3s, [this] { analysis_.publish(result(2, 1, 1.0)); });
+  clock_.at(15s, [this] { analysis_.publish(result(2, 2, 1.0)); });
+  const auto outcome = resume(std::nullopt);
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  EXPECT_EQ(outcome->problem, "");
+}
+
+// Its guard has named the run since the other conductor died, and goes on until it hears of a step.
+class GuardedBegunRun : public BegunRunTest {
+protected:
+  bus::Participant guard_host_ = network_.join("guard");
+  bus::Writer<wire::ServiceStatus> guard_ =
+      guard_host_.writer(bus::topics::service_status, "b").value();
+  bool is_deaf_ = true;
+  bool stays_deaf_ = false;
+  bool was_on_while_deaf_ = false;
+
+  void play_guard() {
+    bench_.generator.driver = GeneratorDriver::scpi;
+    bench_.generator.address = "192.0.2.7:5025";
+    clock_.every(100ms, [this] {
+      is_deaf_ = is_deaf_ && (stays_deaf_ || analysis_.excitations().empty());
+      wire::ServiceStatus status;
+      status.bench("b");
+      status.service("guard@lab-2:7");
+      status.host("lab-2");
+      status.guarded_generator(bench_.generator.address);
+      status.run(is_deaf_ ? "r1" : "");
+      guard_.write(status);
+    });
+    clock_.every(
+        10ms, [this] { was_on_while_deaf_ = was_on_while_deaf_ || (instrument_.on && is_deaf_); });
+  }
+};
+
+TEST_F(GuardedBegunRun, IsResumedWhereItsGuardHearsItWithTheFirstStep) {
+  play_analysis();
+  play_guard();
+  describe_both("1");
+  analysis_.publish(result(1, 1, 1.0));
+  clock_.at(3s, [this] { analysis_.publish(result(2, 1, 1.0)); });
+  clock_.at(15s, [this] { analysis_.publish(result(2, 2, 1.0)); });
+  const auto outcome = resume(begun("1"));
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  EXPECT_EQ(outcome->problem, "");
+  EXPECT_FALSE(is_deaf_);
+  EXPECT_FALSE(was_on_while_deaf_);
+  EXPECT_LT(clock_.elapsed(), 60s);
+}
+
+TEST_F(GuardedBegunRun, PausesAndDrivesNothingWhereItsGuardStaysDeaf) {
+  stays_deaf_ = true;
+  play_analysis();
+  play_guard();
+  describe_both("1");
+  analysis_.publish(result(1, 1, 1.0));
+  clock_.at(3s, [this] { analysis_.publish(result(2, 1, 1.0)); });
+  const auto outcome = resume(begun("1"));
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  EXPECT_THAT(outcome->problem, HasSubstr("the dyncal-guard on lab-2 does not hear this run"));
+  ASSERT_FALSE(outcome->pauses.empty());
+  EXPECT_THAT(outcome->pauses[0].reason, HasSubstr("does not hear this run"));
+  EXPECT_FALSE(was_on_while_deaf_);
+  EXPECT_GT(clock_.elapsed(), 120s);
 }
 
 TEST_F(BegunRunTest, EndedAtTheAnalysisIsCollectedAndKeepsItsInstrument) {
