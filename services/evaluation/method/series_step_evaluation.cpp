@@ -43,6 +43,7 @@ JudgedStart start_latency(const analysis::SeriesStampingResult& result,
   const double angular_hz = input.frequency.angular();
   const std::vector<analysis::Repetition>& shots = result.channels.front().shots;
   std::vector<std::complex<double>> directions;
+  directions.reserve(shots.size());
   std::complex<double> mean;
   double u2_s2 = 0.0;
   for (std::size_t j = 0; j < shots.size(); ++j) {

@@ -55,6 +55,7 @@ bool add_disagreement_of_most(std::span<StepResult> results) {
 bool add_disagreement_of_another(const std::map<std::uint32_t, analysis::StepBend>& bends,
                                  const std::string& channel, std::span<StepResult> results) {
   std::vector<analysis::StepBend> steps;
+  steps.reserve(bends.size());
   for (const auto& [number, bend] : bends) {
     steps.push_back(bend);
   }
