@@ -88,7 +88,17 @@ protected:
 
 TEST_F(RecordedRun, TakesNoStepForOverInASourceThatWasSilent) {
   add_excitation(wire::EXCITATION_DONE);
+  add_description(synthetic_.dau_description(), 1);
   add_restarted_dau(1);
+  expect_a_valid_result();
+}
+
+// What the description of another session says, samples are not read with.
+TEST_F(RecordedRun, LeavesOutASessionThatWasNeverDescribed) {
+  add_restarted_dau(1);
+  add_description(synthetic_.dau_description(), 2);
+  add_restarted_dau(2);
+  add_excitation(wire::EXCITATION_DONE);
   expect_a_valid_result();
 }
 
