@@ -43,7 +43,6 @@ JudgedStart start_latency(const analysis::SeriesStampingResult& result,
   const double angular_hz = input.frequency.angular();
   const std::vector<analysis::Repetition>& shots = result.channels.front().shots;
   std::vector<std::complex<double>> directions;
-  directions.reserve(shots.size());
   std::complex<double> mean;
   double u2_s2 = 0.0;
   for (std::size_t j = 0; j < shots.size(); ++j) {
@@ -54,6 +53,7 @@ JudgedStart start_latency(const analysis::SeriesStampingResult& result,
         std::pow(shots[j].u_random_phase_rad / angular_hz, 2) / static_cast<double>(shots.size());
   }
   std::vector<double> offsets_s;
+  offsets_s.reserve(directions.size());
   for (const std::complex<double>& direction : directions) {
     offsets_s.push_back(std::arg(direction * std::conj(mean)) / angular_hz);
   }
