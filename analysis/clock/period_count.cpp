@@ -24,6 +24,7 @@ constexpr std::uint32_t max_passed_over = 32;
 // A clock that is set does so once or twice in a record; a FIFO or a coarse tick at every turn.
 constexpr std::uint64_t moves_of_stamping = 5;
 constexpr double max_time_in_moves = 0.2;
+constexpr std::uint64_t ticks_that_convince = 12; // behind some that are not sure to be ticks
 
 } // namespace
 
@@ -59,7 +60,6 @@ void PeriodCount::settle() {
     count_ticked(ticked_->finish());
   }
   if (alike_) {
-    unsure_ticks_ += alike_->are_too_few() ? alike_->gaps().size() : 0;
     take_waiting_as_losses();
   }
 }
@@ -198,6 +198,7 @@ void PeriodCount::count_move(std::int64_t across_ns, std::uint64_t numbered) {
 }
 
 void PeriodCount::take_waiting_as_losses() {
+  unsure_ticks_ += alike_->are_unsure() ? alike_->gaps().size() : 0;
   for (const TickGap& gap : alike_->gaps()) {
     add_missing(gap.before_ns, gap.after_ns, gap.missing);
     periods_ += gap.missing;
@@ -214,6 +215,7 @@ void PeriodCount::explain_gaps() {
       missing += gap.missing;
     }
     periods_ += missing;
+    unsure_as_ticks_ += explained->is_sure ? 0 : alike_->gaps().size() - explained->losses.size();
     ticked_.emplace(explained->line, missing);
     alike_.reset();
   } else if (alike_->are_losses()) {
@@ -227,7 +229,13 @@ void PeriodCount::explain_gaps() {
 bool PeriodCount::turn_to_ticks(std::int64_t distance_ns) {
   const std::int64_t interval_ns = alike_->interval_ns();
   const auto tick_ns = static_cast<double>(std::gcd(interval_ns, distance_ns));
-  if (tick_ns < static_cast<double>(interval_ns) || !alike_->flicker()) {
+  std::optional<TickLine> line;
+  if (tick_ns >= static_cast<double>(interval_ns)) {
+    // Back or forth by a whole interval, as ticks with a latency go.
+    alike_->add_stray();
+    unsure_as_ticks_ += alike_->flicker() ? 0 : alike_->gaps().size();
+    line = alike_->line_to(last_.number, last_.stamp_ns);
+  } else {
     take_waiting_as_losses();
   }
   alike_.reset();
@@ -236,9 +244,13 @@ bool PeriodCount::turn_to_ticks(std::int64_t distance_ns) {
     return false;
   }
   tick_ns_ = std::gcd(interval_ns, distance_ns);
-  const double margin_ns = period_margin_ticks * tick_ns;
-  ticked_.emplace(TickLine(tick_ns, {period_ns - margin_ns, period_ns + margin_ns}), last_.number,
-                  last_.stamp_ns);
+  if (line) {
+    ticked_.emplace(*line, 0);
+  } else {
+    const double margin_ns = period_margin_ticks * tick_ns;
+    ticked_.emplace(TickLine(tick_ns, {period_ns - margin_ns, period_ns + margin_ns}), last_.number,
+                    last_.stamp_ns);
+  }
   return true;
 }
 
@@ -251,6 +263,10 @@ void PeriodCount::count_ticked(std::span<const TickedSample> samples) {
       add_missing(last_.stamp_ns, one.stamp_ns, one.missing);
       [[fallthrough]];
     case TickedStep::follows:
+      ticks_on_line_ += one.missing == 0 && one.stamp_ns - last_.stamp_ns >
+                                                static_cast<std::int64_t>(numbered) * tick_ns_
+                            ? 1
+                            : 0;
       accept(sample, numbered + one.missing);
       break;
     case TickedStep::jump:
@@ -347,7 +363,9 @@ double PeriodCount::mean_ns() const {
 double PeriodCount::u_ends_ns() const {
   const bool is_coarse = coarse_tick_ns_ > 0.0 || moves_ > 0 || ticked_;
   const double tick_ns = is_coarse ? static_cast<double>(tick_ns_) : 0.0;
-  const double unsure_ns = static_cast<double>(unsure_ticks_) * static_cast<double>(tick_ns_);
+  const std::uint64_t unsure =
+      unsure_ticks_ + (ticks_on_line_ < ticks_that_convince ? unsure_as_ticks_ : 0);
+  const double unsure_ns = static_cast<double>(unsure) * static_cast<double>(tick_ns_);
   double variance_ns2 = tick_ns * tick_ns / 6.0 + unsure_ns * unsure_ns;
   if (moves_ > 0 && moves_as_made() && std::abs(largest_ns_) > one_tick * tick_ns) {
     const auto count = static_cast<double>(moves_);

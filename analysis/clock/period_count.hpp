@@ -109,7 +109,9 @@ private:
   std::uint64_t periods_ = 0;
   std::uint64_t stretches_ = 0;
   std::uint64_t unnumbered_ = 0;
-  std::uint64_t unsure_ticks_ = 0; // that were taken for losses
+  std::uint64_t unsure_ticks_ = 0;    // that were taken for losses
+  std::uint64_t unsure_as_ticks_ = 0; // that may be losses, until more ticks follow on their line
+  std::uint64_t ticks_on_line_ = 0;
   std::uint64_t moves_ = 0;
   std::int64_t span_across_moves_ns_ = 0;
   std::uint64_t periods_across_moves_ = 0;

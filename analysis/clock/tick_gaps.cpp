@@ -11,7 +11,7 @@ constexpr PeriodRange periods_in_ticks = {1.0, 1.25};
 std::optional<TickLine> TickGaps::line_without(std::size_t one, std::size_t other) const {
   const auto tick_ns = static_cast<double>(interval_ns_);
   TickLine line(tick_ns, {periods_in_ticks.min_ns * tick_ns, periods_in_ticks.max_ns * tick_ns},
-                flicker() ? TickLine::most_latency_ticks : TickLine::least_latency_ticks);
+                strays_ > 0 ? TickLine::most_latency_ticks : TickLine::least_latency_ticks);
   line.begin(first_, first_ns_);
   std::uint64_t lost = 0;
   for (std::size_t i = 0; i < gaps_.size(); ++i) {
@@ -41,7 +41,7 @@ std::optional<ExplainedGaps> TickGaps::explained() const {
     if (!line) {
       return std::nullopt;
     }
-    ExplainedGaps result{*line, {}};
+    ExplainedGaps result{*line, {}, strays_ == 0 || flicker()};
     for (std::size_t i = 0; i < none; ++i) {
       if (i == one || i == other || gaps_[i].missing > 1) {
         result.losses.push_back(gaps_[i]);
@@ -65,6 +65,11 @@ std::optional<ExplainedGaps> TickGaps::explained() const {
     }
   }
   return std::nullopt;
+}
+
+std::optional<TickLine> TickGaps::line_to(std::uint64_t last, std::int64_t last_ns) const {
+  auto line = line_without(gaps_.size(), gaps_.size());
+  return line && line->add(last, last_ns) ? line : std::nullopt;
 }
 
 } // namespace dyncal::analysis

@@ -6,8 +6,9 @@
 // then, look the same but for the regularity. So the first gaps wait. They are ticks when
 // 4 + k of them lie on one line of TickLine with at most k = 0, 1, 2 others left out as losses;
 // losses, when 12 have not been understood so. Stamps that went one interval back or forth for some
-// samples show a latency at the edge of a tick: three of these widen the line. One to three gaps
-// say nothing: they are taken for losses, and the mean interval is uncertain by as many ticks.
+// samples show a latency at the edge of a tick, and widen the line: three of these for sure. One to
+// three gaps say nothing: they are taken for losses. Whatever is not sure, the mean interval is
+// uncertain by as many ticks.
 // Units: ns. One thread.
 #pragma once
 
@@ -30,6 +31,7 @@ struct TickGap { // between two samples
 struct ExplainedGaps {
   TickLine line; // whose newest sample is that behind the last gap
   std::vector<TickGap> losses;
+  bool is_sure = true; // or only so with the latency that one or two stamps show
 };
 
 class TickGaps {
@@ -46,7 +48,10 @@ public:
   [[nodiscard]] std::int64_t interval_ns() const { return interval_ns_; }
   // Empty: not, or not yet, to be understood as ticks.
   [[nodiscard]] std::optional<ExplainedGaps> explained() const;
-  [[nodiscard]] bool are_too_few() const { return gaps_.size() < gaps_that_convince; }
+  // On which all gaps are ticks, up to the last sample in order; empty where there is none.
+  [[nodiscard]] std::optional<TickLine> line_to(std::uint64_t last, std::int64_t last_ns) const;
+  // They may be ticks as well as losses.
+  [[nodiscard]] bool are_unsure() const { return gaps_.size() < gaps_that_convince || strays_ > 0; }
   [[nodiscard]] bool are_losses() const { return gaps_.size() >= max_waiting; }
 
 private:

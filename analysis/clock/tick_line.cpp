@@ -31,6 +31,11 @@ void TickLine::begin(std::uint64_t number, std::int64_t stamp_ns) {
   stamp_ns_ = stamp_ns;
 }
 
+void TickLine::widen(std::uint64_t number, std::int64_t stamp_ns) {
+  latency_ns_ = most_latency_ticks * tick_ns_;
+  begin(number, stamp_ns);
+}
+
 TickLine::Corner TickLine::moved(const Corner& corner, std::uint64_t number,
                                  std::int64_t stamp_ns) const {
   const auto samples = static_cast<double>(static_cast<std::int64_t>(number - number_));

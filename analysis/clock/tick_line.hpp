@@ -31,6 +31,9 @@ public:
   // The sample from which on all lie on one line; the periods that are possible stay, but for a
   // margin.
   void begin(std::uint64_t number, std::int64_t stamp_ns);
+  // From here on with the most latency.
+  void widen(std::uint64_t number, std::int64_t stamp_ns);
+  [[nodiscard]] bool is_wide() const { return latency_ns_ >= most_latency_ticks * tick_ns_; }
   [[nodiscard]] bool admits(std::uint64_t number, std::int64_t stamp_ns) const;
   // Whether it was admitted; one that is not changes nothing. REQUIRES (both): begin().
   bool add(std::uint64_t number, std::int64_t stamp_ns);

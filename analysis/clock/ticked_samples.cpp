@@ -11,6 +11,8 @@ constexpr std::size_t samples_to_decide = 32;
 constexpr double most_of_them = 0.75;
 constexpr std::uint32_t max_passed_over = 32;
 constexpr double known_to_periods = 1.0 / 8.0;
+constexpr double about_a_tick = 1.5;
+constexpr std::uint32_t strays_that_convince = 3;
 
 bool are_most(std::size_t some, std::size_t all) {
   return static_cast<double>(some) >= most_of_them * static_cast<double>(all);
@@ -97,6 +99,14 @@ TickLine TickedSamples::begun(const TimedSample& sample) const {
   return line;
 }
 
+// Whether one that lies on no line, but about a tick beside it, is the last that shows a latency at
+// the edge of a tick.
+bool TickedSamples::widens(const TimedSample& sample) {
+  const double off_ns = line_.late_ns(sample.number + missing_, sample.stamp_ns);
+  return !line_.is_wide() && std::abs(off_ns) <= about_a_tick * line_.tick_ns() &&
+         ++strays_ >= strays_that_convince;
+}
+
 // REQUIRES: some wait.
 void TickedSamples::decide() {
   std::size_t agreeing = 0;
@@ -105,8 +115,12 @@ void TickedSamples::decide() {
   const bool is_jump = waiting_.size() > 1 && !are_most(agreeing, waiting_.size()) &&
                        are_most(agree(behind_jump, 0), waiting_.size());
   const std::vector<TimedSample> samples = std::exchange(waiting_, {});
+  const bool is_stray = missing == 0 && are_most(agreeing, samples.size());
   std::size_t next = 1; // the first counts for nothing, unless
-  if (are_most(agreeing, samples.size())) {
+  if ((is_stray || is_jump) && samples.size() > 1 && widens(samples.front())) {
+    next = is_jump ? 0 : 1;
+    line_.widen(samples[next].number + missing_, samples[next].stamp_ns);
+  } else if (are_most(agreeing, samples.size())) {
     next = missing > 0 ? follow_missing(samples, missing) : next;
   } else if (is_jump || ++passed_over_ >= max_passed_over) {
     line_ = behind_jump;

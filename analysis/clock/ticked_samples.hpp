@@ -5,7 +5,8 @@
 // are tried with 0 (the first had a wrong stamp), with k missing samples, k about what the distance
 // says, and with a jump of the clock; what most of them, and at least three of four, agree with
 // counts, of equals the first. Nothing of that: the first one counts for nothing; after 32 of them
-// the next one begins a stretch. Samples that are missing for less than a tick in all may not show.
+// the next one begins a stretch. Stamps that went about a tick back or forth, three of these, widen
+// the line by T / 2. Samples that are missing for less than a tick in all may not show.
 // Units: ns. One thread.
 #pragma once
 
@@ -50,12 +51,14 @@ private:
   std::size_t follow_missing(const std::vector<TimedSample>& samples, std::uint64_t missing);
   [[nodiscard]] std::size_t agree(TickLine line, std::uint64_t missing) const;
   [[nodiscard]] std::uint64_t best_missing(std::size_t& agreeing) const;
+  [[nodiscard]] bool widens(const TimedSample& sample);
   [[nodiscard]] TickLine begun(const TimedSample& sample) const;
 
   TickLine line_;
   std::uint64_t missing_ = 0; // since the line began
   std::vector<TimedSample> waiting_;
   std::uint32_t passed_over_ = 0;
+  std::uint32_t strays_ = 0; // a tick off the line, until these widen it
   std::vector<TickedSample> decided_;
 };
 

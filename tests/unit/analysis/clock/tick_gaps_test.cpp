@@ -42,8 +42,22 @@ TEST(TickGaps, IrregularGapsAreLosses) {
 TEST(TickGaps, AFewAreNotDecided) {
   const TickGaps gaps = gaps_behind({200, 532, 864});
   EXPECT_FALSE(gaps.explained());
-  EXPECT_TRUE(gaps.are_too_few());
+  EXPECT_TRUE(gaps.are_unsure());
   EXPECT_FALSE(gaps.are_losses());
+}
+
+TEST(TickGaps, StampsThatStrayShowALatency) {
+  TickGaps gaps = gaps_behind({200, 480, 864, 1120}); // by up to a sixth of a tick
+  EXPECT_FALSE(gaps.explained());
+  EXPECT_FALSE(gaps.are_unsure());
+  gaps.add_stray();
+  ASSERT_TRUE(gaps.explained());
+  EXPECT_FALSE(gaps.explained()->is_sure);
+  EXPECT_TRUE(gaps.are_unsure());
+  gaps.add_stray();
+  gaps.add_stray();
+  EXPECT_TRUE(gaps.explained()->is_sure);
+  EXPECT_TRUE(gaps.line_to(1200, 1'204 * interval_ns));
 }
 
 TEST(TickGaps, AGapOfSeveralIsALoss) {
