@@ -107,6 +107,7 @@ TEST(TickedSamples, LatenciesOfATwentiethOfATickAreNoLosses) {
       const double period_ns = tick_ns * (1.0 + beside * (1.0 + 1e-2 * part(random)));
       const double begin_ns = tick_ns * part(random);
       std::vector<std::int64_t> stamps_ns;
+      stamps_ns.reserve(count);
       for (int sample = 0; sample < count; ++sample) {
         const double late = draw % 2 == 0 ? exponential(random) : part(random);
         const double at_ns = begin_ns + period_ns * sample + 0.05 * tick_ns * late;
@@ -133,6 +134,7 @@ TEST(TickedSamples, FewGapsAreUncertainByBothReadings) {
   constexpr int count = 2000;
   for (int gaps = 1; gaps <= 3; ++gaps) {
     std::vector<std::int64_t> stamps_ns;
+    stamps_ns.reserve(count);
     int behind = 0;
     for (int sample = 0; sample < count; ++sample) {
       behind = static_cast<int>((gaps + 0.5) * sample / count);
