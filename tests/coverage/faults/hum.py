@@ -12,9 +12,9 @@ from expected_row import MEAN, VALUE, Row
 from faults.fault import Fault
 from judgement import (
     COVERED,
+    COVERED_AND_NARROW,
     COVERED_NO_FLAG,
     COVERED_OR_FLAGGED,
-    COVERED_WITH_BOUND,
     FLAGGED,
 )
 
@@ -200,8 +200,8 @@ EXPECTED = [
     *(Row(name, VALUE, COVERED_NO_FLAG) for name in CLASSES if name.startswith("clean, rings")),
     Row("clean, ISO 266", VALUE, COVERED_NO_FLAG),
     # No step shows what hum there is: u holds what quiet time leaves possible.
-    Row("clean, mains alone", VALUE, COVERED_WITH_BOUND),
-    Row("clean, mains alone, little noise", VALUE, COVERED_WITH_BOUND),
+    Row("clean, mains alone", VALUE, COVERED_AND_NARROW),
+    Row("clean, mains alone, little noise", VALUE, COVERED_AND_NARROW),
     Row("clean, mean of 3 at the mains", MEAN, COVERED_NO_FLAG),
     *(Row(name, VALUE, COVERED_OR_FLAGGED) for name in CLASSES if name.startswith("hum at")),
     *(
