@@ -92,7 +92,7 @@ std::string about_others(const LaboratoryView& view, const HostView& host) {
   if (is_found(view, analysis_program) || (view.programs.empty() && !hosts.empty())) {
     return fmt::format(
         "announcements come{}{}, but no answer: what this host sends does not arrive "
-        "there (a firewall, or a way that is cut in one direction)",
+        "there (a firewall, a way that is cut in one direction, or a link that is overloaded)",
         where, is_found(view, analysis_program) ? ", of a dyncal-analysis too" : "");
   }
   if (!view.programs.empty()) {

@@ -4,9 +4,9 @@
     unheard_analysis_test.py PROGRAMS
 
 PROGRAMS is the folder of the built programs. Operator and analysis are on a host each. The network
-carries no multicast, the operator has no IPv4 address, its packets to other hosts are dropped, or
-its link goes down and comes back all the time; the sentence names that cause, and the operator's
-own address where it has one. The opposite: where the network is sound, it names none of them.
+carries no multicast, the operator has no IPv4 address, its packets to other hosts are dropped, its
+link goes down and comes back all the time, or is of 1 Mbit/s and others send more both ways; the
+sentence names that cause, and the operator's own address where it has one. The opposite: where the network is sound, it names none of them.
 Exit status 1 if a sentence does not fit, 77 where there are no network namespaces.
 """
 
@@ -37,6 +37,18 @@ dut = ["acs/dut"]
 RECORD = "t_ns,reference,dut\n0,0,0\n1000000,1,1\n2000000,0,0\n"
 WAIT_S = 120.0
 FLAP_DOWN_S, FLAP_UP_S = 1.7, 0.3
+NARROW = (  # the queue counts packets: small ones are lost as large ones are
+    "qdisc add dev lab root handle 1: htb default 10",
+    "class add dev lab parent 1: classid 1:10 htb rate 1mbit",
+    "qdisc add dev lab parent 1:10 pfifo limit 8",
+)
+FLOOD = """import socket, time
+with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as flood:
+    while True:
+        for _ in range(10):
+            flood.sendto(bytes(1400), ("%s", 9))
+        time.sleep(0.01)  # 11 Mbit/s
+"""
 
 
 def rule(hook, match):
@@ -53,6 +65,7 @@ CASES = {
     "no IPv4": ("cyclonedds", ("no IPv4 address", "lab has IPv6 alone")),
     "one way": ("fastdds", ("announcements come from 10.98.0.2", "no answer", OWN)),
     "flapping": ("fastdds", ("the link of lab went down or came back", OWN)),
+    "overloaded": ("fastdds", ("overloaded", OWN)),
     "no analysis": ("cyclonedds", ("nothing is heard in DDS domain", OWN)),
     "sound": ("fastdds", ()),
 }
@@ -91,6 +104,17 @@ class TwoHosts:
             self.drop("output", UNICAST)
         elif self.case == "flapping":
             self.flapping.start()
+        elif self.case == "overloaded":
+            self.overload("operator", "analysis")
+            self.overload("analysis", "operator")
+
+    def overload(self, sender, receiver):
+        command = self.hosts.command(sender)
+        for line in NARROW:
+            subprocess.run([*command, "tc", *line.split()], check=True)
+        flood = FLOOD % self.hosts.address[receiver]
+        log = self.folder / f"flood of {sender}.txt"
+        self.started.append(Program([*command, sys.executable, "-c", flood], log))
 
     def flap(self):
         while not self.over.is_set():
