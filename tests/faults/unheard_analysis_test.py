@@ -6,7 +6,8 @@
 PROGRAMS is the folder of the built programs. Operator and analysis are on a host each. The network
 carries no multicast, the operator has no IPv4 address, its packets to other hosts are dropped, its
 link goes down and comes back all the time, or is of 1 Mbit/s and others send more both ways; the
-sentence names that cause, and the operator's own address where it has one. The opposite: where the network is sound, it names none of them.
+sentence names that cause, and the operator's own address where it has one. The opposite: where the
+network is sound, it names none of them.
 Exit status 1 if a sentence does not fit, 77 where there are no network namespaces.
 """
 
