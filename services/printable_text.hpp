@@ -57,6 +57,13 @@ namespace dyncal::services {
   return valid;
 }
 
+// U+2028 to U+202E and U+2066 to U+2069: they break a line, or turn the order of what follows.
+[[nodiscard]] inline bool turns_or_breaks(std::string_view letter) {
+  const auto last = letter.size() >= 3 ? static_cast<unsigned char>(letter[2]) : 0U;
+  return (letter.starts_with("\xe2\x80") && last >= 0xa8 && last <= 0xae) ||
+         (letter.starts_with("\xe2\x81") && last >= 0xa6 && last <= 0xa9);
+}
+
 // The same, and '?' in place of control characters: one line that a terminal only shows.
 [[nodiscard]] inline std::string printable(std::string_view text) {
   std::string shown = valid_utf8(text);
@@ -67,6 +74,8 @@ namespace dyncal::services {
       shown[i] = '?';
     } else if (byte == 0xc2 && next < 0xa0) {
       shown.replace(i, 2, "?"); // U+0080 to U+009F
+    } else if (byte == 0xe2 && turns_or_breaks(std::string_view(shown).substr(i, 3))) {
+      shown.replace(i, 3, "?");
     }
   }
   return shown;

@@ -36,7 +36,7 @@ std::string head(const ChannelModel& model) {
                                  measured.values.size(), low, high);
   std::map<std::string, std::vector<std::string>> by_reason;
   for (const ValueLeftOut& value : measured.left_out) {
-    by_reason[value.reason].push_back(value.frequency_text_hz);
+    by_reason[one_line(value.reason)].push_back(one_line(value.frequency_text_hz, 32));
   }
   for (const auto& [reason, frequencies] : by_reason) {
     text += fmt::format("  left out, {}: {} Hz\n", reason, fmt::join(frequencies, ", "));
@@ -93,7 +93,8 @@ std::string parameters(const ChannelModel& model) {
     const Shown name = shown(fit.names[k], model.measured.unit);
     const RoundedValue rounded =
         round_by_uncertainty(fit.values[k] * name.factor, fit.u[k] * name.factor);
-    text += fmt::format("  {:<30} {:>14} {:>10}\n", name.name, rounded.value, rounded.u);
+    text +=
+        fmt::format("  {:<30} {:>14} {:>10}\n", one_line(name.name, 64), rounded.value, rounded.u);
   }
   return text;
 }
@@ -160,7 +161,7 @@ std::string model_text(const ChannelModel& model) {
     text += filter_text(model);
   }
   for (const std::string& warning : model.warnings) {
-    text += wrapped(warning, "  warning: ", "    ");
+    text += wrapped(one_line(warning), "  warning: ", "    ");
   }
   return text;
 }

@@ -28,6 +28,9 @@ TEST(PrintableText, ReplacesEveryByteThatIsNotUtf8) {
 TEST(PrintableText, ShowsNothingThatSteersATerminal) {
   EXPECT_EQ(printable("a\x1b[2Jb\r\nc\x7f"), "a?[2Jb??c?");
   EXPECT_EQ(printable("a\xc2\x9bK"), "a?K"); // U+009B is ESC [
+  EXPECT_EQ(printable("\u202eno \u2066\u2069\u2028b\u202a"), "?no ???b?");
+  EXPECT_EQ(printable("5\u2027\u202f\u2065\u206a\u2030 \u2212"),
+            "5\u2027\u202f\u2065\u206a\u2030 \u2212");
 }
 
 TEST(OneLine, LeavesASentenceAsItIs) {
