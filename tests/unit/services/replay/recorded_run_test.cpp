@@ -93,13 +93,22 @@ TEST_F(RecordedRun, TakesNoStepForOverInASourceThatWasSilent) {
   expect_a_valid_result();
 }
 
-// What the description of another session says, samples are not read with.
-TEST_F(RecordedRun, LeavesOutASessionThatWasNeverDescribed) {
+// Another session's description says nothing of its samples.
+TEST_F(RecordedRun, LeavesOutASessionThatIsNotDescribed) {
   add_restarted_dau(1);
   add_description(synthetic_.dau_description(), 2);
   add_restarted_dau(2);
   add_excitation(wire::EXCITATION_DONE);
   expect_a_valid_result();
+}
+
+TEST_F(RecordedRun, HasNoResultOfASessionThatIsNotDescribed) {
+  add_restarted_dau(1);
+  add_excitation(wire::EXCITATION_DONE);
+  add_state(wire::MEASUREMENT_DONE);
+  const RecordedRunOutcome recorded = evaluate();
+  ASSERT_EQ(recorded.outcome.results.size(), 1U);
+  EXPECT_FALSE(recorded.outcome.results[0].valid);
 }
 
 // As the live analysis: it waited for a description that the run can go by.
