@@ -158,8 +158,8 @@ void StepSearch::accept(const analysis::ExcitationWindow& window) {
     search_step(step_ + 1);
     return;
   }
-  if (Found one = found(window); one.interval.end_ns > one.interval.begin_ns) {
-    found_[step_] = std::move(one);
+  if (const Found one = found(window); one.interval.end_ns > one.interval.begin_ns) {
+    found_[step_] = one;
   }
   search_from_ns_ = window.off_ns;
   search_step(step_ + 1);
