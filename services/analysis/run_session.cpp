@@ -142,7 +142,7 @@ void RunSession::announce(const wire::Excitation& excitation) {
   last_heard_of_run_ = clock_.now();
   if (evaluator_) {
     evaluator_->expect_announcements();
-    announced_.push_back(from_message(excitation));
+    announced_.emplace_back(from_message(excitation), last_heard_of_run_);
     if (announced_.size() > max_announced) {
       announced_.pop_front();
     }
@@ -183,7 +183,8 @@ void RunSession::catch_up(Instant now) {
     return;
   }
   for (; !announced_.empty(); announced_.pop_front()) {
-    evaluator_->announce(announced_.front());
+    const auto& [announcement, heard] = announced_.front();
+    evaluator_->announce(announcement, heard.time_since_epoch().count());
   }
   if (const auto aborted = std::exchange(excitation_ended_, std::nullopt)) {
     evaluator_->end_of_excitation(*aborted);

@@ -41,6 +41,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "idl/dyncal.h"
 #include "services/analysis/run_publisher.hpp"
@@ -150,8 +151,8 @@ private:
   std::unique_ptr<RunEvaluator> evaluator_; // until the run is finished or refused
   std::optional<SourceStreams> streams_;    // as long
   // What was announced while samples were still to be caught up with.
-  std::deque<StepAnnouncement> announced_;
-  std::optional<bool> excitation_ended_; // true: aborted
+  std::deque<std::pair<StepAnnouncement, Instant>> announced_; // and when it was heard
+  std::optional<bool> excitation_ended_;                       // true: aborted
   bool other_run_said_ = false;
   bool is_resumed_ = false;  // by another conductor, and its sources were not seen to be the run's
   bool taking_over_ = false; // what was measured before is not evaluated yet

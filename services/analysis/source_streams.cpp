@@ -137,8 +137,14 @@ void SourceStreams::hand_over(const std::string& name, Stream& stream,
     stream.waiting.add(block);
   } else {
     stream.is_undescribed = false;
-    evaluator_.add(name, view_block(block));
+    add(name, block);
   }
+}
+
+// What waited was heard before: it tells less about the clock of its source, and nothing wrong.
+void SourceStreams::add(const std::string& name, const wire::SampleBlock& block) {
+  evaluator_.add(name, view_block(block),
+                 BlockTimes{block.received_utc_ns(), heard_.time_since_epoch().count()});
 }
 
 void SourceStreams::hand_over_waiting(const std::string& name, Stream& stream, Instant now) {
@@ -160,7 +166,7 @@ void SourceStreams::hand_over_waiting(const std::string& name, Stream& stream, I
       return;
     }
     stream.is_undescribed = false;
-    evaluator_.add(name, view_block(block));
+    add(name, block);
     stream.waiting.take_off_oldest();
   }
 }
@@ -191,6 +197,7 @@ Expected<void> SourceStreams::open_answer_readers() {
 }
 
 void SourceStreams::take_samples(Instant now) {
+  heard_ = now;
   for (auto& [name, stream] : streams_) {
     hand_over_waiting(name, stream, now);
   }

@@ -141,6 +141,7 @@ private:
   template <class Message, class Take>
   void take(bus::Reader<Message>& reader, Take take);
   void hand_over(const std::string& name, Stream& stream, const wire::SampleBlock& block);
+  void add(const std::string& name, const wire::SampleBlock& block);
   void hand_over_waiting(const std::string& name, Stream& stream, Instant now);
 
   bus::Participant& participant_;
@@ -150,6 +151,7 @@ private:
   std::string asker_;
   RunEvaluator& evaluator_;
   Begin begin_;
+  Instant heard_{}; // what is taken now
   std::map<std::string, Stream> streams_;
   std::map<wire::SourceKind, bus::Reader<wire::SampleBlock>> block_readers_;
   std::map<wire::SourceKind, bus::Reader<wire::TriggeredRecord>> record_readers_;

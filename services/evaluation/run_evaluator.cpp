@@ -56,6 +56,7 @@ RunEvaluator::RunEvaluator(Recipe recipe, const EvaluationLimits& limits)
       never_waits_(limits.never_waits), count_(limits.count),
       evaluations_(limits.evaluations_at_once) {
   records_.copy_samples(evaluations_.in_background());
+  records_.may_begin_late(limits.may_begin_late);
   if (count_) {
     count_->begin("evaluating", "steps", recipe_->steps.size());
   }
@@ -158,10 +159,14 @@ void RunEvaluator::keep_needed_channels(SourceRecord& source) const {
   source.keep_only(std::move(columns));
 }
 
-void RunEvaluator::add(const std::string& source, const SourceBlock& block) {
+void RunEvaluator::add(const std::string& source, const SourceBlock& block,
+                       const std::optional<BlockTimes>& times) {
   SourceRecord* record = records_.find(source);
   if (record == nullptr || finished_ || !record->add(block)) {
     return;
+  }
+  if (times) {
+    records_.note_times(source, block, *times);
   }
   rate_watch_.add(source, block);
   if (clock_ && clock_->source() == source && !lost_at_clock_end_) {
@@ -213,8 +218,9 @@ void RunEvaluator::add(const std::string& source, TriggeredRecord record) {
   }
 }
 
-void RunEvaluator::announce(const StepAnnouncement& announcement, const SourceInstants& at) {
-  records_.announce(announcement, at);
+void RunEvaluator::announce(const StepAnnouncement& announcement,
+                            std::optional<std::int64_t> heard_ns) {
+  records_.announce(announcement, heard_ns);
 }
 
 void RunEvaluator::end_of_excitation(bool aborted) {

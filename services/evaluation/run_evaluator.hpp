@@ -75,6 +75,8 @@ struct EvaluationLimits {
   bool ahead = false;      // in the caller's thread only: before the end of a step has come
   // The run began before: its samples come before what was announced about them (step_search.hpp).
   bool behind = false;
+  // A source may lack the begin of the run, which nobody saw: recordings.
+  bool may_begin_late = false;
   // Where the steps are, from somebody who has looked at the whole records (step_survey.hpp).
   std::shared_ptr<const RunSchedule> schedule{};
 };
@@ -96,15 +98,18 @@ public:
   // Sources of the recipe that have not described themselves yet.
   [[nodiscard]] std::vector<std::string> undescribed() const { return records_.undescribed(); }
 
-  void add(const std::string& source, const SourceBlock& block);
+  // `times`: where they are known, they tell which step a source shows that begins late
+  // (record/announced_instants.hpp).
+  void add(const std::string& source, const SourceBlock& block,
+           const std::optional<BlockTimes>& times = {});
   // Whether a block of this session may be added without the loss of a step that has come but
   // cannot be evaluated yet, because another source is behind: a new session drops what is held.
   // It is for the caller to wait with the block, and for how long.
   [[nodiscard]] bool is_ready_for(const std::string& source, std::uint64_t session);
   // Of an instrument that records after a trigger, by its source.
   void add(const std::string& source, TriggeredRecord record);
-  // `at`: record/run_records.hpp.
-  void announce(const StepAnnouncement& announcement, const SourceInstants& at = {});
+  // `heard_ns`: by the clock of the times of blocks.
+  void announce(const StepAnnouncement& announcement, std::optional<std::int64_t> heard_ns = {});
   // Steps are announced in this run, although what was announced may come later.
   void expect_announcements() { records_.excitation().expect_announcements(); }
   // No excitation comes any more: the run is done, or was broken off after the steps announced so

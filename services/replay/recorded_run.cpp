@@ -118,7 +118,8 @@ Expected<RecordedRunOutcome> evaluate_recording(recording::RecordingReader& read
                           .clock_to_the_end = index->clock_end.has_value(),
                           .clock_end = index->clock_end,
                           .count = wish.count,
-                          .behind = behind});
+                          .behind = behind,
+                          .may_begin_late = true});
   const std::stop_callback end_checks(stop, [&evaluator] { evaluator.stop_checks(); });
   RecordedRunFeed feed(reader, *index, evaluator, result.outcome);
   const auto walked =

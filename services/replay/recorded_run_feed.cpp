@@ -134,22 +134,12 @@ void RecordedRunFeed::announce(bool at_once) {
   announcements_.hand_over(
       at_once, [this](const WaitingAnnouncements::Announcement& one, std::int64_t recorded_ns) {
         if (const auto* step = std::get_if<StepAnnouncement>(&one)) {
-          evaluator_.announce(*step, instants_at(recorded_ns));
+          evaluator_.announce(*step, recorded_ns);
         } else {
           evaluator_.end_of_excitation(std::get<wire::MeasurementState>(one) ==
                                        wire::MEASUREMENT_ABORTED);
         }
       });
-}
-
-SourceInstants RecordedRunFeed::instants_at(std::int64_t recorded_ns) const {
-  SourceInstants instants;
-  for (const auto& [name, source] : sources_) {
-    if (const auto instant = source.sent.at(recorded_ns)) {
-      instants.emplace(name, *instant);
-    }
-  }
-  return instants;
 }
 
 // Everything of the source up to this message that has not been handed over yet.
@@ -254,8 +244,7 @@ void RecordedRunFeed::hand_over_waiting(const std::string& name, Source& source,
     }
     describe(name, source, block.session());
     if (outcome_of_walk_ && !source.is_unfit) {
-      evaluator_.add(name, view_block(block));
-      source.sent.add(view_block(block), sent_ns);
+      evaluator_.add(name, view_block(block), BlockTimes{sent_ns, sent_ns});
     }
     source.waiting.pop_front();
     source.waiting_since = 0;

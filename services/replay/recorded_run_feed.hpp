@@ -4,8 +4,8 @@
 // Samples of each source go in the order of their numbers, wherever they stand, from the source's
 // answer on; those of a session of something else (another bench file, other channels) are left
 // out. A new session waits, as it did live, while steps of the one before may still be evaluated.
-// What the conductor said counts once all sources have come to it (waiting_announcements.hpp), with
-// the stamps that they had then (sent_blocks.hpp). Results take the way of the contract's messages.
+// What the conductor said counts once all sources have come to it (waiting_announcements.hpp);
+// times are those of the recorder's clock. Results take the way of the contract's messages.
 //
 // Fails (no_source) as RunEvaluator::describe(), (bad_file) as RecordedMessages. One thread.
 #pragma once
@@ -21,7 +21,6 @@
 #include "services/evaluation/run_evaluator.hpp"
 #include "services/replay/recorded_messages.hpp"
 #include "services/replay/recording_index.hpp"
-#include "services/replay/sent_blocks.hpp"
 #include "services/replay/waiting_announcements.hpp"
 
 namespace dyncal::services {
@@ -49,7 +48,6 @@ private:
     drivers::SourceDescription first{};       // what the run began with
     std::deque<WaitingBlock> waiting{};
     std::uint64_t waiting_since = 0;
-    SentBlocks sent{};
     // Its session: the run cannot go by what it describes (services/analysis/source_streams.hpp).
     bool is_unfit = false;
   };
@@ -65,7 +63,6 @@ private:
   void describe(const std::string& name, Source& source, std::uint64_t session);
   void hand_over_waiting(const std::string& name, Source& source, bool at_once);
   void announce(bool at_once);
-  [[nodiscard]] SourceInstants instants_at(std::int64_t recorded_ns) const;
   void collect_output();
   [[nodiscard]] WaitingAnnouncements::Instant here() const {
     return {walked_, static_cast<std::int64_t>(now_)};

@@ -6,43 +6,85 @@
 #include "analysis/base/statistics.hpp"
 
 namespace dyncal::services {
+namespace {
+
+void add_newest(std::deque<std::int64_t>& values, std::int64_t value) {
+  values.push_back(value);
+  if (values.size() > AnnouncedInstants::max_heard) {
+    values.pop_front();
+  }
+}
+
+} // namespace
+
+void AnnouncedInstants::hear(std::int64_t heard_ns) {
+  add_newest(heard_ns_, heard_ns);
+}
 
 void AnnouncedInstants::follow(const std::string& source, std::int64_t newest_ns) {
-  if (const auto steps = over_ns_.find(source); steps != over_ns_.end()) {
+  if (const auto steps = newest_when_over_ns_.find(source); steps != newest_when_over_ns_.end()) {
     for (auto& [step, stamp_ns] : steps->second) {
       stamp_ns = std::min(stamp_ns, newest_ns);
     }
   }
 }
 
-std::optional<std::int64_t> AnnouncedInstants::over_ns(const std::string& source,
-                                                       std::size_t step) const {
-  const auto steps = over_ns_.find(source);
-  if (steps == over_ns_.end()) {
+std::optional<std::int64_t> AnnouncedInstants::newest_when_over_ns(const std::string& source,
+                                                                   std::size_t step) const {
+  const auto steps = newest_when_over_ns_.find(source);
+  if (steps == newest_when_over_ns_.end()) {
     return std::nullopt;
   }
   const auto found = steps->second.find(step);
   return found == steps->second.end() ? std::nullopt : std::optional(found->second);
 }
 
-void AnnouncedInstants::add_offset(const Sessions& sessions, std::int64_t offset_ns) {
-  auto& offsets = offsets_ns_[sessions];
-  offsets.push_back(offset_ns);
-  if (offsets.size() > max_offsets) {
-    offsets.pop_front();
+std::optional<std::int64_t> AnnouncedInstants::over_ns(const std::string& source,
+                                                       std::size_t step) const {
+  const auto sent = sent_.find(source);
+  const auto heard = over_heard_ns_.find(step);
+  if (sent != sent_.end() && heard != over_heard_ns_.end()) {
+    const auto instant = sent->second.at(heard->second);
+    return instant ? std::optional(instant->stamp_ns) : std::nullopt;
   }
+  return newest_when_over_ns(source, step);
+}
+
+void AnnouncedInstants::add_offset(const Sessions& sessions, std::int64_t offset_ns) {
+  add_newest(offsets_ns_[sessions], offset_ns);
   if (offsets_ns_.size() > max_sessions) {
     offsets_ns_.erase(offsets_ns_.begin()); // they are counted upwards
   }
 }
 
-std::optional<std::int64_t> AnnouncedInstants::offset_ns(const Sessions& sessions) const {
+std::optional<std::int64_t> AnnouncedInstants::offset_ns(const Sources& sources,
+                                                         const Sessions& sessions) const {
+  if (const auto offset = offset_by_sent_blocks(sources)) {
+    return offset;
+  }
   const auto found = offsets_ns_.find(sessions);
   if (found == offsets_ns_.end()) {
     return std::nullopt;
   }
   std::vector<std::int64_t> offsets(found->second.begin(), found->second.end());
   return analysis::upper_median(offsets);
+}
+
+std::optional<std::int64_t> AnnouncedInstants::offset_by_sent_blocks(const Sources& sources) const {
+  const auto first = sent_.find(sources.first);
+  const auto second = sent_.find(sources.second);
+  if (first == sent_.end() || second == sent_.end()) {
+    return std::nullopt;
+  }
+  std::vector<std::int64_t> offsets;
+  for (const std::int64_t heard_ns : heard_ns_) {
+    const auto in_first = first->second.at(heard_ns);
+    const auto in_second = second->second.at(heard_ns);
+    if (in_first && in_second && in_first->is_between_samples && in_second->is_between_samples) {
+      offsets.push_back(in_second->stamp_ns - in_first->stamp_ns);
+    }
+  }
+  return offsets.empty() ? std::nullopt : std::optional(analysis::upper_median(offsets));
 }
 
 } // namespace dyncal::services

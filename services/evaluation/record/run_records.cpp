@@ -51,40 +51,37 @@ std::vector<std::string> RunRecords::undescribed() const {
   return names;
 }
 
-SourceInstants RunRecords::newest_stamps() const {
-  SourceInstants newest;
-  for (const auto& [name, source] : records_) {
-    const auto stamp_ns = source->newest_stamp_ns();
-    newest[name] = {stamp_ns.value_or(std::numeric_limits<std::int64_t>::max()),
-                    stamp_ns.has_value()};
+void RunRecords::announce(const StepAnnouncement& announcement,
+                          std::optional<std::int64_t> heard_ns) {
+  excitation_.announce(announcement);
+  if (heard_ns) {
+    instants_.hear(*heard_ns);
   }
-  return newest;
+  for (std::size_t step = 0; step < excitation_.steps_expected(); ++step) {
+    if (heard_ns && excitation_.is_announced_over(step)) {
+      instants_.add_over(step, *heard_ns);
+    }
+  }
+  note_newest_stamps();
 }
 
-void RunRecords::announce(const StepAnnouncement& announcement, const SourceInstants& at) {
-  instants_are_exact_ = instants_are_exact_ || !at.empty();
-  SourceInstants instants = at;
-  instants.merge(newest_stamps());
-  excitation_.announce(announcement);
-  for (const auto& [name, instant] : instants) {
+void RunRecords::note_newest_stamps() {
+  for (const auto& [name, source] : records_) {
+    const std::int64_t newest_ns =
+        source->newest_stamp_ns().value_or(std::numeric_limits<std::int64_t>::max());
     for (std::size_t step = 0; step < excitation_.steps_expected(); ++step) {
       if (excitation_.is_announced_over(step)) {
-        instants_.add_over(name, step, instant.stamp_ns);
+        instants_.add_over(name, step, newest_ns);
       }
     }
   }
-  add_offset(instants);
-}
-
-void RunRecords::add_offset(const SourceInstants& at) {
-  if (searches_.size() != 2) {
-    return;
-  }
-  const auto& [first_ns, first_is_known] = at.at(searches_[0].source);
-  const auto& [second_ns, second_is_known] = at.at(searches_[1].source);
-  if (first_is_known && second_is_known) {
-    instants_.add_offset({of(searches_[0].source).restarts(), of(searches_[1].source).restarts()},
-                         second_ns - first_ns);
+  if (searches_.size() == 2) {
+    const SourceRecord& first = of(searches_[0].source);
+    const SourceRecord& second = of(searches_[1].source);
+    if (first.newest_stamp_ns() && second.newest_stamp_ns()) {
+      instants_.add_offset({first.restarts(), second.restarts()},
+                           *second.newest_stamp_ns() - *first.newest_stamp_ns());
+    }
   }
 }
 
@@ -105,7 +102,7 @@ bool RunRecords::is_over_in(const std::string& source, std::size_t step) const {
     return true;
   }
   const auto newest_ns = record.newest_stamp_ns();
-  const auto then_ns = instants_.over_ns(source, step);
+  const auto then_ns = instants_.newest_when_over_ns(source, step);
   return newest_ns && then_ns && *then_ns <= *newest_ns && *newest_ns - *then_ns > grace.count();
 }
 
@@ -158,14 +155,14 @@ void RunRecords::compare_instants() {
 }
 
 // Of a source that was there from the beginning of the run, and goes on, the steps are in their
-// order; its samples may only be late.
+// order.
 void RunRecords::compare_with_announced(std::size_t step) {
   for (Search& search : searches_) {
     const FoundExcitation* found = search.steps.excitation(step);
     const auto over_ns = instants_.over_ns(search.source, step);
     const std::uint32_t session = of(search.source).restarts();
     if (found != nullptr && over_ns && search.steps.session(step) == session &&
-        (instants_are_exact_ || session > 0) && found->middle_ns() > *over_ns) {
+        (may_begin_late_ || session > 0) && found->middle_ns() > *over_ns) {
       pass_over(search, step, " before the step was over");
     }
   }
@@ -199,7 +196,8 @@ std::optional<std::size_t> RunRecords::later_search(std::size_t step,
                ? std::nullopt
                : std::optional<std::size_t>(lateness_s(there, here, rate) > 0.0 ? 1 : 0);
   }
-  const auto offset_ns = instants_.offset_ns({first_session, second_session});
+  const auto offset_ns = instants_.offset_ns({searches_[0].source, searches_[1].source},
+                                             {first_session, second_session});
   if (!offset_ns) { // nothing tells what the new session shows
     return restarted ? std::optional<std::size_t>(first_session > 0 ? 0 : 1) : std::nullopt;
   }

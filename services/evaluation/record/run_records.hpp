@@ -55,9 +55,15 @@ public:
   RunRecords& operator=(const RunRecords&) = delete;
 
   [[nodiscard]] ExcitationProgress& excitation() { return excitation_; }
-  // `at`: in the clocks of the sources, where somebody knows it better than by what has come so
-  // far.
-  void announce(const StepAnnouncement& announcement, const SourceInstants& at = {});
+  // `heard_ns`: by the clock of those times of blocks; without them the newest stamps tell what
+  // time it is in a source.
+  void announce(const StepAnnouncement& announcement, std::optional<std::int64_t> heard_ns = {});
+  // A block that was added to the record of a source.
+  void note_times(const std::string& source, const SourceBlock& block, const BlockTimes& times) {
+    instants_.add(source, block, times);
+  }
+  // The records may lack the begin of the run, which nobody saw.
+  void may_begin_late(bool may) { may_begin_late_ = may; }
   [[nodiscard]] const ExcitationProgress& excitation() const { return excitation_; }
   [[nodiscard]] const RecipeStep& planned(std::size_t step) const {
     return excitation_.order().step(step);
@@ -127,8 +133,7 @@ private:
     StepSearch steps;
   };
 
-  [[nodiscard]] SourceInstants newest_stamps() const;
-  void add_offset(const SourceInstants& at);
+  void note_newest_stamps();
   [[nodiscard]] bool agree_with_step_before(std::size_t step) const;
   void search_all(std::size_t expected);
   // Passes over what was found of a step and is of a later one.
@@ -153,7 +158,7 @@ private:
   std::map<std::string, std::unique_ptr<SourceRecord>> records_;
   AnnouncedInstants instants_;
   std::map<std::string, std::uint32_t> followed_; // session of a source, once it has sent samples
-  bool instants_are_exact_ = false;               // no guess by what had come when they were heard
+  bool may_begin_late_ = false;
   std::vector<Search> searches_;
   std::size_t compared_ = 0; // steps before this one
   // By step and channel that shows a later one: when it shows none.

@@ -216,6 +216,7 @@ StepSearch::Found StepSearch::found(const analysis::ExcitationWindow& window) co
 void StepSearch::end_session() {
   if (expected_) {
     found_[step_] = *expected_;
+    search_from_ns_ = expected_->excitation.end_ns(); // it is no other step of its frequency
     search_step(step_ + 1);
   }
 }

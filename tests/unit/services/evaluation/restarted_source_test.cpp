@@ -14,7 +14,10 @@ namespace {
 
 class RestartedSource : public testing::Test {
 protected:
-  tests::SyntheticRun run_{.steps = {{"40", 10.0}}};
+  explicit RestartedSource(std::vector<tests::SyntheticStep> steps = {{"40", 10.0}})
+      : run_{.steps = std::move(steps)} {}
+
+  tests::SyntheticRun run_;
   RunEvaluator evaluator_{*parse_recipe(run_.measurement()), {.ahead = true}};
   std::vector<wire::SampleBlock> acs_ = run_.acs_blocks();
   std::vector<wire::SampleBlock> dau_ = run_.dau_blocks();
@@ -103,6 +106,31 @@ TEST_F(RestartedSource, AtTheEndOfAStepIsNamedWhereNothingIsLeft) {
   ASSERT_EQ(results_.size(), 1U);
   EXPECT_FALSE(results_[0].valid);
   EXPECT_THAT(results_[0].problem, testing::HasSubstr("source 'dau' restarted during the run"));
+}
+
+class RestartedBetweenEqualSteps : public RestartedSource {
+protected:
+  RestartedBetweenEqualSteps() : RestartedSource({{"40", 10.0}, {"40", 10.0}}) {}
+};
+
+// However often it is asked while the new session waits.
+TEST_F(RestartedBetweenEqualSteps, GivesTheSecondNotTheSamplesOfTheFirst) {
+  feed(acs_, 0.0, 0.2);
+  feed(dau_, 0.0, 0.4); // all planned samples of the first of 2 s, and not the end
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_FALSE(evaluator_.is_ready_for("dau", new_session()));
+    take();
+  }
+  feed(acs_, 0.2, 0.5);
+  ASSERT_EQ(results_.size(), 1U);
+  EXPECT_TRUE(results_[0].valid) << results_[0].problem;
+  EXPECT_TRUE(evaluator_.is_ready_for("dau", new_session()));
+  restart_dau(0.95); // behind the second
+  feed(acs_, 0.5, 1.0);
+  feed(dau_, 0.95, 1.0);
+  ASSERT_EQ(results_.size(), 2U);
+  EXPECT_FALSE(results_[1].valid);
+  EXPECT_THAT(results_[1].problem, testing::HasSubstr("source 'dau' restarted during the run"));
 }
 
 TEST_F(RestartedSource, IsNotWaitedWithBeforeAStepHasCome) {

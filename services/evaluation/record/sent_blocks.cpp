@@ -1,29 +1,37 @@
-#include "services/replay/sent_blocks.hpp"
+#include "services/evaluation/record/sent_blocks.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace dyncal::services {
 
-void SentBlocks::add(const SourceBlock& block, std::int64_t sent_ns) {
+void SentBlocks::add(const SourceBlock& block, const BlockTimes& times) {
   if (block.samples == 0 || !block.is_consistent()) {
     return;
   }
+  const std::int64_t delay_ns = times.heard_ns - times.sent_ns;
   if (blocks_.empty() || block.session != session_) {
     session_ = block.session;
     first_ns_ = block.first_stamp_ns();
+    min_delay_ns_ = delay_ns;
     blocks_.clear();
   }
-  blocks_.push_back({blocks_.empty() ? sent_ns : std::max(sent_ns, blocks_.back().sent_ns),
-                     block.last_stamp_ns(), block.number});
+  min_delay_ns_ = std::min(min_delay_ns_, delay_ns);
+  blocks_.push_back(
+      {blocks_.empty() ? times.sent_ns : std::max(times.sent_ns, blocks_.back().sent_ns),
+       block.last_stamp_ns(), block.number});
+  if (blocks_.size() > max_blocks) {
+    blocks_.pop_front();
+  }
 }
 
-std::optional<SourceInstant> SentBlocks::at(std::int64_t recorded_ns) const {
+std::optional<SourceInstant> SentBlocks::at(std::int64_t heard_ns) const {
   if (blocks_.empty()) {
     return std::nullopt;
   }
+  const std::int64_t then_ns = heard_ns - min_delay_ns_;
   const auto next =
-      std::upper_bound(blocks_.begin(), blocks_.end(), recorded_ns,
+      std::upper_bound(blocks_.begin(), blocks_.end(), then_ns,
                        [](std::int64_t ns, const Sent& block) { return ns < block.sent_ns; });
   if (next == blocks_.begin()) {
     return SourceInstant{first_ns_ - 1, false};
@@ -32,7 +40,7 @@ std::optional<SourceInstant> SentBlocks::at(std::int64_t recorded_ns) const {
   if (next == blocks_.end() || next->number != before.number + 1) {
     return SourceInstant{before.last_ns + 1, false};
   }
-  const double part = static_cast<double>(recorded_ns - before.sent_ns) /
+  const double part = static_cast<double>(then_ns - before.sent_ns) /
                       static_cast<double>(next->sent_ns - before.sent_ns);
   return SourceInstant{before.last_ns +
                        std::llround(part * static_cast<double>(next->last_ns - before.last_ns))};
