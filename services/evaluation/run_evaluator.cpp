@@ -162,11 +162,14 @@ void RunEvaluator::keep_needed_channels(SourceRecord& source) const {
 void RunEvaluator::add(const std::string& source, const SourceBlock& block,
                        const std::optional<BlockTimes>& times) {
   SourceRecord* record = records_.find(source);
-  if (record == nullptr || finished_ || !record->add(block)) {
+  if (record == nullptr || finished_) {
     return;
   }
   if (times) {
     records_.note_times(source, block, *times);
+  }
+  if (!record->add(block)) {
+    return;
   }
   rate_watch_.add(source, block);
   if (clock_ && clock_->source() == source && !lost_at_clock_end_) {

@@ -58,7 +58,7 @@ public:
   // `heard_ns`: by the clock of those times of blocks; without them the newest stamps tell what
   // time it is in a source.
   void announce(const StepAnnouncement& announcement, std::optional<std::int64_t> heard_ns = {});
-  // A block that was added to the record of a source.
+  // Of every block of a source.
   void note_times(const std::string& source, const SourceBlock& block, const BlockTimes& times) {
     instants_.add(source, block, times);
   }

@@ -6,17 +6,16 @@
 namespace dyncal::services {
 
 void SentBlocks::add(const SourceBlock& block, const BlockTimes& times) {
+  // Of all sessions: the first blocks of a source that was started again may all come late.
+  min_delay_ns_ = std::min(min_delay_ns_, times.heard_ns - times.sent_ns);
   if (block.samples == 0 || !block.is_consistent()) {
     return;
   }
-  const std::int64_t delay_ns = times.heard_ns - times.sent_ns;
   if (blocks_.empty() || block.session != session_) {
     session_ = block.session;
     first_ns_ = block.first_stamp_ns();
-    min_delay_ns_ = delay_ns;
     blocks_.clear();
   }
-  min_delay_ns_ = std::min(min_delay_ns_, delay_ns);
   blocks_.push_back(
       {blocks_.empty() ? times.sent_ns : std::max(times.sent_ns, blocks_.back().sent_ns),
        block.last_stamp_ns(), block.number});

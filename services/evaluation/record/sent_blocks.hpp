@@ -3,17 +3,19 @@
 // source when a step was over, although a source begins late, lacks a part, or its samples are
 // late.
 //
-// Of the newest session, in the order of its blocks. The block that was heard soonest tells how far
-// the clocks of the two hosts are apart; a clock that is set makes stamps later than they were,
-// never earlier. A block's stamp is that of its last sample. Between two blocks that follow each
-// other the stamp is interpolated; where blocks are missing it is just behind the block before, and
-// before the first block just before that.
+// Of the newest session, in the order of its blocks. The block of all that was heard soonest tells
+// how far the clocks of the two hosts are apart; a clock that is set makes stamps later than they
+// were, never earlier. A block's stamp is that of its last sample. Between two blocks that follow
+// each other the stamp is interpolated; where blocks are missing it is just behind the block
+// before, and before the first block just before that.
 //
 // Units: ns. Holds the newest `max_blocks`. Belongs to one thread; does not fail.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <limits>
 #include <optional>
 
 #include "services/contract/source_block.hpp"
@@ -49,7 +51,7 @@ private:
 
   std::uint64_t session_ = 0;
   std::int64_t first_ns_ = 0;
-  std::int64_t min_delay_ns_ = 0;
+  std::int64_t min_delay_ns_ = std::numeric_limits<std::int64_t>::max();
   std::deque<Sent> blocks_;
 };
 

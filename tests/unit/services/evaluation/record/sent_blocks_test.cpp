@@ -49,6 +49,13 @@ TEST_F(SentBlocksTest, InterpolateAlsoWhatCameLate) {
   expect(1030 * ms, 530 * ms, true);
 }
 
+TEST_F(SentBlocksTest, KnowHowFarTheClocksAreApartFromTheSessionBefore) {
+  add(0, 500 * ms, 1000 * ms, 0);
+  add(0, 20 * ms, 2000 * ms, 700 * ms, 2);
+  add(1, 40 * ms, 2020 * ms, 700 * ms, 2);
+  expect(2010 * ms, 30 * ms, true);
+}
+
 TEST_F(SentBlocksTest, TakeNoStampOfWhereNothingIs) {
   add(0, 500 * ms, 1000 * ms, 0);
   add(3, 560 * ms, 1060 * ms, 0);
