@@ -76,7 +76,7 @@ std::string known_cause(const RunRecords& records, std::size_t step, const std::
   if (const std::uint64_t lost = source.lost() + source.overflowed(); lost > 0) {
     return fmt::format(": source '{}' lost {} samples during the run", name, lost);
   }
-  return "";
+  return records.excitation().is_broken_off(step) ? ": its excitation was broken off" : "";
 }
 
 std::string likely_cause(const SourceRecord& source, const RecipeStep& step) {

@@ -105,6 +105,17 @@ TEST_P(RepeatedSteps, AConductedRunIsNotFinishedBeforeItsExcitationIsOver) {
   EXPECT_EQ(functions_[0].points.size(), 2U);
 }
 
+TEST_P(RepeatedSteps, AStepThatWasBrokenOffBeforeItShowedSaysSo) {
+  play({{"40", 10.0}, {"80", 0.0}, {"40", 0.0}, {"40", 0.0}, {"40", 0.0}});
+  excite(1, 2.3);
+  announce(2, State::excited);
+  announce(2, State::aborted);
+  send_until(9.9);
+  end();
+  ASSERT_THAT(steps_and_attempts(), ElementsAre(Pair{1, 1}, Pair{2, 1}));
+  EXPECT_THAT(results_[1].problem, HasSubstr("in acs/sync: its excitation was broken off"));
+}
+
 // The conductor has died in step 1, and somebody makes a sine of the next step's frequency by hand.
 TEST_P(RepeatedSteps, ASineOfAStepThatWasNotAnnouncedIsNotTakenForIt) {
   play({{"40", 10.0}, {"80", 10.0}, {"40", 0.0}, {"40", 0.0}, {"40", 0.0}});
