@@ -16,8 +16,6 @@ constexpr std::size_t max_groups = 16;
 // Gain of a split, chi-squared with two degrees of freedom, that one of 256 splits of white noise
 // exceeds once in 10^4: 2 ln(256 / 10^-4).
 constexpr double significant_gain = 29.5;
-constexpr double most_correlation = 0.9;
-constexpr double least_degrees_of_freedom = 1.5;
 // A split that leaves most of the scatter where it was describes something else: hum that beats, a
 // knock.
 constexpr double min_explained = 0.4;
@@ -203,15 +201,9 @@ private:
   double variance_magnitude_, variance_phase_;
 };
 
-struct Scatter {
-  double of_mean = 0.0;
-  double degrees_of_freedom = 0.0;
-};
-
 // s / sqrt(m), larger where neighbours resemble each other: of blocks that follow a trend only m (1
-// - r) / (1 + r) are independent, r being their correlation. That of m values about their own mean
-// is too small by (1 + 3 r) / m, which is added.
-Scatter scatter_of(const std::vector<double>& values) {
+// - r) / (1 + r) are independent, r being their correlation.
+double scatter_of_mean(const std::vector<double>& values) {
   const double n = static_cast<double>(values.size());
   double mean = 0.0;
   for (double value : values) {
@@ -223,12 +215,10 @@ Scatter scatter_of(const std::vector<double>& values) {
     products += (value - mean) * before;
     before = value - mean;
   }
-  const double seen = squares > 0.0 ? products / squares : 0.0;
-  const double correlation = std::min(seen + (1.0 + 3.0 * seen) / n, most_correlation);
-  const bool resembling = correlation > 1.0 / std::sqrt(n);
-  const double independent = resembling ? n * (1.0 - correlation) / (1.0 + correlation) : n;
-  return {std::sqrt(squares / (n - 1.0) / independent),
-          std::max(independent - 1.0, least_degrees_of_freedom)};
+  const double correlation = squares > 0.0 ? std::min(products / squares, 0.9) : 0.0;
+  const bool resembling = correlation > 2.0 / std::sqrt(n);
+  return std::sqrt(squares / (n - 1.0) / n *
+                   (resembling ? (1.0 + correlation) / (1.0 - correlation) : 1.0));
 }
 
 void add_scatter(const Comparison& comparison, const Difference& difference,
@@ -241,11 +231,9 @@ void add_scatter(const Comparison& comparison, const Difference& difference,
     phases.push_back(mean.imag());
   }
   const double blocks = static_cast<double>(difference.values.size());
-  const Scatter magnitude = scatter_of(magnitudes);
-  const Scatter phase = scatter_of(phases);
-  result.u_magnitude_rel = comparison.of_records_magnitude(blocks) * magnitude.of_mean;
-  result.u_phase_rad = comparison.of_records_phase(blocks) * phase.of_mean;
-  result.degrees_of_freedom = std::min(magnitude.degrees_of_freedom, phase.degrees_of_freedom);
+  result.u_magnitude_rel = comparison.of_records_magnitude(blocks) * scatter_of_mean(magnitudes);
+  result.u_phase_rad = comparison.of_records_phase(blocks) * scatter_of_mean(phases);
+  result.degrees_of_freedom = static_cast<double>(magnitudes.size()) - 1.0;
 }
 
 void add_correction(const std::vector<Difference>& all, double shortening, RatioInBlocks& result) {

@@ -13,8 +13,7 @@
 //    records do not cover the same part of what both share. `correction` is the weighted mean of
 //    d_k, ln(ratio in blocks / ratio of the records), with what is lost within blocks, 1/24 of the
 //    square of the phase's advance in one; else it is 0, so that clean records keep their value.
-// 3. Scatter of d_k in up to 16 groups, s / sqrt(m), larger where neighbours resemble each other,
-//    and known as badly as the fewer independent ones there are then.
+// 3. Scatter of d_k in up to 16 groups, s / sqrt(m), larger where neighbours resemble each other.
 // 4. The best split of d_k into two levels is a change where chance gives it once in 10^4, against
 //    noise as white as stated or as large as what the split leaves, for every likely offset.
 //
