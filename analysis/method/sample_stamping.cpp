@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "analysis/base/phasor.hpp"
+#include "analysis/clock/stamp_beat.hpp"
 #include "analysis/method/blocks_of_clock.hpp"
 #include "analysis/method/channels_of_one_clock.hpp"
 #include "analysis/method/own_clock_channel.hpp"
@@ -49,7 +50,7 @@ Budget systematic_rows(const SampleStampingInput& input, const RecordedChannel& 
 // Stamp noise common to sync and the sensor: the phase of the ratio sees it only as far as the two
 // sines differ in phase.
 void add_stamp_noise(Budget& budget, const SampleStampingInput& input, const RecordedChannel& dut,
-                     const RecordedChannel& sync_dau) {
+                     const RecordedChannel& sync_dau, double beat_s) {
   const double tick_s = input.systematic.dau_tick_s / std::sqrt(12.0);
   const double rest_s = std::sqrt(std::max(
       0.0, input.systematic.dau_jitter_s * input.systematic.dau_jitter_s - tick_s * tick_s));
@@ -68,6 +69,14 @@ void add_stamp_noise(Budget& budget, const SampleStampingInput& input, const Rec
   };
   add(ContributionKind::stamp_jitter, Distribution::normal, rest_s);
   add(ContributionKind::stamp_tick, Distribution::rectangular, tick_s);
+  if (beat_s > 0.0) {
+    const double bound = input.frequency.angular() * beat_s;
+    budget.add({.kind = ContributionKind::stamp_tick,
+                .subject = "the DAU stamps, in step with the signal",
+                .distribution = Distribution::rectangular,
+                .u_magnitude_rel = bound / std::sqrt(3.0),
+                .u_phase_rad = 2.0 * across * bound / std::sqrt(3.0)});
+  }
 }
 
 // The records of the two clocks begin where the search found their step, in frames of a grid of
@@ -98,6 +107,7 @@ struct Comparison {
   std::optional<BlockSeries> blocks;
   BlockAlignment alignment;
   bool noise_unknown = false;
+  double stamp_beat_s = 0.0; // of the DAU's stamps
 };
 
 TransferPoint evaluate_channel(const SampleStampingInput& input, const RecordedChannel& dut,
@@ -106,7 +116,7 @@ TransferPoint evaluate_channel(const SampleStampingInput& input, const RecordedC
                                StepFindings& findings) {
   Budget budget;
   add_sensor_rows(budget, dut, common_jitter_s(input.systematic));
-  add_stamp_noise(budget, input, dut, sync_dau);
+  add_stamp_noise(budget, input, dut, sync_dau, with.stamp_beat_s);
   budget.append(with.noise);
   BlockAlignment alignment = with.alignment;
   alignment.seen = seen_offset(dut, with.reference);
@@ -161,7 +171,8 @@ Expected<SampleStampingResult> evaluate_sample_stamping(const SampleStampingInpu
                         .reference = reference,
                         .blocks = acs_blocks.beside_pilot(0),
                         .alignment = alignment_of(input, *acs, dau->pilot),
-                        .noise_unknown = reference.noise_unknown};
+                        .noise_unknown = reference.noise_unknown,
+                        .stamp_beat_s = stamp_beat_s(input.frequency, input.dau_stamps_ns)};
   SampleStampingResult result{reference.result, acs->pilot.result, dau->pilot.result, {}, {}};
   add_knock(reference, result.findings);
   for (std::size_t i = 0; i < dau->others.size(); ++i) {

@@ -96,6 +96,11 @@ void SourceStreams::take_description(Stream& stream, const wire::SourceDescripti
   replace_unfit(stream);
 }
 
+// Who comes late is sent the samples of a session whose description the source has replaced.
+bool SourceStreams::is_described(const Stream& stream, std::uint64_t session) const {
+  return stream.described.contains(session) || (begin_ == Begin::behind && stream.description);
+}
+
 bool SourceStreams::is_unfit(const Stream& stream, std::uint64_t session) {
   return stream.unfit && stream.unfit->description.session() == session;
 }
@@ -118,7 +123,7 @@ SourceStreams::Follower SourceStreams::make_follower(const std::string& name, bo
           if (record.run() != run_ || is_unfit(stream, record.session())) {
             return;
           }
-          stream.is_undescribed = !stream.described.contains(record.session());
+          stream.is_undescribed = !is_described(stream, record.session());
           if (!stream.is_undescribed) {
             evaluator_.add(name, from_message(record));
           }
@@ -132,8 +137,7 @@ SourceStreams::Follower SourceStreams::make_follower(const std::string& name, bo
 void SourceStreams::hand_over(const std::string& name, Stream& stream,
                               const wire::SampleBlock& block) {
   if (!stream.waiting.empty() || is_unfit(stream, block.session()) ||
-      !stream.described.contains(block.session()) ||
-      !evaluator_.is_ready_for(name, block.session())) {
+      !is_described(stream, block.session()) || !evaluator_.is_ready_for(name, block.session())) {
     stream.waiting.add(block);
   } else {
     stream.is_undescribed = false;
@@ -155,7 +159,7 @@ void SourceStreams::hand_over_waiting(const std::string& name, Stream& stream, I
   const bool overdue = now - stream.waiting_since > session_limit;
   while (!stream.waiting.empty()) {
     const wire::SampleBlock& block = stream.waiting.oldest();
-    const bool is_undescribed = !stream.described.contains(block.session());
+    const bool is_undescribed = !is_described(stream, block.session());
     if (is_undescribed && overdue && !is_unfit(stream, block.session())) {
       stream.is_undescribed = true;
       stream.waiting.leave_out_session(block.session());

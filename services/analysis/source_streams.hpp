@@ -125,6 +125,7 @@ private:
 
   [[nodiscard]] static bool is_triggered(const Stream& stream);
   [[nodiscard]] static bool has_answered(const Stream& stream);
+  [[nodiscard]] bool is_described(const Stream& stream, std::uint64_t session) const;
   [[nodiscard]] static bool is_unfit(const Stream& stream, std::uint64_t session);
   static void take_description(Stream& stream, const wire::SourceDescription& description);
   static void replace_unfit(Stream& stream);

@@ -17,13 +17,13 @@ A result is of the step whose samples it used, by their stamps: never of two ste
 - Of steps that were cut at most 1 % are farther from it than
   3 sqrt(u_cut^2 - u_whole^2) + 0.1 u_cut (a finding when more are by the binomial bound), and none
   than 5 sqrt(u_cut^2 - u_whole^2) + 0.1 u_cut. All u are those that are stated.
-- Exchanged samples. The wording above holds where the samples of the cut step are some of those
-  of the whole one. Settling is counted from the begin of the record that is left, so that what is
-  evaluated may lie elsewhere in the step and be as long as before: n samples go, n others come,
-  u_cut = u_whole, and the wording would allow 0.1 u for a difference of two means of noise that is
-  not the same. Its variance is u_cut^2 + u_whole^2 - 2 u_whole^2 n_both / n_cut, of the rows of
-  noise only; no other row may move. This takes the place of the square root where samples came
-  that the whole step had not used, and nowhere else; how many values are judged so is printed.
+- Rows of noise. The wording above holds where nothing but noise is in u, and the samples of the cut
+  step are some of those of the whole one. A row that estimates something else may become smaller,
+  and settling is counted from the begin of the record that is left, so that n samples go and n
+  others come: then u_cut = u_whole, and the wording would allow 0.1 u for a difference of two means
+  of noise that is not the same. Its variance is the sum over the rows of noise, where it is above
+  0, of u_cut^2 + u_whole^2 - 2 u_whole^2 n_both / n_cut; no other row may move. This takes the
+  place of the square root where it is larger; how many values are judged so is printed.
 - A step has no value when a record lacks it, and its problem names no sync cable.
 - It has the frequency and the level of its step. It has its number, or the flag
   `step_number_uncertain`; this only where every record in which steps are searched lacks a step of
@@ -196,14 +196,9 @@ def span_ns(point, source):
     return of_source[0]["first_stamp_ns"], of_source[0]["last_stamp_ns"]
 
 
-def has_others(point, whole, sources):
-    """Whether samples were used that the whole step had not."""
-    spans = [(span_ns(point, name), span_ns(whole, name)) for name in sources]
-    return any(cut[0] < before[0] or cut[1] > before[1] for cut, before in spans)
-
-
 def variance_of_change(point, whole, quantity, sources):
-    """Of the noise that others in the place of samples make of a value: relative, or in rad^2.
+    """Of the noise that fewer samples, or others in their place, make of a value: relative, or in
+    rad^2.
     With u^2 = s^2 / n: u_cut^2 + u_whole^2 - 2 u_whole^2 n_both / n_cut."""
     column = "u_magnitude_rel" if quantity == "magnitude" else "u_phase_rad"
     noise2 = [
@@ -233,7 +228,7 @@ class Judgement:
         self.searched = 2 if run.calibration.settings.method == "sample-timestamping" else 1
         self.findings = []
         self.of_cut_steps = []  # deviation over what is allowed at 3
-        self.exchanged = 0  # of these values, of samples that the whole step had not used
+        self.by_noise = 0  # of these values, by the rows of noise
         self.uncertain = 0  # numbers that are said to be so
         self.refused = 0  # steps that are whole, where others are like them
 
@@ -306,10 +301,9 @@ class Judgement:
                 continue
             scale = whole["magnitude"] if quantity == "magnitude" else 1.0
             more2 = max(0.0, u_cut**2 - u_whole**2)
-            if has_others(point, whole, self.run.epochs_ns):
-                noise = variance_of_change(point, whole, quantity, self.run.epochs_ns)
-                self.exchanged += scale**2 * noise > more2
-                more2 = max(more2, scale**2 * noise)
+            noise = variance_of_change(point, whole, quantity, self.run.epochs_ns)
+            self.by_noise += scale**2 * noise > more2
+            more2 = max(more2, scale**2 * noise)
             more = math.sqrt(more2)
             self.of_cut_steps.append(change / (3.0 * more + 0.1 * u_cut))
             if change > 5.0 * more + 0.1 * u_cut:
@@ -344,7 +338,7 @@ def judged(work):
                 [Finding(text, one) for one in judgement.findings],
                 judgement.of_cut_steps,
                 judgement.refused,
-                judgement.exchanged,
+                judgement.by_noise,
                 judgement.uncertain,
                 sum(set(left) == {"whole"} for left in judgement.left),
             )
@@ -384,7 +378,7 @@ def report(judgements):
         print(
             f"{kind:20} {len(of_kind):4} cuts, {whole:5} steps left whole, {refused:3} of them "
             f"refused, {sum(one[5] for one in of_kind):3} numbers uncertain, {len(of_cut):4} "
-            f"values of cut steps ({sum(one[4] for one in of_kind)} of exchanged samples), largest "
+            f"values of cut steps ({sum(one[4] for one in of_kind)} by the rows of noise), largest "
             f"{max(of_cut, default=0.0):.2f} of what is allowed"
         )
         if of_kind and not whole:

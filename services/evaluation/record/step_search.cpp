@@ -197,9 +197,12 @@ std::optional<TimeInterval> StepSearch::quiet_time(const analysis::ExcitationWin
 std::optional<TimeInterval> StepSearch::rise(const analysis::ExcitationWindow& window,
                                              const TimeInterval& evaluated) const {
   const std::int64_t begin_ns = window.excited_begin_ns - finder_->frame_ns();
-  // A record that begins later, or anew, has only some of it.
+  // A record that begins later, or anew, has only some of it. Where that of a run begins, its
+  // recording does not always begin as well: the first step is the same from both without.
   const auto held = record_.stamps_ns();
-  const bool shown = begin_ns >= search_from_ns_ && !held.empty() && held.front() <= begin_ns;
+  const bool is_first = search_from_ns_ == beginning_of_time && !schedule_;
+  const bool shown =
+      !is_first && begin_ns > search_from_ns_ && !held.empty() && held.front() <= begin_ns;
   return shown ? std::optional(TimeInterval{begin_ns, evaluated.begin_ns - 1}) : std::nullopt;
 }
 
