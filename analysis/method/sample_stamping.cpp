@@ -138,6 +138,32 @@ std::complex<double> link_of(const SampleStampingInput& input, const ChannelsOfO
          (acs.others.front().phasor() * late / input.reference_response.phasor());
 }
 
+// Of a sensor with a clock of its own.
+Expected<void> add_own_clock_points(const SampleStampingInput& input, const RecordedChannel& pilot,
+                                    const BlocksOfClock& dau_blocks, const Comparison& with,
+                                    SampleStampingResult& result) {
+  for (const ChannelSamples& dut : input.dut) {
+    auto point = evaluate_own_clock_channel(
+        pilot.result, input.dau_stamps_ns.front(),
+        {.link = with.link,
+         .noise = with.noise,
+         .systematic = with.systematic,
+         .reference = with.reference,
+         .sync = dau_blocks.pilot,
+         .denominator = with.blocks,
+         .alignment = with.alignment,
+         .noise_unknown = with.noise_unknown},
+        input.dut_stamps_ns, dut,
+        {.clock_offset_s = input.systematic.clock_offset_s, .stamp_jitter_s = 0.0},
+        result.findings);
+    if (!point) {
+      return fail(point.error());
+    }
+    result.points.push_back(std::move(*point));
+  }
+  return {};
+}
+
 } // namespace
 
 Expected<SampleStampingResult> evaluate_sample_stamping(const SampleStampingInput& input) {
@@ -180,27 +206,11 @@ Expected<SampleStampingResult> evaluate_sample_stamping(const SampleStampingInpu
                                              dau_blocks.beside_pilot(i), with, result.findings));
     add_knock(dau->others[i], result.findings);
   }
-  if (!own_clock) {
-    return result;
-  }
-  for (const ChannelSamples& dut : input.dut) {
-    auto point = evaluate_own_clock_channel(
-        dau->pilot.result, input.dau_stamps_ns.front(),
-        {.link = link,
-         .noise = noise,
-         .systematic = systematic,
-         .reference = reference,
-         .sync = dau_blocks.pilot,
-         .denominator = with.blocks,
-         .alignment = with.alignment,
-         .noise_unknown = with.noise_unknown},
-        input.dut_stamps_ns, dut,
-        {.clock_offset_s = input.systematic.clock_offset_s, .stamp_jitter_s = 0.0},
-        result.findings);
-    if (!point) {
-      return fail(point.error());
+  if (own_clock) {
+    if (const auto added = add_own_clock_points(input, dau->pilot, dau_blocks, with, result);
+        !added) {
+      return fail(added.error());
     }
-    result.points.push_back(std::move(*point));
   }
   return result;
 }
