@@ -18,7 +18,8 @@
 // s, makes most of it, 1.8 u*. U holds 95.45 % of rectangles that are not shown, and is at most 1.5
 // times what errors of a clean run of three frequencies make it. In a run of one or two, of which
 // little else is uncertain, no rule does both (with 1.5, 88 to 93 % are held): there it is up to
-// 2.5. The scatter is shown where the sum over all steps has a maximum above 10: chance, 1e-3.
+// 2.5, and 3 with one frequency. The scatter is shown where the sum over all steps has a maximum
+// above 10: chance, 1e-3.
 //
 // Plain function, any thread.
 #pragma once

@@ -51,7 +51,8 @@ public:
   // the search away from it and from the excitation before. Empty where there is no such time.
   [[nodiscard]] std::optional<TimeInterval> quiet_before(const TimeInterval& interval) const;
   // Of the same step: from a frame before its excitation began to its interval. Empty where the
-  // record does not show how it began.
+  // record does not show how it began, and of the first step of a record of which nobody has seen
+  // the whole: a stream and its recording do not begin at the same block.
   [[nodiscard]] std::optional<TimeInterval> rise_before(const TimeInterval& interval) const;
   // The first instant of interest for this step, quiet time before it included.
   [[nodiscard]] std::optional<std::int64_t> needed_for(std::size_t step) const;
