@@ -83,8 +83,8 @@ void before_abort(int /*signal*/) {
   } catch (const std::system_error& error) {
     if (error.code() == std::errc::resource_unavailable_try_again) {
       end_if_something_lacks(); // a thread's stack is memory
-      end_without("no further thread could be made; raise TasksMax of its systemd unit, the "
-                  "user's limit (ulimit -u), or its memory");
+      end_without("no further thread could be made; raise TasksMax or MemoryMax of its systemd "
+                  "unit, or the user's limits (ulimit -u, -v)");
     }
     say(error.what());
   } catch (const std::exception& error) {

@@ -129,6 +129,8 @@ TEST_P(BusExchange, GivesAReaderOfLiveSamplesNoMoreOfTheBlocksBeforeThanIsKept) 
                           Kept{Profile::paced_samples, paced_late_joiner_blocks}}) {
     constexpr std::uint64_t before = std::uint64_t{2} * repair_blocks;
     auto writer = this->writer<wire::SampleBlock>(topics::dau_samples, kept.profile);
+    // What is sent to a reader that has ended reaches the next one of its participant.
+    ASSERT_TRUE(wait_for([&] { return writer.matched_readers() == 0; }));
     for (std::uint64_t i = 0; i < before; ++i) {
       ASSERT_EQ(writer.write(block(i)), WriteOutcome::written);
     }
