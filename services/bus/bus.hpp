@@ -54,7 +54,7 @@ struct ParticipantOptions {
   bool multicast = true;          // false: discovery by `peers` alone
   std::string interface_name;     // network interface or its address; empty: the vendor's choice
   bool watch_discovery = false;   // for discovered()
-  // False: packets reach the vendor's library as they come. To measure what its screen costs, only.
+  // False: packets reach Fast DDS as they come. To measure what its screen costs, only.
   bool screened = true;
   // One sentence for the user, e.g. that a host limit is too low; may be empty. Called from any
   // thread while the participant lives.

@@ -8,8 +8,8 @@
 #include <span>
 #include <string>
 
-#include "services/bus/fastdds/rtps_screen.hpp"
-#include "services/bus/rtps/message_check.hpp"
+#include "services/bus/fastdds/screen/message_check.hpp"
+#include "services/bus/fastdds/screen/rtps_screen.hpp"
 #include "services/bus/type_support.hpp"
 
 namespace {

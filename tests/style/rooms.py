@@ -36,9 +36,10 @@ FLOORS = {
     ],
     "services": [
         ["."],
-        ["bus/rtps", "output"],
+        ["output"],
         ["contract", "report/figures"],
         ["bench", "bus", "supervision"],
+        ["bus/fastdds/screen"],
         ["bus/cyclonedds", "bus/fastdds", "bus/memory", "host_clocks", "live_signals"],
         ["program"],
         ["evaluation/recipe", "recording", "source"],

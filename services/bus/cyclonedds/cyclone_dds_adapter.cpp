@@ -4,11 +4,10 @@
 #include <mutex>
 
 #include "services/bus/adapters.hpp"
+#include "services/bus/cyclonedds/cyclone_dds_addresses.h"
 #include "services/bus/cyclonedds/cyclone_dds_config.hpp"
-#include "services/bus/cyclonedds/cyclone_dds_connections.h"
 #include "services/bus/cyclonedds/cyclone_dds_discovery.hpp"
 #include "services/bus/cyclonedds/cyclone_dds_log.hpp"
-#include "services/bus/cyclonedds/cyclone_dds_screen.hpp"
 #include "services/bus/cyclonedds/cyclone_dds_type.hpp"
 #include "services/bus/host_network.hpp"
 #include "services/bus/qos_profiles.hpp"
@@ -41,13 +40,11 @@ private:
 // Cyclone DDS configures a domain once a process, so that all participants in it share the settings
 // of the first.
 struct Domain {
-  CycloneDdsScreen screen; // outlives the domain's threads
   Entity entity;
   std::string config;
 };
 
-services::Expected<std::shared_ptr<Domain>>
-open_domain(int number, const std::string& config, const std::shared_ptr<RefusedPackets>& refused) {
+services::Expected<std::shared_ptr<Domain>> open_domain(int number, const std::string& config) {
   static std::mutex mutex;
   static std::map<int, std::weak_ptr<Domain>> open;
   const std::lock_guard lock(mutex);
@@ -68,8 +65,7 @@ open_domain(int number, const std::string& config, const std::shared_ptr<Refused
                                   " programs of a domain, and CYCLONEDDS_URI may be the cause)",
                               handle));
   }
-  auto domain =
-      std::shared_ptr<Domain>(new Domain{CycloneDdsScreen(refused), Entity(handle), config});
+  auto domain = std::shared_ptr<Domain>(new Domain{Entity(handle), config});
   open[number] = domain;
   return domain;
 }
@@ -214,8 +210,8 @@ private:
 
 class CycloneParticipant : public UntypedParticipant {
 public:
-  CycloneParticipant(std::shared_ptr<CycloneParticipantHandle> participant, bool screened)
-      : participant_(std::move(participant)), screened_(screened) {}
+  explicit CycloneParticipant(std::shared_ptr<CycloneParticipantHandle> participant)
+      : participant_(std::move(participant)) {}
 
   services::Expected<std::unique_ptr<UntypedWriter>>
   writer(const TypeSupport& type, const std::string& topic, Profile profile,
@@ -285,17 +281,12 @@ private:
       release_cyclone_sertype(sertype);
       return topic;
     }
-    const ddsi_domaingv& domain = domain_of(*sertype);
-    addresses_->set(addresses_of(domain));
-    if (screened_) {
-      participant_->domain->screen.install(domain);
-    }
+    addresses_->set(addresses_of(domain_of(*sertype)));
     return topic;
   }
 
   std::shared_ptr<CycloneParticipantHandle> participant_;
   std::shared_ptr<OwnAddresses> addresses_ = std::make_shared<OwnAddresses>();
-  bool screened_;
 };
 
 } // namespace
@@ -313,7 +304,7 @@ create_cyclone_dds_participant(const ParticipantOptions& options) {
   }
 
   auto refused = packets_refused_by_cyclone_dds(options.warn);
-  auto domain = open_domain(options.domain, *config, refused);
+  auto domain = open_domain(options.domain, *config);
   if (!domain) {
     return fail(domain.error());
   }
@@ -325,11 +316,10 @@ create_cyclone_dds_participant(const ParticipantOptions& options) {
     return fail(cyclone_error("Cyclone DDS cannot join domain " + std::to_string(options.domain),
                               participant));
   }
-  return std::make_unique<CycloneParticipant>(
-      std::shared_ptr<CycloneParticipantHandle>(new CycloneParticipantHandle{
-          std::move(*domain), Entity(participant),
-          std::make_shared<MalformedMessages>(options.warn), std::move(refused)}),
-      options.screened);
+  return std::make_unique<CycloneParticipant>(std::shared_ptr<CycloneParticipantHandle>(
+      new CycloneParticipantHandle{std::move(*domain), Entity(participant),
+                                   std::make_shared<MalformedMessages>(options.warn),
+                                   std::move(refused)}));
 }
 
 } // namespace dyncal::bus

@@ -11,7 +11,7 @@
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
 
 #include "services/bus/bus.hpp"
-#include "services/bus/fastdds/screened_transport.hpp"
+#include "services/bus/fastdds/screen/screened_transport.hpp"
 
 namespace dyncal::bus {
 

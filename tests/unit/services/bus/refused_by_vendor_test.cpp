@@ -12,7 +12,7 @@
 #include "services/contract/topics.hpp"
 #include "tests/dds_domain.hpp"
 #include "tests/patience.hpp"
-#include "tests/unit/services/bus/rtps/rtps_bytes.hpp"
+#include "tests/unit/services/bus/fastdds/screen/rtps_bytes.hpp"
 
 namespace dyncal::bus {
 namespace {
@@ -100,6 +100,9 @@ TEST_P(RefusedByVendor, PacketsLongerThanOursAreNotMalformed) {
 }
 
 TEST_P(RefusedByVendor, PacketsThatJumpAreCountedWhenThereAreMany) {
+  if (GetParam() == Vendor::cyclone_dds) {
+    GTEST_SKIP() << "Cyclone DDS reads what comes as it comes";
+  }
   Participant participant = join();
   const auto reader = participant.reader(topics::command, "bench", nullptr);
   ASSERT_TRUE(reader);

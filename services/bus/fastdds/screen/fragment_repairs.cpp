@@ -1,11 +1,11 @@
-#include "services/bus/fastdds/fragment_repairs.hpp"
+#include "services/bus/fastdds/screen/fragment_repairs.hpp"
 
 #include <algorithm>
 #include <functional>
 #include <string_view>
 #include <vector>
 
-#include "services/bus/rtps/rtps_format.hpp"
+#include "services/bus/fastdds/screen/rtps_format.hpp"
 
 namespace dyncal::bus {
 namespace {

@@ -1,11 +1,11 @@
-#include "services/bus/fastdds/rtps_screen.hpp"
+#include "services/bus/fastdds/screen/rtps_screen.hpp"
 
 #include <string>
 
 #include <gtest/gtest.h>
 
 #include "services/bus/qos_profiles.hpp"
-#include "tests/unit/services/bus/rtps/rtps_bytes.hpp"
+#include "tests/unit/services/bus/fastdds/screen/rtps_bytes.hpp"
 
 namespace dyncal::bus {
 namespace {

@@ -1,10 +1,10 @@
-#include "services/bus/fastdds/discovery_heartbeats.hpp"
+#include "services/bus/fastdds/screen/discovery_heartbeats.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "services/bus/rtps/rtps_format.hpp"
-#include "tests/unit/services/bus/rtps/rtps_bytes.hpp"
+#include "services/bus/fastdds/screen/rtps_format.hpp"
+#include "tests/unit/services/bus/fastdds/screen/rtps_bytes.hpp"
 
 namespace dyncal::bus {
 namespace {

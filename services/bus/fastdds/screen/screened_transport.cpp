@@ -1,4 +1,4 @@
-#include "services/bus/fastdds/screened_transport.hpp"
+#include "services/bus/fastdds/screen/screened_transport.hpp"
 
 #include <fastdds/rtps/common/LocatorList.hpp>
 #include <fastdds/rtps/common/LocatorsIterator.hpp>
@@ -13,10 +13,10 @@
 #include <utility>
 #include <vector>
 
-#include "services/bus/fastdds/discovery_heartbeats.hpp"
-#include "services/bus/fastdds/fragment_repairs.hpp"
-#include "services/bus/fastdds/rtps_screen.hpp"
-#include "services/bus/rtps/message_check.hpp"
+#include "services/bus/fastdds/screen/discovery_heartbeats.hpp"
+#include "services/bus/fastdds/screen/fragment_repairs.hpp"
+#include "services/bus/fastdds/screen/message_check.hpp"
+#include "services/bus/fastdds/screen/rtps_screen.hpp"
 
 namespace dyncal::bus {
 namespace {

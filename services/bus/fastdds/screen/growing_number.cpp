@@ -1,4 +1,4 @@
-#include "services/bus/rtps/growing_number.hpp"
+#include "services/bus/fastdds/screen/growing_number.hpp"
 
 namespace dyncal::bus {
 

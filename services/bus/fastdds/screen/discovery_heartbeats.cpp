@@ -1,9 +1,9 @@
-#include "services/bus/fastdds/discovery_heartbeats.hpp"
+#include "services/bus/fastdds/screen/discovery_heartbeats.hpp"
 
 #include <algorithm>
 #include <cstring>
 
-#include "services/bus/rtps/rtps_format.hpp"
+#include "services/bus/fastdds/screen/rtps_format.hpp"
 
 namespace dyncal::bus {
 namespace {

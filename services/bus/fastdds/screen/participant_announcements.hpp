@@ -33,7 +33,7 @@
 #include <set>
 #include <string>
 
-#include "services/bus/rtps/rtps_format.hpp"
+#include "services/bus/fastdds/screen/rtps_format.hpp"
 
 namespace dyncal::bus {
 

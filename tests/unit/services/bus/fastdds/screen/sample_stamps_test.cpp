@@ -1,4 +1,4 @@
-#include "services/bus/fastdds/sample_stamps.hpp"
+#include "services/bus/fastdds/screen/sample_stamps.hpp"
 
 #include <gtest/gtest.h>
 

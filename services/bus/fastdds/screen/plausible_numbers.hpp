@@ -31,8 +31,8 @@
 #include <set>
 #include <unordered_map>
 
-#include "services/bus/rtps/growing_number.hpp"
-#include "services/bus/rtps/rtps_format.hpp"
+#include "services/bus/fastdds/screen/growing_number.hpp"
+#include "services/bus/fastdds/screen/rtps_format.hpp"
 
 namespace dyncal::bus {
 

@@ -1,10 +1,10 @@
-#include "services/bus/rtps/participant_announcements.hpp"
+#include "services/bus/fastdds/screen/participant_announcements.hpp"
 
 #include <algorithm>
 
 #include <gtest/gtest.h>
 
-#include "tests/unit/services/bus/rtps/rtps_bytes.hpp"
+#include "tests/unit/services/bus/fastdds/screen/rtps_bytes.hpp"
 
 namespace dyncal::bus {
 namespace {

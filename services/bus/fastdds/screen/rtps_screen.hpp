@@ -28,8 +28,8 @@
 #include <span>
 #include <vector>
 
-#include "services/bus/fastdds/acknack_counts.hpp"
-#include "services/bus/fastdds/sample_stamps.hpp"
+#include "services/bus/fastdds/screen/acknack_counts.hpp"
+#include "services/bus/fastdds/screen/sample_stamps.hpp"
 
 namespace dyncal::bus {
 

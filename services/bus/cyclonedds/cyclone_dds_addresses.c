@@ -1,14 +1,8 @@
-#include "services/bus/cyclonedds/cyclone_dds_connections.h"
+#include "services/bus/cyclonedds/cyclone_dds_addresses.h"
 
 #include <string.h>
 
 #include <dds/ddsi/ddsi_domaingv.h>
-
-struct CycloneDdsConnections cyclone_dds_connections_of(const struct ddsi_domaingv* domain) {
-  const struct CycloneDdsConnections connections = {
-      {domain->disc_conn_mc, domain->data_conn_mc, domain->disc_conn_uc, domain->data_conn_uc}};
-  return connections;
-}
 
 struct CycloneDdsAddresses cyclone_dds_addresses_of(const struct ddsi_domaingv* domain) {
   struct CycloneDdsAddresses addresses = {0, {{0}}};

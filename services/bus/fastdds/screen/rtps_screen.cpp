@@ -1,12 +1,12 @@
-#include "services/bus/fastdds/rtps_screen.hpp"
+#include "services/bus/fastdds/screen/rtps_screen.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <cstring>
 #include <optional>
 
+#include "services/bus/fastdds/screen/rtps_format.hpp"
 #include "services/bus/qos_profiles.hpp"
-#include "services/bus/rtps/rtps_format.hpp"
 
 namespace dyncal::bus {
 

@@ -28,7 +28,7 @@
 #include <utility>
 #include <vector>
 
-#include "services/bus/rtps/rtps_format.hpp"
+#include "services/bus/fastdds/screen/rtps_format.hpp"
 
 namespace dyncal::bus {
 

@@ -1,4 +1,4 @@
-#include "services/bus/rtps/plausible_numbers.hpp"
+#include "services/bus/fastdds/screen/plausible_numbers.hpp"
 
 #include <algorithm>
 #include <string_view>

@@ -1,4 +1,4 @@
-#include "services/bus/rtps/rtps_format.hpp"
+#include "services/bus/fastdds/screen/rtps_format.hpp"
 
 namespace dyncal::bus::rtps_format {
 

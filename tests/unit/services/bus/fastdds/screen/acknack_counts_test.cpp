@@ -1,4 +1,4 @@
-#include "services/bus/fastdds/acknack_counts.hpp"
+#include "services/bus/fastdds/screen/acknack_counts.hpp"
 
 #include <vector>
 

@@ -13,8 +13,8 @@
 #include <atomic>
 #include <chrono>
 
-#include "services/bus/rtps/participant_announcements.hpp"
-#include "services/bus/rtps/plausible_numbers.hpp"
+#include "services/bus/fastdds/screen/participant_announcements.hpp"
+#include "services/bus/fastdds/screen/plausible_numbers.hpp"
 
 namespace dyncal::bus {
 

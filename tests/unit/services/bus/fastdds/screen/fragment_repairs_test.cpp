@@ -1,9 +1,9 @@
-#include "services/bus/fastdds/fragment_repairs.hpp"
+#include "services/bus/fastdds/screen/fragment_repairs.hpp"
 
 #include <gtest/gtest.h>
 
-#include "services/bus/rtps/rtps_format.hpp"
-#include "tests/unit/services/bus/rtps/rtps_bytes.hpp"
+#include "services/bus/fastdds/screen/rtps_format.hpp"
+#include "tests/unit/services/bus/fastdds/screen/rtps_bytes.hpp"
 
 namespace dyncal::bus {
 namespace {

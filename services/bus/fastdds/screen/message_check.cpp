@@ -1,4 +1,4 @@
-#include "services/bus/rtps/message_check.hpp"
+#include "services/bus/fastdds/screen/message_check.hpp"
 
 #include <algorithm>
 

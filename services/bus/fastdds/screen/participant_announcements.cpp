@@ -1,4 +1,4 @@
-#include "services/bus/rtps/participant_announcements.hpp"
+#include "services/bus/fastdds/screen/participant_announcements.hpp"
 
 #include <algorithm>
 #include <optional>
