@@ -6,7 +6,6 @@
 
 #include "services/acs/played_source.hpp"
 #include "services/program/bench_program.hpp"
-#include "services/program/watched_network.hpp"
 #include "services/source/run_sources.hpp"
 
 namespace {
@@ -39,18 +38,15 @@ Expected<Sources> prepare(const std::vector<BenchFile>& benches, const std::stop
   return sources;
 }
 
-Expected<void> serve(const std::vector<BenchFile>& benches, const NetworkOptions& network,
-                     Supervisor& supervisor, const std::stop_token& stop) {
-  auto sources = prepare(benches, stop);
+Expected<void> serve(const std::vector<BenchFile>& benches, Daemon& daemon) {
+  auto sources = prepare(benches, daemon.stop());
   if (!sources) {
     return fail(sources.error());
   }
-  auto joined = WatchedNetwork::join(network, "dyncal-acs", stop);
-  if (!joined) {
-    return fail(joined.error());
+  if (const auto joined = daemon.join(); !joined) {
+    return joined;
   }
-  WatchedNetwork& bus = **joined;
-  return bus.outcome(run_sources(bus.participant, *sources, supervisor, bus.stop()));
+  return run_sources(daemon.participant(), *sources, daemon.supervisor(), daemon.stop());
 }
 
 } // namespace

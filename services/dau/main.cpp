@@ -8,9 +8,7 @@
 #include "drivers/smartup/receiver.hpp"
 #include "services/dau/endpoint_watch.hpp"
 #include "services/dau/listening_plan.hpp"
-#include "services/host_clocks/clock_responder.hpp"
 #include "services/program/bench_program.hpp"
-#include "services/program/watched_network.hpp"
 #include "services/source/source_service.hpp"
 #include "services/source/supervised.hpp"
 
@@ -70,34 +68,28 @@ void report_sockets(const drivers::smartup::Receiver& receiver,
   }
 }
 
-Expected<void> serve(const std::vector<BenchFile>& benches, const NetworkOptions& network,
-                     Supervisor& supervisor, const std::stop_token& stop) {
+Expected<void> serve(const std::vector<BenchFile>& benches, Daemon& daemon) {
   const auto plan = plan_listening(benches);
   if (!plan) {
     return fail(plan.error());
   }
-  auto joined = WatchedNetwork::join(network, "dyncal-dau", stop);
-  if (!joined) {
-    return fail(joined.error());
+  if (const auto joined = daemon.join(); !joined) {
+    return joined;
   }
-  bus::Participant& participant = (*joined)->participant;
-  const auto service = SourceService::create(participant, supervised(supervisor, participant));
+  const auto service = SourceService::create(daemon.participant(),
+                                             supervised(daemon.supervisor(), daemon.participant()));
   auto reception = open_reception(*plan, *service);
   if (!reception) {
     return fail(reception.error());
   }
   report_sockets(*reception->receiver, *plan);
-  const auto clock = ClockResponder::start(participant, supervisor.identity());
-  if (!clock) {
-    return fail(clock.error());
-  }
   service->start();
   reception->receiver->start();
-  supervisor.serving();
-  wait_for_stop((*joined)->stop());
+  daemon.supervisor().serving();
+  wait_for_stop(daemon.stop());
   reception->receiver->stop();
   service->stop();
-  return (*joined)->outcome({});
+  return {};
 }
 
 } // namespace

@@ -5,9 +5,7 @@
 #include <vector>
 
 #include "services/dso/triggered_bench.hpp"
-#include "services/host_clocks/clock_responder.hpp"
 #include "services/program/bench_program.hpp"
-#include "services/program/watched_network.hpp"
 #include "services/source/source_service.hpp"
 #include "services/source/supervised.hpp"
 
@@ -16,29 +14,23 @@ namespace {
 using namespace dyncal::services;
 using dyncal::fail;
 
-Expected<void> serve(const std::vector<BenchFile>& files, const NetworkOptions& network,
-                     Supervisor& supervisor, const std::stop_token& asked) {
-  auto joined = WatchedNetwork::join(network, "dyncal-dso", asked);
-  if (!joined) {
-    return fail(joined.error());
+Expected<void> serve(const std::vector<BenchFile>& files, Daemon& daemon) {
+  if (const auto joined = daemon.join(); !joined) {
+    return joined;
   }
-  dyncal::bus::Participant& participant = (*joined)->participant;
-  const std::stop_token stop = (*joined)->stop();
-  const auto service = SourceService::create(participant, supervised(supervisor, participant));
+  const std::stop_token stop = daemon.stop();
+  const auto service = SourceService::create(daemon.participant(),
+                                             supervised(daemon.supervisor(), daemon.participant()));
   std::vector<std::unique_ptr<dso::TriggeredBench>> benches;
   for (const BenchFile& file : files) {
-    auto bench = dso::TriggeredBench::create(participant, *service, file);
+    auto bench = dso::TriggeredBench::create(daemon.participant(), *service, file);
     if (!bench) {
       return fail(bench.error());
     }
     benches.push_back(std::move(*bench));
   }
-  const auto clock = ClockResponder::start(participant, supervisor.identity());
-  if (!clock) {
-    return fail(clock.error());
-  }
   service->start();
-  supervisor.serving();
+  daemon.supervisor().serving();
   {
     std::vector<std::jthread> threads; // joined at the end of this block
     for (const auto& bench : benches) {
@@ -46,7 +38,7 @@ Expected<void> serve(const std::vector<BenchFile>& files, const NetworkOptions& 
     }
   }
   service->stop();
-  return (*joined)->outcome({});
+  return {};
 }
 
 } // namespace

@@ -9,9 +9,7 @@
 #include <spdlog/spdlog.h>
 
 #include "services/guard/exciter_guard.hpp"
-#include "services/host_clocks/clock_responder.hpp"
 #include "services/program/bench_program.hpp"
-#include "services/program/watched_network.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -41,18 +39,11 @@ GuardedExciter exciter_of(const BenchFile& bench) {
   return exciter;
 }
 
-Expected<void> serve(const std::vector<BenchFile>& benches, const NetworkOptions& network,
-                     Supervisor& supervisor, const std::stop_token& asked) {
-  auto joined = WatchedNetwork::join(network, "dyncal-guard", asked);
-  if (!joined) {
-    return fail(joined.error());
+Expected<void> serve(const std::vector<BenchFile>& benches, Daemon& daemon) {
+  if (const auto joined = daemon.join(); !joined) {
+    return joined;
   }
-  bus::Participant& participant = (*joined)->participant;
-  const std::stop_token stop = (*joined)->stop();
-  const auto clock = ClockResponder::start(participant, supervisor.identity());
-  if (!clock) {
-    return fail(clock.error());
-  }
+  const std::stop_token stop = daemon.stop();
   std::vector<std::unique_ptr<ExciterGuard>> guards;
   for (const BenchFile& bench : benches) {
     if (bench.generator.driver != GeneratorDriver::scpi) {
@@ -62,7 +53,7 @@ Expected<void> serve(const std::vector<BenchFile>& benches, const NetworkOptions
                       "there is nothing to guard");
     }
     auto guard = ExciterGuard::create(
-        participant, supervisor.identity(), exciter_of(bench), unattended_limit,
+        daemon.participant(), daemon.identity(), exciter_of(bench), unattended_limit,
         std::make_unique<GeneratorOutput>(bench.generator.address),
         DrivenRecord(guard_state_folder(), bench.bench, bench.generator.address));
     if (!guard) {
@@ -78,16 +69,14 @@ Expected<void> serve(const std::vector<BenchFile>& benches, const NetworkOptions
     for (const auto& guard : guards) {
       threads.emplace_back([&] {
         guard->serve(stop, [&] {
-          supervisor.turned();
-          supervisor.report(guard->figures());
-          supervisor.report_malformed_messages(participant.malformed_messages());
-          supervisor.report_refused_packets(participant.refused_packets()->count());
+          daemon.turned();
+          daemon.supervisor().report(guard->figures());
         });
       });
     }
-    supervisor.serving();
+    daemon.supervisor().serving();
   }
-  return (*joined)->outcome({});
+  return {};
 }
 
 } // namespace

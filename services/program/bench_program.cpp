@@ -1,20 +1,12 @@
 #include "services/program/bench_program.hpp"
 
-#include <cstdlib>
-
 #include <CLI/CLI.hpp>
-#include <spdlog/spdlog.h>
-
-#include "services/host_clocks/clock_messages.hpp"
-#include "services/program/command_line.hpp"
-#include "services/program/log.hpp"
-#include "services/version.hpp"
 
 namespace dyncal::services {
 namespace {
 
-Expected<void> serve(const BenchProgram& program, const std::vector<std::string>& paths,
-                     NetworkOptions network, Supervisor& supervisor, const std::stop_token& stop) {
+Expected<std::vector<BenchFile>> read_benches(const std::vector<std::string>& paths,
+                                              Daemon& daemon) {
   std::vector<BenchFile> benches;
   std::string names;
   for (const std::string& path : paths) {
@@ -22,12 +14,12 @@ Expected<void> serve(const BenchProgram& program, const std::vector<std::string>
     if (!bench) {
       return fail(bench.error());
     }
-    add_network_settings(bench->network, network);
+    add_network_settings(bench->network, daemon.network);
     names += (names.empty() ? "bench " : ", ") + bench->bench;
     benches.push_back(std::move(*bench));
   }
-  supervisor.describe(names);
-  return program.serve(benches, network, supervisor, stop);
+  daemon.supervisor().describe(names);
+  return benches;
 }
 
 } // namespace
@@ -41,33 +33,21 @@ void add_network_settings(const NetworkSettings& bench, NetworkOptions& options)
 }
 
 int run_bench_program(int argc, char** argv, const BenchProgram& program) {
-  CLI::App app{program.description, program.name};
-  app.set_version_flag("--version", build_description());
   std::vector<std::string> paths;
-  NetworkOptions network;
-  std::string metrics;
-  app.add_option("BENCH.toml", paths, "bench files")->required();
-  add_network_options(app, network);
-  add_metrics_option(app, metrics);
-  if (const auto status = read_command_line(app, argc, argv)) {
-    return *status;
-  }
-
-  set_up_log(program.name, LogWriting::by_thread);
-  const auto supervisor =
-      Supervisor::create(this_program(program.name, software_version(), network.dds), metrics);
-  if (!supervisor) {
-    return report_error(supervisor.error());
-  }
-  const std::stop_token stop = stop_on_signals();
-  const std::stop_callback stopping(stop, [&] { (*supervisor)->stopping(); });
-  const auto served = serve(program, paths, network, **supervisor, stop);
-  if (!served) {
-    return report_error(served.error());
-  }
-  spdlog::info("stopped");
-  finish_log();
-  return EXIT_SUCCESS;
+  return run_daemon(
+      argc, argv,
+      {.name = program.name,
+       .description = program.description,
+       .log = LogWriting::by_thread,
+       .add_options =
+           [&](CLI::App& app) { app.add_option("BENCH.toml", paths, "bench files")->required(); },
+       .serve = [&](Daemon& daemon) -> Expected<void> {
+         const auto benches = read_benches(paths, daemon);
+         if (!benches) {
+           return fail(benches.error());
+         }
+         return program.serve(*benches, daemon);
+       }});
 }
 
 } // namespace dyncal::services

@@ -1,20 +1,18 @@
-// A program that serves the bench files on its command line: reads them, joins its network options
-// with theirs, logs by a thread of its own, stops on signals, and ends with one line and an exit
-// status when something went wrong. What it serves is all that such programs differ in.
+// A daemon (daemon.hpp) that serves the bench files on its command line: reads them, joins its
+// network options with theirs, and logs by a thread of its own. What it serves is all that such
+// programs differ in.
 //
 // A library of its own beside the rest of this room: a program that reads no bench file
 // (dyncal-analysis) links neither this nor the TOML parser.
 #pragma once
 
 #include <functional>
-#include <stop_token>
 #include <string>
 #include <vector>
 
 #include "services/bench/bench_file.hpp"
 #include "services/error.hpp"
-#include "services/program/program.hpp"
-#include "services/supervision/supervisor.hpp"
+#include "services/program/daemon.hpp"
 
 namespace dyncal::services {
 
@@ -25,10 +23,8 @@ void add_network_settings(const NetworkSettings& bench, NetworkOptions& options)
 struct BenchProgram {
   std::string name;        // "dyncal-dau"
   std::string description; // one sentence, for --help
-  // Serves the benches until `stop`; blocks. Reports to the supervisor when it serves.
-  std::function<Expected<void>(const std::vector<BenchFile>& benches, const NetworkOptions& network,
-                               Supervisor& supervisor, const std::stop_token& stop)>
-      serve;
+  // As DaemonProgram::serve, with the benches read.
+  std::function<Expected<void>(const std::vector<BenchFile>& benches, Daemon& daemon)> serve;
 };
 
 // The body of main(). Returns the exit status.

@@ -17,7 +17,6 @@
 
 #include "services/bus/bus.hpp"
 #include "services/error.hpp"
-#include "services/host_clocks/clock_responder.hpp"
 #include "services/source/source_service.hpp"
 #include "services/source/supervised.hpp"
 
@@ -43,10 +42,6 @@ template <class Source>
     }
     publishers.push_back(std::move(*publisher));
     spdlog::info("bench {}, source {}", one.options.bench, one.options.source);
-  }
-  const auto clock = ClockResponder::start(participant, supervisor.identity());
-  if (!clock) {
-    return fail(clock.error());
   }
   service->start();
   supervisor.serving();

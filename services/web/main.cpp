@@ -8,8 +8,7 @@
 #include <spdlog/spdlog.h>
 
 #include "services/program/child_process.hpp"
-#include "services/program/program.hpp"
-#include "services/version.hpp"
+#include "services/program/daemon.hpp"
 #include "services/web/web_service.hpp"
 
 namespace dyncal::services {
@@ -20,7 +19,6 @@ namespace {
 constexpr int malloc_arenas = 2;
 
 struct WebProgram {
-  NetworkOptions network;
   std::string listen = "127.0.0.1:8080";
   web::WebOptions web;
 };
@@ -53,11 +51,9 @@ void add_options(CLI::App& app, WebProgram& program) {
   app.add_option("--javascript", program.web.javascript_folder,
                  "folder of the JavaScript libraries of this computer")
       ->capture_default_str();
-  add_network_options(app, program.network);
-  add_metrics_option(app, program.web.metrics);
 }
 
-Expected<void> serve(WebProgram& program, const std::stop_token& stop) {
+Expected<void> serve(WebProgram& program, Daemon& daemon) {
   const auto listen = drivers::parse_address(program.listen);
   if (!listen) {
     return fail(ErrorCode::bad_argument,
@@ -67,7 +63,7 @@ Expected<void> serve(WebProgram& program, const std::stop_token& stop) {
   if (program.web.guide_folder.empty()) {
     program.web.guide_folder = installed_guide();
   }
-  auto service = web::WebService::create(program.network, program.web, stop);
+  auto service = web::WebService::create(daemon, program.web);
   if (!service) {
     return fail(service.error());
   }
@@ -78,20 +74,14 @@ Expected<void> serve(WebProgram& program, const std::stop_token& stop) {
 } // namespace dyncal::services
 
 int main(int argc, char** argv) { // NOLINT(bugprone-exception-escape): ends the program
-  using namespace dyncal;
-  CLI::App app{"Serves a page that shows what the benches of a laboratory do: state, signals, "
-               "results, history."};
-  app.set_version_flag("--version", services::build_description());
-  services::WebProgram program;
-  services::add_options(app, program);
-  CLI11_PARSE(app, argc, argv);
-  services::set_up_log("dyncal-web");
-  mallopt(M_ARENA_MAX, services::malloc_arenas);
-  const std::stop_token stop = services::stop_on_signals();
-  const auto served = services::serve(program, stop);
-  if (!served) {
-    return services::report_error(served.error());
-  }
-  services::finish_log();
-  return 0;
+  using namespace dyncal::services;
+  mallopt(M_ARENA_MAX, malloc_arenas);
+  WebProgram program;
+  return run_daemon(argc, argv,
+                    {.name = "dyncal-web",
+                     .description =
+                         "Serves a page that shows what the benches of a laboratory do: state, "
+                         "signals, results, history.",
+                     .add_options = [&](CLI::App& app) { add_options(app, program); },
+                     .serve = [&](Daemon& daemon) { return serve(program, daemon); }});
 }

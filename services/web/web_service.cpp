@@ -4,13 +4,9 @@
 #include <spdlog/spdlog.h>
 
 #include "services/bus/host_network.hpp"
-#include "services/host_clocks/clock_responder.hpp"
 #include "services/live/laboratory_readers.hpp"
 #include "services/live_signals/signal_tap.hpp"
-#include "services/program/watched_network.hpp"
 #include "services/store/store.hpp"
-#include "services/supervision/supervisor.hpp"
-#include "services/version.hpp"
 #include "services/web/access_token.hpp"
 #include "services/web/actions.hpp"
 #include "services/web/board.hpp"
@@ -39,9 +35,8 @@ DoorOptions door_options(const WebOptions& options) {
 } // namespace
 
 struct WebService::Parts {
-  Parts(std::unique_ptr<WatchedNetwork> joined, const ProgramIdentity& own, const WebOptions& web,
-        ActionOptions action_options)
-      : network(std::move(joined)), identity(own), options(web),
+  Parts(Daemon& own, const WebOptions& web, ActionOptions action_options)
+      : daemon(own), options(web),
         board(clock, [this](nlohmann::ordered_json& json) { add_daemon(json); }),
         files(web.runs_folder), door(door_options(web), clock), answers(board, files),
         tap(participant, clock), signals(board, tap, clock),
@@ -69,13 +64,11 @@ struct WebService::Parts {
   void report();
 
   bus::Clock& clock = bus::system_clock();
-  std::unique_ptr<WatchedNetwork> network;
-  bus::Participant& participant = network->participant;
-  ProgramIdentity identity;
+  Daemon& daemon;
+  bus::Participant& participant = daemon.participant();
+  const ProgramIdentity& identity = daemon.identity();
   WebOptions options;
   std::shared_ptr<bus::WakeUp> wake_up = std::make_shared<bus::WakeUp>();
-  std::unique_ptr<Supervisor> supervisor;
-  std::unique_ptr<ClockResponder> responder;
   std::optional<live::LaboratoryReaders> readers;
   Board board;
   RunFiles files;
@@ -121,31 +114,22 @@ void WebService::Parts::report() {
     figures.benches = laboratory.benches().size();
     figures.left_out = out.benches + out.sources + out.services + out.runs + out.results;
   });
-  supervisor->report(figures);
-  supervisor->report_malformed_messages(participant.malformed_messages());
-  supervisor->report_refused_packets(participant.refused_packets()->count());
+  daemon.supervisor().report(figures);
 }
 
 WebService::WebService(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 WebService::~WebService() = default;
 
-Expected<std::unique_ptr<WebService>> WebService::create(const NetworkOptions& network,
-                                                         const WebOptions& options,
-                                                         const std::stop_token& asked) {
-  auto joined = WatchedNetwork::join(network, "dyncal-web", asked);
-  if (!joined) {
+Expected<std::unique_ptr<WebService>> WebService::create(Daemon& daemon,
+                                                         const WebOptions& options) {
+  if (const auto joined = daemon.join(); !joined) {
     return fail(joined.error());
-  }
-  auto supervisor = Supervisor::create(this_program("dyncal-web", software_version(), network.dds),
-                                       options.metrics);
-  if (!supervisor) {
-    return fail(supervisor.error());
   }
   ActionOptions actions{.token = {},
                         .benches_folder = options.benches_folder,
                         .runs_folder = options.runs_folder,
-                        .network = network,
-                        .sender = service_name((*supervisor)->identity())};
+                        .network = daemon.network,
+                        .sender = service_name(daemon.identity())};
   if (!options.token_file.empty()) {
     auto token = read_token(options.token_file);
     if (!token) {
@@ -153,23 +137,19 @@ Expected<std::unique_ptr<WebService>> WebService::create(const NetworkOptions& n
     }
     actions.token = std::move(*token);
   }
-  auto parts = std::make_unique<Parts>(std::move(*joined), (*supervisor)->identity(), options,
-                                       std::move(actions));
-  parts->supervisor = std::move(*supervisor);
-  auto responder = ClockResponder::start(parts->participant, parts->identity);
+  auto parts = std::make_unique<Parts>(daemon, options, std::move(actions));
   auto readers = live::LaboratoryReaders::open(parts->participant, all_benches, parts->identity,
                                                parts->clock, parts->wake_up);
-  if (const auto error = first_error(responder, readers)) {
-    return fail(*error);
+  if (!readers) {
+    return fail(readers.error());
   }
-  parts->responder = std::move(*responder);
   parts->readers.emplace(std::move(*readers));
   return std::unique_ptr<WebService>(new WebService(std::move(parts)));
 }
 
 Expected<void> WebService::serve() {
   Parts& parts = *parts_;
-  const std::stop_token stop = parts.network->stop();
+  const std::stop_token stop = parts.daemon.stop();
   parts.add_answers();
   if (const auto started = parts.door.start(); !started) {
     return fail(started.error());
@@ -181,18 +161,17 @@ Expected<void> WebService::serve() {
   const std::string address =
       drivers::Address{parts.options.listen.host, static_cast<std::uint16_t>(parts.door.port())}
           .text();
-  parts.supervisor->describe("page at http://" + address + "/");
-  const std::stop_callback stopping(stop, [&] { parts.supervisor->stopping(); });
-  parts.supervisor->serving();
+  parts.daemon.supervisor().describe("page at http://" + address + "/");
+  parts.daemon.supervisor().serving();
   spdlog::info("web ready ({}), page at http://{}/", parts.identity.dds, address);
   while (!stop.stop_requested()) {
     parts.clock.wait(*parts.wake_up, parts.clock.now() + max_wait);
     parts.board.change([&](live::Laboratory& laboratory) { parts.readers->work(laboratory); });
     parts.report();
-    parts.supervisor->turned();
+    parts.daemon.turned();
   }
   parts.door.stop();
-  return parts.network->outcome({});
+  return {};
 }
 
 } // namespace dyncal::services::web

@@ -7,13 +7,12 @@
 
 #include <filesystem>
 #include <memory>
-#include <stop_token>
 #include <string>
 #include <vector>
 
 #include "drivers/link/address.hpp"
 #include "services/error.hpp"
-#include "services/program/program.hpp"
+#include "services/program/daemon.hpp"
 
 namespace dyncal::services::web {
 
@@ -26,14 +25,14 @@ struct WebOptions {
   std::filesystem::path benches_folder;
   std::string guide_folder;
   std::string javascript_folder = "/usr/share/javascript";
-  std::string metrics; // ADDRESS:PORT; empty: none
 };
 
 class WebService {
 public:
-  // Serves until `asked`. Fails as the network, the token file and the address do.
-  [[nodiscard]] static Expected<std::unique_ptr<WebService>>
-  create(const NetworkOptions& network, const WebOptions& options, const std::stop_token& asked);
+  // Joins the network with the daemon, which outlives it, and serves until it stops. Fails as the
+  // network, the token file and the address do.
+  [[nodiscard]] static Expected<std::unique_ptr<WebService>> create(Daemon& daemon,
+                                                                    const WebOptions& options);
   ~WebService();
   WebService(const WebService&) = delete;
   WebService& operator=(const WebService&) = delete;
