@@ -11,31 +11,13 @@ std::string place_of(const ProgramIdentity& identity) {
   return fmt::format("{}:{} on {}", identity.program, identity.process_id, identity.host);
 }
 
-std::string direction_text(const Way& way) {
-  const auto lost = lost_part(way);
-  return lost ? fmt::format("{:.1f} % of {} lost", *lost * 100.0, way.sent) : "not measured";
-}
-
-bool is_notable(const Way& way) {
-  return lost_part(way).value_or(0.0) > notable_part;
-}
-
-bool is_cut(const Way& way) {
-  return lost_part(way) == 1.0;
-}
-
-// Where packets of reliable topics get through, and so the program was heard, but no probe does.
-std::string why_cut() {
-  return "none gets through, although answers that are sent again until they arrive do: nearly all "
-         "packets are lost, or a firewall or a limit of packets a second lets few through";
-}
+// Packets of reliable topics get through, and so the program was heard, but no probe does.
+constexpr const char* cut =
+    "none gets through, although answers that are sent again until they arrive do: nearly all "
+    "packets are lost, or a firewall or a limit of packets a second lets few through; ";
 
 std::string advice(const LinkLoss& loss, const std::string& own_host) {
   const std::string& other = loss.identity.host;
-  const bool there = is_notable(loss.there);
-  const std::string receiver = there && is_notable(loss.back) ? "both hosts"
-                               : there                        ? other
-                                                              : own_host;
   const std::string within =
       other == own_host
           ? ""
@@ -44,7 +26,7 @@ std::string advice(const LinkLoss& loss, const std::string& own_host) {
   return fmt::format("DDS sends again what is lost, which delays samples and results: {}look "
                      "whether packets found no room on {} (`nstat -az UdpRcvbufErrors`; 'buffers' "
                      "tells of this host)",
-                     within, receiver);
+                     within, other == own_host ? "it" : other + " or here");
 }
 
 Finding finding_of(const LinkLoss& loss, const std::string& own_host) {
@@ -54,22 +36,20 @@ Finding finding_of(const LinkLoss& loss, const std::string& own_host) {
             fmt::format("{}: not measured, for it answers no probes; an older version does not",
                         place)};
   }
-  if (!lost_part(loss.there)) {
+  const auto lost = lost_part(loss);
+  if (!lost) {
     return {Severity::ok, "loss",
             fmt::format("{}: not measured, for only {} probes were sent; look for longer "
                         "(--seconds)",
-                        place, loss.there.sent)};
+                        place, loss.sent)};
   }
-  const std::string measured = fmt::format("{}: probes there {}, echoes back {}", place,
-                                           direction_text(loss.there), direction_text(loss.back));
-  if (is_cut(loss.there) || is_cut(loss.back)) {
-    return {Severity::warning, "loss",
-            fmt::format("{}; {}; {}", measured, why_cut(), advice(loss, own_host))};
+  const std::string measured =
+      fmt::format("{}: {:.1f} % of {} probes brought no echo", place, *lost * 100.0, loss.sent);
+  if (*lost <= notable_part) {
+    return {Severity::ok, "loss", measured};
   }
-  if (is_notable(loss.there) || is_notable(loss.back)) {
-    return {Severity::warning, "loss", fmt::format("{}; {}", measured, advice(loss, own_host))};
-  }
-  return {Severity::ok, "loss", measured};
+  return {Severity::warning, "loss",
+          fmt::format("{}; {}{}", measured, *lost == 1.0 ? cut : "", advice(loss, own_host))};
 }
 
 } // namespace

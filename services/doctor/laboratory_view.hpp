@@ -13,7 +13,7 @@
 #include "idl/dyncal.h"
 #include "services/bus/discovery.hpp"
 #include "services/host_clocks/clock_asker.hpp"
-#include "services/host_clocks/link_loss.hpp"
+#include "services/host_clocks/link_meter.hpp"
 
 namespace dyncal::services::doctor {
 

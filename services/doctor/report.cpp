@@ -52,22 +52,17 @@ ordered_json clocks_json(const LaboratoryView& view) {
   return clocks;
 }
 
-ordered_json direction_json(const Way& way) {
-  const auto lost = lost_part(way);
-  return {{"sent", way.sent},
-          {"arrived", way.arrived},
-          {"lost_percent", lost ? ordered_json(*lost * 100.0) : ordered_json()}};
-}
-
 ordered_json losses_json(const LaboratoryView& view) {
   ordered_json losses = ordered_json::array();
   for (const LinkLoss& loss : view.losses) {
+    const auto lost = lost_part(loss);
     losses.push_back({{"program", loss.identity.program},
                       {"host", loss.identity.host},
                       {"process_id", loss.identity.process_id},
                       {"answers_probes", loss.answers_probes},
-                      {"there", direction_json(loss.there)},
-                      {"back", direction_json(loss.back)}});
+                      {"probes", loss.sent},
+                      {"echoes", loss.echoed},
+                      {"lost_percent", lost ? ordered_json(*lost * 100.0) : ordered_json()}});
   }
   return losses;
 }

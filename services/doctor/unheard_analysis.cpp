@@ -9,7 +9,7 @@ namespace dyncal::services::doctor {
 namespace {
 
 constexpr const char* analysis_program = "dyncal-analysis";
-constexpr double bad_link = 0.05; // of probes that are lost; runs begin at 20 %, a sound link has 0
+constexpr double bad_link = 0.05; // of probes without echo; runs begin at 20 %, a sound link has 0
 
 std::set<std::string> own_addresses(const HostView& host) {
   std::set<std::string> addresses;
@@ -63,8 +63,7 @@ bool is_found(const LaboratoryView& view, const std::string& program) {
 double worst_loss(const LaboratoryView& view) {
   double worst = 0.0;
   for (const LinkLoss& loss : view.losses) {
-    worst =
-        std::max({worst, lost_part(loss.there).value_or(0.0), lost_part(loss.back).value_or(0.0)});
+    worst = std::max(worst, lost_part(loss).value_or(0.0));
   }
   return worst;
 }
@@ -79,7 +78,7 @@ std::vector<std::string> announcing_hosts(const LaboratoryView& view, const Host
 
 std::string about_others(const LaboratoryView& view, const HostView& host) {
   if (const double lost = worst_loss(view); lost > bad_link) {
-    return fmt::format("{:.0f} % of the packets between this host and the others are lost: the "
+    return fmt::format("{:.0f} % of the probes from this host to the others bring no echo: the "
                        "link is overloaded or bad",
                        100.0 * lost);
   }

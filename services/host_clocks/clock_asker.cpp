@@ -79,10 +79,7 @@ void ClockAsker::take(const wire::ClockAnswer& answer) {
   if (heard.program.answers == 0) {
     heard.program.first_answer = now;
   }
-  if (request->sent >= heard.program.asked) {
-    heard.program.asked = request->sent;
-    heard.program.probes = probe_counts_of(answer);
-  }
+  heard.program.asked = std::max(heard.program.asked, request->sent);
   ++heard.program.answers;
   heard.last_answer = now;
   const auto slew =

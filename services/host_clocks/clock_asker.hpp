@@ -21,7 +21,6 @@
 #include "services/error.hpp"
 #include "services/host_clocks/clock_messages.hpp"
 #include "services/host_clocks/clock_offset.hpp"
-#include "services/host_clocks/link_loss.hpp"
 
 namespace dyncal::services {
 
@@ -41,8 +40,7 @@ struct HeardProgram {
   std::uint64_t packets_refused_now = 0; // of these, since its first answer
   std::string packets_refused_from = {}; // the last of them; empty if that is not known
   bus::Clock::Instant first_answer = {};
-  bus::Clock::Instant asked = {};         // when the request was sent that it answered last
-  std::optional<ProbeCounts> probes = {}; // of this asker, told then; nothing: it answers none
+  bus::Clock::Instant asked = {}; // when the newest request was sent that it has answered
 };
 
 struct HostClock {

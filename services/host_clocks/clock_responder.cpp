@@ -14,13 +14,15 @@ ClockResponder::open(bus::Participant& participant, ProgramIdentity identity, bu
   auto wake_up = std::make_shared<bus::WakeUp>();
   auto answers = participant.writer(bus::topics::clock_answer, all_benches_partition);
   auto requests = participant.reader(bus::topics::clock_request, all_benches_partition, wake_up);
-  auto links = LinkResponder::open(participant, service_name(identity), clock, wake_up);
-  if (const auto error = first_error(answers, requests, links)) {
+  auto echoes = participant.writer(bus::topics::link_echo, all_benches_partition);
+  auto probes = participant.reader(bus::topics::link_probe, all_benches_partition, wake_up);
+  if (const auto error = first_error(answers, requests, echoes, probes)) {
     return fail(*error);
   }
-  return std::unique_ptr<ClockResponder>(
-      new ClockResponder(std::move(identity), clock, std::move(wake_up), std::move(*requests),
-                         std::move(*answers), std::move(*links), participant.refused_packets()));
+  return std::unique_ptr<ClockResponder>(new ClockResponder(
+      std::move(identity), clock, std::move(wake_up),
+      {std::move(*requests), std::move(*answers), std::move(*probes), std::move(*echoes)},
+      participant.refused_packets()));
 }
 
 Expected<std::unique_ptr<ClockResponder>> ClockResponder::start(bus::Participant& participant,
@@ -42,23 +44,25 @@ void ClockResponder::run(const std::stop_token& stop) {
 }
 
 void ClockResponder::work() {
-  requests_.take([this](const wire::ClockRequest& request) {
+  topics_.requests.take([this](const wire::ClockRequest& request) {
     const std::int64_t received_utc_ns = clock_->utc_now_ns();
-    if (may_answer()) {
-      links_.work(); // what came before the request counts in its answer
+    if (answers_left_.take(clock_->now())) {
       answer(request, received_utc_ns);
     }
   });
-  links_.work();
+  topics_.probes.take([this](const wire::LinkProbe& probe) {
+    if (echoes_left_.take(clock_->now())) {
+      echo(probe);
+    }
+  });
 }
 
-bool ClockResponder::may_answer() {
-  const auto now = clock_->now();
+bool ClockResponder::Allowance::take(bus::Clock::Instant now) {
   if (now - second_began_ >= std::chrono::seconds(1)) {
     second_began_ = now;
-    answers_in_second_ = 0;
+    taken_ = 0;
   }
-  return answers_in_second_++ < max_answers_per_s;
+  return taken_++ < per_second_;
 }
 
 void ClockResponder::answer(const wire::ClockRequest& request, std::int64_t received_utc_ns) {
@@ -77,16 +81,19 @@ void ClockResponder::answer(const wire::ClockRequest& request, std::int64_t rece
   answer.contract_version(wire::CONTRACT_VERSION);
   answer.packets_refused(refused_->count());
   answer.packets_refused_from(refused_->last_sender());
-  const ProbeCounts probes = links_.counts(request.asker().to_string());
-  answer.answers_probes(true);
-  answer.probe_series(probes.series);
-  answer.first_probe(probes.first);
-  answer.newest_probe(probes.newest);
-  answer.probes_received(probes.received);
-  answer.probes_echoed(probes.echoed);
   answer.answer_sent_utc_ns(clock_->utc_now_ns());
   // One that does not get through is given up: whoever still wants to know asks again.
-  static_cast<void>(answers_.write(answer, std::chrono::nanoseconds(0)));
+  static_cast<void>(topics_.answers.write(answer, std::chrono::nanoseconds(0)));
+}
+
+void ClockResponder::echo(const wire::LinkProbe& probe) {
+  wire::LinkEcho echo;
+  echo.bench(all_benches_partition);
+  echo.asker(probe.asker());
+  echo.service(name_);
+  echo.series(probe.series());
+  echo.probe(probe.number());
+  static_cast<void>(topics_.echoes.write(echo, std::chrono::nanoseconds(0))); // as lost as others
 }
 
 } // namespace dyncal::services

@@ -1,10 +1,10 @@
 // Answers whoever asks for this host's clock (clock_offset.hpp), and so tells that the program is
-// there. An answer also tells what has come of the asker's probes, which it echoes
-// (link_responder.hpp).
+// there; and echoes the probes of whoever measures the path to it (link_meter.hpp).
 //
-// Bound: `max_answers_per_s`; requests beyond it stay without an answer. A reader that does not
-// take its answers costs one attempt of a write each. Threads: create() starts one of its own,
-// which lasts as long as the object; a test calls work() instead.
+// Bounds: `max_answers_per_s` and `max_echoes_per_s`; requests and probes beyond stay without an
+// answer, so a flood of them makes no flood of answers. A reader that does not take its answers
+// costs one attempt of a write each. Threads: create() starts one of its own, which lasts as long
+// as the object; a test calls work() instead.
 #pragma once
 
 #include <cstdint>
@@ -15,13 +15,13 @@
 #include "services/bus/clock.hpp"
 #include "services/error.hpp"
 #include "services/host_clocks/clock_messages.hpp"
-#include "services/host_clocks/link_responder.hpp"
 
 namespace dyncal::services {
 
 class ClockResponder {
 public:
   static constexpr int max_answers_per_s = 50;
+  static constexpr int max_echoes_per_s = 500; // of five doctors at once
 
   // Fail (network) as writers and readers do. `participant` need not outlive the object, `clock`
   // must.
@@ -35,26 +35,40 @@ public:
   void work();
 
 private:
+  struct Topics {
+    bus::Reader<wire::ClockRequest> requests;
+    bus::Writer<wire::ClockAnswer> answers;
+    bus::Reader<wire::LinkProbe> probes;
+    bus::Writer<wire::LinkEcho> echoes;
+  };
+  // What may be written in a second.
+  class Allowance {
+  public:
+    explicit Allowance(int per_second) : per_second_(per_second) {}
+    bool take(bus::Clock::Instant now);
+
+  private:
+    int per_second_;
+    int taken_ = 0;
+    bus::Clock::Instant second_began_;
+  };
+
   ClockResponder(ProgramIdentity identity, bus::Clock& clock, std::shared_ptr<bus::WakeUp> wake_up,
-                 bus::Reader<wire::ClockRequest> requests, bus::Writer<wire::ClockAnswer> answers,
-                 LinkResponder links, std::shared_ptr<const bus::RefusedPackets> refused)
+                 Topics topics, std::shared_ptr<const bus::RefusedPackets> refused)
       : identity_(std::move(identity)), name_(service_name(identity_)), clock_(&clock),
-        wake_up_(std::move(wake_up)), requests_(std::move(requests)), answers_(std::move(answers)),
-        links_(std::move(links)), refused_(std::move(refused)) {}
+        wake_up_(std::move(wake_up)), topics_(std::move(topics)), refused_(std::move(refused)) {}
   void run(const std::stop_token& stop);
   void answer(const wire::ClockRequest& request, std::int64_t received_utc_ns);
-  [[nodiscard]] bool may_answer();
+  void echo(const wire::LinkProbe& probe);
 
   ProgramIdentity identity_;
   std::string name_;
   bus::Clock* clock_;
   std::shared_ptr<bus::WakeUp> wake_up_;
-  bus::Reader<wire::ClockRequest> requests_;
-  bus::Writer<wire::ClockAnswer> answers_;
-  LinkResponder links_;
+  Topics topics_;
   std::shared_ptr<const bus::RefusedPackets> refused_;
-  bus::Clock::Instant second_began_;
-  int answers_in_second_ = 0;
+  Allowance answers_left_{max_answers_per_s};
+  Allowance echoes_left_{max_echoes_per_s};
   std::jthread thread_; // the last: ended first
 };
 

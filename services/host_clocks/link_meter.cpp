@@ -6,6 +6,18 @@
 #include "services/contract/topics.hpp"
 
 namespace dyncal::services {
+namespace {
+
+constexpr std::uint32_t first_contract_with_probes = 2;
+
+} // namespace
+
+std::optional<double> lost_part(const LinkLoss& loss) {
+  if (loss.sent < fewest_probes) {
+    return std::nullopt;
+  }
+  return static_cast<double>(loss.sent - loss.echoed) / static_cast<double>(loss.sent);
+}
 
 LinkMeter::LinkMeter(std::string name, bus::Clock& clock, bus::Writer<wire::LinkProbe> probes,
                      bus::Reader<wire::LinkEcho> echoes)
@@ -51,43 +63,47 @@ void LinkMeter::send() {
 
 void LinkMeter::take(const wire::LinkEcho& echo) {
   const std::string service = echo.service().to_string();
-  const bool for_us = echo.asker() == name_ && echo.series() == series_ && echo.number() > 0 &&
-                      echo.number() <= sent_.size();
+  const std::uint64_t number = echo.probe();
+  const bool for_us =
+      echo.asker() == name_ && echo.series() == series_ && number > 0 && number <= sent_.size();
   if (!for_us || (!echoes_of_.contains(service) && echoes_of_.size() >= max_programs)) {
     return;
   }
-  EchoCounts& counts = echoes_of_[service];
-  if (echo.number() <= counts.newest) {
-    counts = {}; // the program had forgotten us, and counts anew
+  Echoes& echoes = echoes_of_[service];
+  if (number > echoes.newest) {
+    echoes.first = echoes.count == 0 ? number : echoes.first;
+    echoes.newest = number;
+    ++echoes.count;
   }
-  if (counts.received == 0) {
-    counts.first = echo.number();
-  }
-  counts.newest = echo.number();
-  ++counts.received;
 }
 
 std::uint64_t LinkMeter::sent_until(Instant time) const {
   return static_cast<std::uint64_t>(std::ranges::upper_bound(sent_, time) - sent_.begin());
 }
 
+LinkLoss LinkMeter::loss(const HeardProgram& program) const {
+  LinkLoss loss{.identity = program.identity};
+  loss.answers_probes = program.contract_version >= first_contract_with_probes;
+  if (!loss.answers_probes) {
+    return loss;
+  }
+  const std::uint64_t due = sent_until(program.asked - settling);
+  const auto found = echoes_of_.find(service_name(program.identity));
+  if (found == echoes_of_.end()) {
+    loss.sent = due - std::min(due, sent_until(program.first_answer + settling));
+    return loss;
+  }
+  const Echoes& echoes = found->second;
+  loss.sent = std::max(echoes.newest, due) - echoes.first + 1;
+  loss.echoed = echoes.count;
+  return loss;
+}
+
 std::vector<LinkLoss> LinkMeter::losses(const std::vector<HeardProgram>& programs) const {
   std::vector<LinkLoss> losses;
   losses.reserve(programs.size());
   for (const HeardProgram& program : programs) {
-    losses.push_back({.identity = program.identity, .answers_probes = program.probes.has_value()});
-    LinkLoss& loss = losses.back();
-    if (!program.probes) {
-      continue;
-    }
-    const ProbesSent sent{.series = series_,
-                          .all = sent_.size(),
-                          .early = sent_until(program.first_answer + settling),
-                          .due = sent_until(program.asked - settling)};
-    const auto echoes = echoes_of_.find(service_name(program.identity));
-    loss.there = way_there(sent, *program.probes);
-    loss.back =
-        way_back(sent, *program.probes, echoes == echoes_of_.end() ? EchoCounts() : echoes->second);
+    losses.push_back(loss(program));
   }
   return losses;
 }

@@ -1,9 +1,13 @@
-// Measures what is lost on the way to every program of a laboratory and back (link_loss.hpp).
+// Measures the path to every program of a laboratory and back: which part of small, numbered,
+// best-effort probes brings an echo. DDS sends neither again, so what reliable topics hide is seen.
 //
 // Sends probes once a program answers about its clock, one every `interval`, and more slowly where
 // many programs answer: each gets a packet of its own, and the link must not lose any because of
-// the probes. Ends after `max_probes`. A probe that is late is not made up for: no bursts. A packet
-// that comes after one that was sent later is lost to DDS, and counts as lost.
+// the probes. Ends after `max_probes`. A probe that is late is not made up for: no bursts. One that
+// is overtaken is lost to DDS, and counts as lost.
+//
+// A path counts from the first echo, for what was sent before two programs had found each other is
+// no loss, up to the newest probe that had time to be echoed before the program last answered.
 //
 // Bound: echoes of `max_programs`. Belongs to one thread, which calls work() when the wake-up rings
 // or next_probe() is due.
@@ -13,6 +17,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,9 +25,21 @@
 #include "services/bus/clock.hpp"
 #include "services/error.hpp"
 #include "services/host_clocks/clock_asker.hpp"
-#include "services/host_clocks/link_loss.hpp"
 
 namespace dyncal::services {
+
+struct LinkLoss {
+  ProgramIdentity identity = {}; // of the other end
+  bool answers_probes = false;   // otherwise nothing is known
+  std::uint64_t sent = 0;
+  std::uint64_t echoed = 0;
+};
+
+// The fewest that a loss is stated of.
+inline constexpr std::uint64_t fewest_probes = 20;
+
+// 0 to 1; nothing where too few were sent. Plain function.
+[[nodiscard]] std::optional<double> lost_part(const LinkLoss& loss);
 
 class LinkMeter {
 public:
@@ -49,11 +66,18 @@ public:
   [[nodiscard]] std::uint64_t probes() const { return sent_.size(); }
 
 private:
+  struct Echoes {
+    std::uint64_t first = 0; // numbers of the probes, from 1
+    std::uint64_t newest = 0;
+    std::uint64_t count = 0;
+  };
+
   LinkMeter(std::string name, bus::Clock& clock, bus::Writer<wire::LinkProbe> probes,
             bus::Reader<wire::LinkEcho> echoes);
   void take(const wire::LinkEcho& echo);
   void send();
   [[nodiscard]] std::uint64_t sent_until(Instant time) const;
+  [[nodiscard]] LinkLoss loss(const HeardProgram& program) const;
 
   std::string name_;
   bus::Clock* clock_;
@@ -62,7 +86,7 @@ private:
   std::uint64_t series_;
   Instant next_probe_ = Instant::max();
   std::vector<Instant> sent_; // of each probe, the first first
-  std::map<std::string, EchoCounts> echoes_of_;
+  std::map<std::string, Echoes> echoes_of_;
 };
 
 } // namespace dyncal::services

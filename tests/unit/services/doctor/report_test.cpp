@@ -52,8 +52,9 @@ TEST(DoctorReport, HasAllOfItAsJson) {
   view.clocks = {{"lab-2", {.offset_s = 0.25, .bound_s = 0.5}}};
   view.losses = {{.identity = {"dyncal-acs", "lab-2", 3, "", ""},
                   .answers_probes = true,
-                  .there = {200, 150},
-                  .back = {3, 1}}};
+                  .sent = 200,
+                  .echoed = 150},
+                 {.answers_probes = true, .sent = 3, .echoed = 1}};
   view.sources[{"acc-1", "dau"}].status.emplace().state(wire::SOURCE_SILENT);
   view.discovery.participants = {{"0110", "dyncal-acs", "Cyclone DDS"}};
   view.announced_by_multicast.emplace();
@@ -66,10 +67,10 @@ TEST(DoctorReport, HasAllOfItAsJson) {
   EXPECT_EQ(json["programs"][0]["program"], "dyncal-acs");
   EXPECT_EQ(json["clocks"][0]["offset_s"], 0.25);
   EXPECT_EQ(json["losses"][0]["program"], "dyncal-acs");
-  EXPECT_EQ(json["losses"][0]["there"]["sent"], 200);
-  EXPECT_EQ(json["losses"][0]["there"]["arrived"], 150);
-  EXPECT_EQ(json["losses"][0]["there"]["lost_percent"], 25.0);
-  EXPECT_TRUE(json["losses"][0]["back"]["lost_percent"].is_null()) << "of too few";
+  EXPECT_EQ(json["losses"][0]["probes"], 200);
+  EXPECT_EQ(json["losses"][0]["echoes"], 150);
+  EXPECT_EQ(json["losses"][0]["lost_percent"], 25.0);
+  EXPECT_TRUE(json["losses"][1]["lost_percent"].is_null()) << "of too few";
   EXPECT_EQ(json["sources"][0]["state"], "silent");
   EXPECT_EQ(json["participants"][0]["by_multicast"], false);
 }

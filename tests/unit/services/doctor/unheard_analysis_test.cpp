@@ -59,12 +59,9 @@ TEST_F(UnheardAnalysis, TellsALinkThatFlaps) {
 
 TEST_F(UnheardAnalysis, TellsALinkThatIsOverloaded) {
   answer("dyncal-analysis");
-  LinkLoss loss;
-  loss.answers_probes = true;
-  loss.there = {100, 60};
-  loss.back = {100, 98};
-  view_.losses = {loss};
-  EXPECT_THAT(why(), HasSubstr("40 % of the packets between this host and the others are lost"));
+  view_.losses = {{.answers_probes = true, .sent = 100, .echoed = 60},
+                  {.answers_probes = true, .sent = 100, .echoed = 98}};
+  EXPECT_THAT(why(), HasSubstr("40 % of the probes from this host to the others bring no echo"));
 }
 
 TEST_F(UnheardAnalysis, TellsAHostWithoutIpv4) {

@@ -221,5 +221,35 @@ TEST_F(ClockExchangeTest, AnswersNoMoreThanItsLimit) {
   EXPECT_EQ(answers.take([](const wire::ClockAnswer&) {}), ClockResponder::max_answers_per_s);
 }
 
+TEST_F(ClockExchangeTest, EchoesNoMoreThanItsLimit) {
+  constexpr std::uint64_t limit = ClockResponder::max_echoes_per_s;
+  const auto answering = responder();
+  auto probes = here_.writer(bus::topics::link_probe, all_benches_partition).value();
+  auto echoes = here_.reader(bus::topics::link_echo, all_benches_partition, bell_).value();
+  wire::LinkProbe probe;
+  probe.bench(all_benches_partition);
+  probe.asker("flood");
+  probe.series(7);
+  std::size_t come = 0;
+  wire::LinkEcho newest;
+  const auto send = [&](std::uint64_t number) {
+    probe.number(number);
+    probes.write(probe);
+    answering->work();
+    come += echoes.take([&](const wire::LinkEcho& echo) { newest = echo; });
+  };
+  for (std::uint64_t number = 1; number <= limit + 300; ++number) {
+    send(number);
+  }
+  EXPECT_EQ(come, limit);
+  network_time_.advance(1s);
+  send(limit + 301);
+  EXPECT_EQ(come, limit + 1);
+  EXPECT_EQ(newest.asker().to_string(), "flood");
+  EXPECT_EQ(newest.service().to_string(), "dyncal-acs:4711@there");
+  EXPECT_EQ(newest.series(), 7U);
+  EXPECT_EQ(newest.probe(), limit + 301);
+}
+
 } // namespace
 } // namespace dyncal::services

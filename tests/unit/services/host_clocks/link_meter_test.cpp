@@ -2,6 +2,8 @@
 // to.
 #include "services/host_clocks/link_meter.hpp"
 
+#include <functional>
+
 #include <gtest/gtest.h>
 
 #include "services/bus/memory/memory_network.hpp"
@@ -48,10 +50,12 @@ protected:
     EXPECT_EQ(losses.size(), 1U);
     return losses.empty() ? LinkLoss() : losses[0];
   }
-  template <class Message, class Condition>
-  void lose(const bus::Topic<Message>& topic, Condition condition) {
-    network_.lose([name = std::string(topic), condition](const bus::MessageInTransit& message) {
-      return message.topic == name && condition(message.as<Message>().number());
+  // Of probes or of their echoes those whose probe's number meets the condition.
+  void lose(const std::string& topic, std::function<bool(std::uint64_t)> condition) {
+    network_.lose([topic, condition](const bus::MessageInTransit& message) {
+      return message.topic == topic &&
+             condition(topic == topics::link_probe ? message.as<wire::LinkProbe>().number()
+                                                   : message.as<wire::LinkEcho>().probe());
     });
   }
 
@@ -69,54 +73,33 @@ TEST_F(LinkMeterTest, FindsNoLossWhereNothingIsLost) {
   const LinkLoss found = loss(asking);
   EXPECT_TRUE(found.answers_probes);
   EXPECT_EQ(found.identity.program, "dyncal-acs");
-  EXPECT_GT(found.there.sent, 200U);
-  EXPECT_EQ(found.there.arrived, found.there.sent);
-  EXPECT_GT(found.back.sent, 200U);
-  EXPECT_EQ(found.back.arrived, found.back.sent);
+  EXPECT_GT(found.sent, 200U);
+  EXPECT_EQ(found.echoed, found.sent);
 }
 
-TEST_F(LinkMeterTest, CountsWhatIsLostThereExactly) {
-  lose(topics::link_probe, [](std::uint64_t number) { return number % 10 == 3; });
-  auto asking = doctor();
-  const auto answering = responder();
-  pass(3s, asking, {answering.get()});
-  const LinkLoss found = loss(asking);
-  EXPECT_GT(found.there.sent, 200U);
-  EXPECT_EQ(found.there.sent - found.there.arrived, (found.there.sent + 7) / 10);
-  EXPECT_GT(found.back.sent, 180U);
-  EXPECT_EQ(found.back.arrived, found.back.sent);
+TEST_F(LinkMeterTest, CountsExactlyWhatIsLostInEitherDirection) {
+  for (const std::string& topic :
+       {std::string(topics::link_probe), std::string(topics::link_echo)}) {
+    lose(topic, [](std::uint64_t number) { return number % 10 == 3; });
+    auto asking = doctor();
+    const auto answering = responder();
+    pass(3s, asking, {answering.get()});
+    const LinkLoss found = loss(asking);
+    EXPECT_GT(found.sent, 200U) << topic;
+    EXPECT_EQ(found.sent - found.echoed, (found.sent + 7) / 10) << topic;
+  }
 }
 
-TEST_F(LinkMeterTest, CountsWhatIsLostOnTheWayBackExactly) {
-  lose(topics::link_echo, [](std::uint64_t number) { return number % 4 == 0; });
-  auto asking = doctor();
-  const auto answering = responder();
-  pass(3s, asking, {answering.get()});
-  const LinkLoss found = loss(asking);
-  EXPECT_GT(found.there.sent, 200U);
-  EXPECT_EQ(found.there.arrived, found.there.sent);
-  EXPECT_GT(found.back.sent, 200U);
-  EXPECT_EQ(found.back.sent - found.back.arrived, found.back.sent / 4);
-}
-
-TEST_F(LinkMeterTest, SeesThatNoProbeArrives) {
-  lose(topics::link_probe, [](std::uint64_t) { return true; });
-  auto asking = doctor();
-  const auto answering = responder();
-  pass(3s, asking, {answering.get()});
-  EXPECT_EQ(lost_part(loss(asking).there), 1.0);
-  EXPECT_GT(loss(asking).there.sent, 180U);
-  EXPECT_FALSE(lost_part(loss(asking).back)) << "nothing was sent back";
-}
-
-TEST_F(LinkMeterTest, SeesThatNoEchoComesBack) {
-  lose(topics::link_echo, [](std::uint64_t) { return true; });
-  auto asking = doctor();
-  const auto answering = responder();
-  pass(3s, asking, {answering.get()});
-  EXPECT_EQ(lost_part(loss(asking).there), 0.0);
-  EXPECT_EQ(lost_part(loss(asking).back), 1.0);
-  EXPECT_GT(loss(asking).back.sent, 200U);
+TEST_F(LinkMeterTest, SeesThatNoEchoComes) {
+  for (const std::string& topic :
+       {std::string(topics::link_probe), std::string(topics::link_echo)}) {
+    lose(topic, [](std::uint64_t) { return true; });
+    auto asking = doctor();
+    const auto answering = responder();
+    pass(3s, asking, {answering.get()});
+    EXPECT_EQ(lost_part(loss(asking)), 1.0) << topic;
+    EXPECT_GT(loss(asking).sent, 180U) << topic;
+  }
 }
 
 TEST_F(LinkMeterTest, SeesThatNothingArrivesAnyLonger) {
@@ -124,10 +107,13 @@ TEST_F(LinkMeterTest, SeesThatNothingArrivesAnyLonger) {
   auto asking = doctor();
   const auto answering = responder();
   pass(3s, asking, {answering.get()});
-  EXPECT_EQ(loss(asking).there.arrived, 100U);
-  EXPECT_GT(loss(asking).there.sent, 180U);
-  EXPECT_EQ(loss(asking).back.arrived, 100U);
-  EXPECT_EQ(loss(asking).back.sent, 100U);
+  EXPECT_EQ(loss(asking).echoed, 100U);
+  EXPECT_GT(loss(asking).sent, 180U);
+}
+
+TEST_F(LinkMeterTest, StatesNoPartOfAFew) {
+  EXPECT_FALSE(lost_part({.sent = fewest_probes - 1}));
+  EXPECT_EQ(lost_part({.sent = 200, .echoed = 150}), 0.25);
 }
 
 TEST_F(LinkMeterTest, TakesNothingForLostThatWasSentBeforeAProgramWasThere) {
@@ -138,12 +124,11 @@ TEST_F(LinkMeterTest, TakesNothingForLostThatWasSentBeforeAProgramWasThere) {
   pass(2s, asking, {first.get(), second.get()});
   const auto losses = asking.meter.losses(asking.asker.programs());
   ASSERT_EQ(losses.size(), 2U);
-  EXPECT_GT(losses[0].there.sent, 300U);
-  EXPECT_GT(losses[1].there.sent, 100U);
-  EXPECT_LT(losses[1].there.sent, 210U);
+  EXPECT_GT(losses[0].sent, 300U);
+  EXPECT_GT(losses[1].sent, 100U);
+  EXPECT_LT(losses[1].sent, 210U);
   for (const LinkLoss& one : losses) {
-    EXPECT_EQ(lost_part(one.there), 0.0);
-    EXPECT_EQ(lost_part(one.back), 0.0);
+    EXPECT_EQ(lost_part(one), 0.0);
   }
 }
 
@@ -156,8 +141,8 @@ TEST_F(LinkMeterTest, BeginsANewSeriesWhereOneOfItsNameWasBefore) {
   lose(topics::link_probe, [](std::uint64_t number) { return number % 2 == 0; });
   auto asking = doctor();
   pass(3s, asking, {answering.get()});
-  EXPECT_GT(loss(asking).there.sent, 200U);
-  EXPECT_NEAR(lost_part(loss(asking).there).value_or(0.0), 0.5, 0.01);
+  EXPECT_GT(loss(asking).sent, 200U);
+  EXPECT_NEAR(lost_part(loss(asking)).value_or(0.0), 0.5, 0.01);
 }
 
 TEST_F(LinkMeterTest, DoesNotTakeAProgramThatAnswersNoProbesForALoss) {
@@ -173,8 +158,18 @@ TEST_F(LinkMeterTest, DoesNotTakeAProgramThatAnswersNoProbesForALoss) {
   pass(3s, asking, {});
   EXPECT_GT(asking.meter.probes(), 200U);
   EXPECT_FALSE(loss(asking).answers_probes);
-  EXPECT_FALSE(lost_part(loss(asking).there));
-  EXPECT_FALSE(lost_part(loss(asking).back));
+  EXPECT_FALSE(lost_part(loss(asking)));
+}
+
+TEST_F(LinkMeterTest, CountsNoProbesAsLostThatWereSentAfterAProgramEnded) {
+  auto asking = doctor();
+  auto answering = responder();
+  pass(2s, asking, {answering.get()});
+  answering.reset();
+  pass(5s, asking, {});
+  EXPECT_GT(asking.meter.probes(), 400U);
+  EXPECT_GT(loss(asking).sent, 100U);
+  EXPECT_EQ(loss(asking).echoed, loss(asking).sent);
 }
 
 TEST_F(LinkMeterTest, SendsNothingBeforeAProgramAnswersAndEndsInTime) {
