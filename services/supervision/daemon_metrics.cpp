@@ -97,7 +97,7 @@ void report_state(wire::SourceState present, const MetricLabels& labels, MetricS
        {wire::SOURCE_FAILED, "failed"}}};
   for (const auto& [one, name] : states) {
     MetricLabels with_state = labels;
-    with_state.emplace_back("state", name);
+    with_state.emplace("state", name);
     store.set(state, with_state, one == present ? 1.0 : 0.0);
   }
 }
@@ -134,7 +134,7 @@ void report(const wire::SourceStatus& status, std::uint64_t messages_written, Me
                             {"source", status.source().to_string()}};
   const auto lost_in = [&](const char* place, std::uint64_t count) {
     MetricLabels with_place = labels;
-    with_place.emplace_back("place", place);
+    with_place.emplace("place", place);
     store.set(lost, with_place, number(count));
   };
   store.set(received, labels, number(status.received()));

@@ -1,15 +1,19 @@
-// Numbers that a daemon offers to whoever watches it: families with a name and a sentence, and in
-// each one value for every set of labels. Names and units follow Prometheus' conventions: base
-// units, counters end in _total.
+// Numbers that a daemon offers to whoever watches it, in prometheus-cpp's registry: families with a
+// name and a sentence, and in each one value for every set of labels. Names and units follow
+// Prometheus' conventions: base units, counters end in _total.
 //
-// Any thread. A value stays until it is set again.
+// A daemon counts by itself and reports totals. A counter that is given a smaller one begins again,
+// which Prometheus takes for a restart. Any thread. A value stays until it is set again.
 #pragma once
 
 #include <map>
+#include <memory>
 #include <mutex>
 #include <string>
-#include <utility>
-#include <vector>
+
+namespace prometheus {
+class Registry;
+}
 
 namespace dyncal::services {
 
@@ -21,23 +25,19 @@ struct MetricFamily {
   MetricKind kind;
 };
 
-using MetricLabels = std::vector<std::pair<std::string, std::string>>;
+using MetricLabels = std::map<std::string, std::string>;
 
 class MetricStore {
 public:
-  struct Family {
-    std::string help;
-    MetricKind kind = MetricKind::gauge;
-    std::map<MetricLabels, double> values;
-  };
+  MetricStore();
 
   void set(const MetricFamily& family, const MetricLabels& labels, double value);
-  // By name.
-  [[nodiscard]] std::map<std::string, Family> families() const;
+  // Null where this build has no prometheus-cpp.
+  [[nodiscard]] const std::shared_ptr<prometheus::Registry>& registry() const { return registry_; }
 
 private:
-  mutable std::mutex mutex_;
-  std::map<std::string, Family> families_;
+  std::mutex mutex_; // of counters that begin again
+  std::shared_ptr<prometheus::Registry> registry_;
 };
 
 } // namespace dyncal::services

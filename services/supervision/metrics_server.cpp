@@ -14,7 +14,7 @@
 #ifdef DYNCAL_HAVE_PROMETHEUS
 #include <prometheus/collectable.h>
 #include <prometheus/exposer.h>
-#include <prometheus/metric_family.h>
+#include <prometheus/registry.h>
 #endif
 
 namespace dyncal::services {
@@ -56,50 +56,27 @@ std::string reason_against(const sockaddr_in& address) {
 
 namespace {
 
-prometheus::MetricFamily to_prometheus(const std::string& name, const MetricStore::Family& family) {
-  prometheus::MetricFamily converted;
-  const bool counter = family.kind == MetricKind::counter;
-  converted.name = name;
-  converted.help = family.help;
-  converted.type = counter ? prometheus::MetricType::Counter : prometheus::MetricType::Gauge;
-  for (const auto& [labels, value] : family.values) {
-    prometheus::ClientMetric metric;
-    for (const auto& [label, text] : labels) {
-      metric.label.push_back({label, text});
-    }
-    (counter ? metric.counter.value : metric.gauge.value) = value;
-    converted.metric.push_back(std::move(metric));
-  }
-  return converted;
-}
-
-class StoreToCollect final : public prometheus::Collectable {
+// Looks at the process whenever somebody asks.
+class ProcessMetrics final : public prometheus::Collectable {
 public:
-  explicit StoreToCollect(const MetricStore& store) : store_(store) {}
   [[nodiscard]] std::vector<prometheus::MetricFamily> Collect() const override {
-    MetricStore of_process;
-    add_process_metrics(of_process);
-    std::vector<prometheus::MetricFamily> families;
-    for (const MetricStore* store : {&store_, const_cast<const MetricStore*>(&of_process)}) {
-      for (const auto& [name, family] : store->families()) {
-        families.push_back(to_prometheus(name, family));
-      }
-    }
-    return families;
+    add_process_metrics(store_);
+    return store_.registry()->Collect();
   }
 
 private:
-  const MetricStore& store_;
+  mutable MetricStore store_;
 };
 
 } // namespace
 
 struct MetricsServer::Implementation {
   Implementation(const std::string& address, const MetricStore& store)
-      : collectable(std::make_shared<StoreToCollect>(store)), exposer(address, 1) {
-    exposer.RegisterCollectable(collectable);
+      : process(std::make_shared<ProcessMetrics>()), exposer(address, 1) {
+    exposer.RegisterCollectable(store.registry());
+    exposer.RegisterCollectable(process);
   }
-  std::shared_ptr<StoreToCollect> collectable; // outlives the exposer, which holds it weakly
+  std::shared_ptr<ProcessMetrics> process; // outlives the exposer, which holds it weakly
   prometheus::Exposer exposer;
 };
 

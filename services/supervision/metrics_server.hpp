@@ -1,9 +1,8 @@
 // Serves a MetricStore over HTTP at /metrics, in the text format of Prometheus, and with it what
 // every process has: memory, processor time, descriptors, threads (process_*).
 //
-// Listens in threads of its own for as long as the object lives; a scrape takes a copy of the store
-// and holds up nobody. There is no encryption and no password: listen on loopback, or in a network
-// that you trust.
+// Listens in threads of its own for as long as the object lives; a scrape holds up nobody. There is
+// no encryption and no password: listen on loopback, or in a network that you trust.
 #pragma once
 
 #include <memory>

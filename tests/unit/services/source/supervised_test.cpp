@@ -70,7 +70,7 @@ TEST_F(SupervisedTest, OffersWhatItHasSentAndLost) {
   EXPECT_EQ(shown("dyncal_source_samples_received_total"), 70);
   EXPECT_EQ(shown("dyncal_source_samples_duplicate_total"), 3);
   EXPECT_EQ(shown("dyncal_source_samples_dropped_total"), 0);
-  EXPECT_EQ(values[R"(dyncal_source_samples_lost_total{bench="acc",source="acs",place="transit"})"],
+  EXPECT_EQ(values[R"(dyncal_source_samples_lost_total{bench="acc",place="transit",source="acs"})"],
             4);
 }
 

@@ -48,11 +48,11 @@ TEST_F(MetricsTest, ServesTheCountsOfASource) {
   status.matched_readers(2);
   report(status, 42, store_);
   const auto values = scrape();
-  const std::string labels = R"({bench="acc-1",source="dau")";
+  const std::string labels = R"({bench="acc-1",source="dau")"; // in alphabetical order
   const std::vector<std::pair<std::string, double>> expected{
       {"dyncal_source_samples_received_total" + labels + "}", 1001},
-      {"dyncal_source_samples_lost_total" + labels + R"(,place="device"})", 3},
-      {"dyncal_source_samples_lost_total" + labels + R"(,place="transit"})", 5},
+      {R"(dyncal_source_samples_lost_total{bench="acc-1",place="device",source="dau"})", 3},
+      {R"(dyncal_source_samples_lost_total{bench="acc-1",place="transit",source="dau"})", 5},
       {"dyncal_source_samples_duplicate_total" + labels + "}", 7},
       {"dyncal_source_samples_rejected_total" + labels + "}", 9},
       {"dyncal_source_stamps_not_trusted_total" + labels + "}", 11},
@@ -78,6 +78,13 @@ TEST_F(MetricsTest, ServesTheNewestValue) {
     report(status, count, store_);
   }
   EXPECT_EQ(scrape().at(R"(dyncal_source_samples_received_total{bench="acc-1",source="dau"})"), 3);
+}
+
+TEST_F(MetricsTest, ServesACountThatBeganAgain) {
+  for (const std::uint64_t count : {7U, 3U, 4U}) {
+    report_malformed_messages(count, store_);
+    EXPECT_EQ(scrape().at("dyncal_malformed_messages_total"), count);
+  }
 }
 
 TEST_F(MetricsTest, ServesWhatTheAnalysisDoes) {
@@ -127,15 +134,23 @@ TEST_F(MetricsTest, ServesWhatEveryProcessHas) {
 
 TEST_F(MetricsTest, NamesKindsAsPrometheusDoes) {
   report(AnalysisFigures{}, store_);
+  report(WebFigures{}, store_);
+  report(wire::SourceStatus{}, 0, store_);
   const std::string text = fetch_metrics(server_->port());
   EXPECT_THAT(text, HasSubstr("200 OK"));
   EXPECT_THAT(text, HasSubstr("# TYPE dyncal_analysis_runs gauge"));
   EXPECT_THAT(text, HasSubstr("# TYPE dyncal_analysis_evaluation_seconds_total counter"));
-  for (const auto& [name, family] : store_.families()) {
-    const bool total = name.ends_with("_total");
-    EXPECT_EQ(total, family.kind == MetricKind::counter) << name;
-    EXPECT_THAT(name, ContainsRegex("^dyncal_[a-z_]+$"));
+  std::istringstream lines(text);
+  int families = 0;
+  for (std::string line, name, kind; std::getline(lines, line);) {
+    if (line.starts_with("# TYPE dyncal_")) {
+      std::istringstream(line.substr(std::string("# TYPE ").size())) >> name >> kind;
+      EXPECT_EQ(kind, name.ends_with("_total") ? "counter" : "gauge") << name;
+      EXPECT_THAT(name, ContainsRegex("^dyncal_[a-z_]+$"));
+      ++families;
+    }
   }
+  EXPECT_EQ(families, 21);
 }
 
 TEST_F(MetricsTest, RefusesAPortThatIsInUse) {
@@ -168,7 +183,8 @@ TEST_F(MetricsTest, AreServedByASupervisorThatIsAskedTo) {
   const auto serving = Supervisor::create(identity, address);
   ASSERT_TRUE(serving) << serving.error().message;
   const int port = std::stoi(address.substr(address.find(':') + 1));
-  EXPECT_THAT(fetch_metrics(port), HasSubstr("dyncal_build_info{program=\"dyncal-acs\""));
+  EXPECT_THAT(fetch_metrics(port),
+              HasSubstr("dyncal_build_info{dds=\"cyclonedds\",program=\"dyncal-acs\""));
 }
 
 } // namespace
