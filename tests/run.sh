@@ -1,21 +1,24 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds, and runs every test:
 #
-#   tests/run.sh [--sanitize | --thread-sanitize] [options of ctest, e.g. -R sine or -L fuzz]
+#   tests/run.sh [--sanitize | --thread-sanitize | --changed] [options of ctest, e.g. -R sine]
 #
 # --sanitize         with the address and undefined-behaviour sanitizers
 # --thread-sanitize  with the thread sanitizer, without what measures load, waits for packet loss
 #                    or computes for minutes
+# --changed          builds and runs only what is reached by changes since the branch left its
+#                    upstream, committed or not (tests/changed/changed_tests.py)
 #
-# Each has a build directory of its own. Tests that must have the machine to themselves carry
-# ctest's RUN_SERIAL. The exit status is that of ctest; the last lines name every test that was
-# skipped and why.
+# Sanitizers have build directories of their own. Tests that must have the machine to themselves
+# carry ctest's RUN_SERIAL. The exit status is that of ctest; the last lines name every test that
+# was skipped and why.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 preset=release
 directory=build
 left_out=()
+chosen=
 case ${1:-} in
   --sanitize)
     shift
@@ -44,14 +47,22 @@ case ${1:-} in
     slow='dau_load|analyse_speed|bus_netns_test|progress_cost|Coverage|Style|Install'
     left_out=(--exclude-regex "^(($slow)\\.|CommandLine\\.progress)")
     ;;
+  --changed)
+    shift
+    chosen=$(mktemp)
+    ;;
 esac
 [[ $preset == release ]] || directory=build-$preset
 
-deploy/install-packages.sh build test
-deploy/build.sh "$preset" with-tests
-
 output=$(mktemp)
-trap 'rm -f "$output"' EXIT
+trap 'rm -f "$output" $chosen' EXIT
+if [[ $chosen ]]; then
+  tests/changed/changed_tests.py --build "$directory" --chosen "$chosen"
+  left_out=(-I "$chosen")
+else
+  deploy/install-packages.sh build test
+  deploy/build.sh "$preset" with-tests
+fi
 status=0
 # Tests wait more than they compute: five at once do not fill two processors.
 ctest --test-dir "$directory" --parallel 5 --output-on-failure --no-tests=error "${left_out[@]}" \
