@@ -24,6 +24,7 @@ enum class Compression { none, zstd };
 
 // More than any chunk of ours has; a foreign file with larger ones is not read.
 inline constexpr std::uint64_t max_chunk_bytes = std::uint64_t{256} << 20U;
+inline constexpr std::uint64_t max_record_bytes = 2 * max_chunk_bytes; // longer ones are not read
 
 // Whether this build can uncompress it: where it cannot, nothing is known of the bytes.
 [[nodiscard]] bool knows_compression(const std::string& compression);

@@ -92,7 +92,7 @@ Expected<std::string> RecordingReader::chunk_records(std::uint64_t offset) const
   const std::uint64_t length = number_at(*head, 1, 8);
   const auto opcode = static_cast<Opcode>((*head)[0]);
   if ((opcode != Opcode::chunk && opcode != Opcode::message) ||
-      length > size_ - offset - head_bytes || length > 2 * max_chunk_bytes) {
+      length > size_ - offset - head_bytes || length > max_record_bytes) {
     return fail(ErrorCode::bad_file, where + "there is no chunk");
   }
   const auto content = bytes(offset + head_bytes, length);

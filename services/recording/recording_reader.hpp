@@ -82,13 +82,13 @@ public:
   // that is there. Fails (bad_file) with a part of a sentence: what is wrong with it.
   [[nodiscard]] services::Expected<std::string> chunk_records(std::uint64_t offset) const;
 
-private:
-  friend class Scan;
-
-  RecordingReader(std::filesystem::path path, drivers::FileDescriptor file, std::uint64_t size)
-      : path_(std::move(path)), file_(std::move(file)), size_(size) {}
+  // Exactly these, which the file has. Fails (bad_file) when they cannot be read.
   [[nodiscard]] services::Expected<std::string> bytes(std::uint64_t offset,
                                                       std::uint64_t count) const;
+
+private:
+  RecordingReader(std::filesystem::path path, drivers::FileDescriptor file, std::uint64_t size)
+      : path_(std::move(path)), file_(std::move(file)), size_(size) {}
 
   std::filesystem::path path_;
   drivers::FileDescriptor file_;

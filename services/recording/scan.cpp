@@ -1,10 +1,9 @@
 #include "services/recording/scan.hpp"
 
-#include <algorithm>
-
 #include <fmt/core.h>
 
 #include "services/recording/chunk_codec.hpp"
+#include "services/recording/recording_ending.hpp"
 #include "services/recording/text_crc.hpp"
 
 namespace dyncal::recording {
@@ -13,11 +12,7 @@ using services::Expected;
 
 namespace {
 
-constexpr std::uint64_t max_record_bytes = 2 * max_chunk_bytes; // longer ones are not read
-constexpr std::uint64_t window_bytes = std::uint64_t{1} << 20U;
-constexpr std::size_t chunk_fields_bytes = head_bytes + 44; // with a compression of 4 letters
-constexpr int max_failed_candidates = 100;
-constexpr std::uint64_t footer_bytes = head_bytes + 20;
+constexpr std::uint64_t max_filler_bytes = std::uint64_t{1} << 20U; // that is read
 
 const char* name_of(Opcode opcode) {
   switch (opcode) {
@@ -56,11 +51,11 @@ Expected<void> Scan::walk_to(std::uint64_t offset) const {
     return {};
   }
   return fail(services::ErrorCode::interrupted,
-              fmt::format("{}: interrupted while it was read", reader_.path_.string()));
+              fmt::format("{}: interrupted while it was read", reader_.path().string()));
 }
 
 Expected<ScanReport> Scan::run() {
-  report_.file_bytes = reader_.size_;
+  report_.file_bytes = reader_.size_bytes();
   offset_ = magic.size();
   crc_ = crc32_of(magic);
   for (;;) {
@@ -68,7 +63,7 @@ Expected<ScanReport> Scan::run() {
     if (!goes_on) {
       return fail(goes_on.error());
     }
-    const auto walked = walk_to(*goes_on ? offset_ : reader_.size_);
+    const auto walked = walk_to(*goes_on ? offset_ : reader_.size_bytes());
     if (!walked) {
       return fail(walked.error());
     }
@@ -79,7 +74,7 @@ Expected<ScanReport> Scan::run() {
 }
 
 Expected<bool> Scan::step() {
-  const std::uint64_t left = reader_.size_ - offset_;
+  const std::uint64_t left = reader_.size_bytes() - offset_;
   if (left < head_bytes) {
     damage(offset_, left, "the file was cut off here");
     return false;
@@ -92,9 +87,9 @@ Expected<bool> Scan::step() {
   const std::uint64_t length = number_at(*head, 1, 8);
   const std::uint64_t begin = offset_;
   if (length > left - head_bytes) {
-    return go_on_behind(begin).map([&] { return offset_ < reader_.size_; });
+    return go_on_behind(begin).map([&] { return offset_ < reader_.size_bytes(); });
   }
-  if (opcode == Opcode::filler && length > window_bytes) { // of a recording that was not ended
+  if (opcode == Opcode::filler && length > max_filler_bytes) { // of a recording that was not ended
     crc_.reset();
     offset_ += head_bytes + length;
     return true;
@@ -115,7 +110,7 @@ Expected<bool> Scan::step() {
   }
   const Finding finding = take(opcode, *content);
   if (finding == Finding::unreadable) {
-    return go_on_behind(begin).map([&] { return offset_ < reader_.size_; });
+    return go_on_behind(begin).map([&] { return offset_ < reader_.size_bytes(); });
   }
   if (crc_) {
     crc_ = crc32_of(*content, crc32_of(*head, *crc_));
@@ -304,129 +299,33 @@ void Scan::check_schema(const Channel& channel) {
   }
 }
 
-namespace {
-
-enum class Ending { damaged, shortest, with_summary };
-
-// What follows DataEnd at `begin`, up to and including Footer and magic.
-Ending judge_ending(std::string_view text, std::uint64_t begin) {
-  const std::size_t footer_at = text.size() - magic.size() - footer_bytes;
-  const auto footer = parse_footer(text.substr(footer_at + head_bytes, 20));
-  if (!footer || text.substr(text.size() - magic.size()) != magic) {
-    return Ending::damaged;
-  }
-  if (footer->summary_start == 0) {
-    return footer_at == 0 ? Ending::shortest : Ending::damaged;
-  }
-  const std::string_view vouched = text.substr(0, text.size() - magic.size() - 4);
-  const bool is_sound =
-      footer->summary_start == begin && (footer->crc == 0 || footer->crc == crc32_of(vouched));
-  return is_sound ? Ending::with_summary : Ending::damaged;
-}
-
-} // namespace
-
-// Where the Footer behind DataEnd begins; nothing if there is none.
-Expected<std::optional<std::uint64_t>> Scan::footer_behind(std::uint64_t offset) const {
-  while (reader_.size_ - offset >= footer_bytes + magic.size()) {
-    const auto head = reader_.bytes(offset, head_bytes);
-    if (!head) {
-      return fail(head.error());
-    }
-    const std::uint64_t length = number_at(*head, 1, 8);
-    if (static_cast<Opcode>((*head)[0]) == Opcode::footer) {
-      return length == footer_bytes - head_bytes ? std::optional(offset) : std::nullopt;
-    }
-    if (length > reader_.size_ - offset - head_bytes) {
-      break;
-    }
-    offset += head_bytes + length;
-  }
-  return std::nullopt;
-}
-
-// Summary, Footer, magic: all of them come from a program that ended in order.
 Expected<void> Scan::take_end(std::uint32_t crc, std::uint64_t begin) {
   if (crc != 0 && crc_ && *crc_ != crc && report_.damage_count == 0) {
     damage(0, begin, "something outside the chunks was changed: the CRC of the data is wrong");
   }
-  const auto footer = footer_behind(begin);
-  if (!footer) {
-    return fail(footer.error());
+  const auto ending = ending_behind(reader_, begin);
+  if (!ending) {
+    return fail(ending.error());
   }
-  Ending ending = Ending::damaged;
-  if (*footer && **footer - begin < max_record_bytes) {
-    const auto text = reader_.bytes(begin, **footer - begin + footer_bytes + magic.size());
-    if (!text) {
-      return fail(text.error());
-    }
-    ending = judge_ending(*text, begin);
-  }
-  report_.ended_in_order = ending == Ending::with_summary;
-  if (ending == Ending::damaged) {
-    damage(begin, reader_.size_ - begin, "the summary at the end is damaged, no message is lost");
+  report_.ended_in_order = *ending == Ending::with_summary;
+  if (*ending == Ending::damaged) {
+    damage(begin, reader_.size_bytes() - begin,
+           "the summary at the end is damaged, no message is lost");
   }
   return {};
 }
 
 Expected<void> Scan::go_on_behind(std::uint64_t offset) {
-  const auto next = next_whole_chunk(offset + 1);
+  const auto next = chunks_.next(offset + 1, [this](std::uint64_t from) { return walk_to(from); });
   if (!next) {
     return fail(next.error());
   }
   crc_.reset();
-  offset_ = next->value_or(reader_.size_);
+  offset_ = next->value_or(reader_.size_bytes());
   damage(offset, offset_ - offset,
          *next ? "these bytes are no records: what stood here is lost"
                : "from here to the end there are no records: what stood here is lost");
   return {};
-}
-
-Expected<std::optional<std::uint64_t>> Scan::next_whole_chunk(std::uint64_t from) {
-  while (from + chunk_fields_bytes <= reader_.size_) {
-    const std::uint64_t count = std::min(window_bytes, reader_.size_ - from);
-    const auto window = reader_.bytes(from, count);
-    if (!window) {
-      return fail(window.error());
-    }
-    for (std::size_t at = window->find('\x06'); at != std::string::npos;
-         at = window->find('\x06', at + 1)) {
-      const auto whole = is_whole_chunk(from + at);
-      if (!whole) {
-        return fail(whole.error());
-      }
-      if (*whole) {
-        return from + at;
-      }
-    }
-    from += count;
-    if (const auto walked = walk_to(from); !walked) {
-      return fail(walked.error());
-    }
-  }
-  return std::nullopt;
-}
-
-// By its lengths, which fit together in few places by chance, and then by its CRC.
-Expected<bool> Scan::is_whole_chunk(std::uint64_t offset) {
-  const std::uint64_t left = reader_.size_ - offset;
-  if (left < chunk_fields_bytes || failed_candidates_ >= max_failed_candidates) {
-    return false;
-  }
-  const auto fields = reader_.bytes(offset, chunk_fields_bytes);
-  if (!fields) {
-    return fail(fields.error());
-  }
-  const std::uint64_t length = number_at(*fields, 1, 8);
-  const std::uint64_t letters = number_at(*fields, head_bytes + 28, 4);
-  if (length > left - head_bytes || length > max_record_bytes || letters > 4 || length < 44 ||
-      number_at(*fields, head_bytes + 32 + letters, 8) != length - 40 - letters) {
-    return false;
-  }
-  const bool whole =
-      reader_.chunk_records(offset).has_value() && number_at(*fields, head_bytes + 24, 4) != 0;
-  failed_candidates_ += whole ? 0 : 1;
-  return whole;
 }
 
 } // namespace dyncal::recording

@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 
+#include "services/recording/chunk_search.hpp"
 #include "services/recording/recording_reader.hpp"
 
 namespace dyncal::recording {
@@ -12,7 +13,7 @@ namespace dyncal::recording {
 class Scan {
 public:
   Scan(const RecordingReader& reader, const ScanEvents& events)
-      : reader_(reader), events_(events) {}
+      : reader_(reader), events_(events), chunks_(reader) {}
 
   [[nodiscard]] services::Expected<ScanReport> run();
 
@@ -29,23 +30,18 @@ private:
   void take_channel(Channel channel, bool has_crc);
   void take_message(std::string_view content, std::uint64_t position);
   void check_schema(const Channel& channel);
-  [[nodiscard]] services::Expected<std::optional<std::uint64_t>>
-  footer_behind(std::uint64_t offset) const;
   [[nodiscard]] services::Expected<void> take_end(std::uint32_t crc, std::uint64_t begin);
   [[nodiscard]] services::Expected<void> go_on_behind(std::uint64_t offset);
-  [[nodiscard]] services::Expected<std::optional<std::uint64_t>>
-  next_whole_chunk(std::uint64_t from);
-  [[nodiscard]] services::Expected<bool> is_whole_chunk(std::uint64_t offset);
   // Fails (interrupted) if a stop was requested.
   [[nodiscard]] services::Expected<void> walk_to(std::uint64_t offset) const;
   void damage(std::uint64_t offset, std::uint64_t bytes, std::string what);
 
   const RecordingReader& reader_;
   const ScanEvents& events_;
+  ChunkSearch chunks_;
   ScanReport report_;
   std::uint64_t offset_ = 0;         // of the record that is read
   std::optional<std::uint32_t> crc_; // of everything before it; nothing: not known
-  int failed_candidates_ = 0;        // of next_whole_chunk()
   std::map<std::uint16_t, Schema> schemas_;
   struct KnownChannel {
     Channel channel;
