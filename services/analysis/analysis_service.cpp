@@ -33,8 +33,7 @@ AnalysisService::AnalysisService(bus::Participant participant, AnalysisIdentity 
                   return is_used(bench, source);
                 }}),
       others_(context_.identity.service, [this](const RunKey& key) {
-        const auto known = followed_.find(key);
-        return runs_.contains(key) || (known != followed_.end() && known->second.messages > 1);
+        return runs_.contains(key) || followed_.messages(key) > 1;
       }) {}
 
 Expected<std::unique_ptr<AnalysisService>> AnalysisService::create(bus::Participant participant,
@@ -119,8 +118,8 @@ void AnalysisService::take_messages() {
     const RunKey key{excitation.bench().to_string(), excitation.run().to_string()};
     if (const auto session = runs_.find(key); session != runs_.end()) {
       session->second->announce(excitation);
-    } else { // perhaps before anything was heard of its run: topics have no order among each other
-      followed(key).excitation = excitation;
+    } else {
+      followed_.add(key, excitation, context_.clock.now());
     }
   });
   for (auto& [bench, sources] : again_) { // last, so that nothing new drops them before work()
@@ -197,54 +196,15 @@ void AnalysisService::take_measurement(const wire::Measurement& measurement) {
     return;
   }
   // Who leads the run before on this bench leads the next one, too: it alone knows its end.
-  const auto known = followed_.find(key);
-  const bool is_new = known == followed_.end() || known->second.messages == 0;
-  const bool begins = measurement.state() == wire::MEASUREMENT_PLANNED && is_new;
-  if (begins && !others_.leader(key, context_.clock.now()) && !follows_bench(key.first)) {
+  const Instant now = context_.clock.now();
+  const bool begins =
+      measurement.state() == wire::MEASUREMENT_PLANNED && followed_.messages(key) == 0;
+  if (begins && !others_.leader(key, now) && !followed_.leads_other(key.first, now)) {
     followed_.erase(key);
     begin_run(key, measurement, SourceStreams::Begin::with_answer);
   } else {
-    follow(key, measurement);
+    followed_.add(key, measurement, now);
   }
-}
-
-void AnalysisService::follow(const RunKey& key, const wire::Measurement& measurement) {
-  FollowedRun& run = followed(key);
-  const Instant now = context_.clock.now();
-  run.since = run.messages == 0 ? now : run.since;
-  run.measurement = measurement;
-  run.heard = now;
-  ++run.messages;
-}
-
-AnalysisService::FollowedRun& AnalysisService::followed(const RunKey& key) {
-  if (const auto known = followed_.find(key); known != followed_.end()) {
-    return known->second;
-  }
-  const Instant now = context_.clock.now();
-  if (followed_.size() >= max_followed) { // their messages hold whole recipes
-    const auto goes =
-        std::min_element(followed_.begin(), followed_.end(), [](const auto& a, const auto& b) {
-          const bool a_repeats = a.second.messages > 1;
-          const bool b_repeats = b.second.messages > 1;
-          return std::pair(a_repeats, a.second.heard) < std::pair(b_repeats, b.second.heard);
-        });
-    runs_left_out_ += now - goes->second.heard <= OtherAnalyses::silence_limit ? 1 : 0;
-    followed_.erase(goes);
-  }
-  FollowedRun& run = followed_[key];
-  run.since = run.heard = now;
-  return run;
-}
-
-bool AnalysisService::follows_bench(const std::string& bench) const {
-  const Instant now = context_.clock.now();
-  return std::any_of(followed_.begin(), followed_.end(), [&](const auto& one) {
-    const auto& [key, run] = one;
-    const auto leader = others_.leader(key, now);
-    return key.first == bench && leader && leader->arm != wire::ARM_FINISHED &&
-           leader->arm != wire::ARM_REFUSED;
-  });
 }
 
 void AnalysisService::begin_run(const RunKey& key, const wire::Measurement& measurement,
@@ -285,53 +245,38 @@ void AnalysisService::give_way() {
     }
     spdlog::info("bench {}, run {}: led by {}; this service stands by", key.first, key.second,
                  others_.leader(key, now)->service);
-    follow(key, session->measurement());
+    followed_.add(key, session->measurement(), now);
     runs_.erase(run);
     return true;
   });
 }
 
-// Heard of more than once: the last word of a run that has ended stays readable for a while.
-bool AnalysisService::is_deserted(const RunKey& key, const FollowedRun& run, Instant now) const {
-  const auto last = others_.last_leader(key);
-  if (last && (last->arm == wire::ARM_FINISHED || last->arm == wire::ARM_REFUSED)) {
-    return false;
-  }
-  const Instant led_until = last ? std::max(last->heard, run.since) : run.since;
-  return run.messages > 1 && now - led_until > OtherAnalyses::silence_limit &&
-         now - run.heard <= OtherAnalyses::silence_limit;
-}
-
 void AnalysisService::take_over() {
   const Instant now = context_.clock.now();
-  for (auto run = followed_.begin(); run != followed_.end();) {
-    auto& [key, followed] = *run;
-    if (followed.left_alone || !is_deserted(key, followed, now)) {
-      ++run;
-      continue;
-    }
+  while (auto* const deserted = followed_.deserted(now)) {
+    const RunKey key = deserted->first;
+    FollowedRun& run = deserted->second;
     const auto last = others_.last_leader(key);
     // An analysis that was started again does not know who led; the run does.
-    const std::string began_with = last ? last->software : followed.measurement.analysis_software();
+    const std::string began_with = last ? last->software : run.measurement.analysis_software();
     if (!began_with.empty() && began_with != software_version()) {
-      followed.left_alone = true;
+      run.left_alone = true;
       spdlog::error("bench {}, run {}: {} with {} has gone silent; this service has {} and does "
                     "not take the run over: end it, and give all analysis services one version",
                     key.first, key.second, last ? last->service : "an analysis service", began_with,
                     software_version());
-      ++run;
       continue;
     }
     spdlog::warn("bench {}, run {}: taken over{}", key.first, key.second,
                  last ? " from " + last->service : "");
-    const bool planned = followed.measurement.state() == wire::MEASUREMENT_PLANNED;
-    begin_run(key, followed.measurement,
+    const bool planned = run.measurement.state() == wire::MEASUREMENT_PLANNED;
+    begin_run(key, run.measurement,
               planned ? SourceStreams::Begin::with_answer : SourceStreams::Begin::behind);
     const auto session = runs_.find(key);
-    if (followed.excitation && session != runs_.end()) {
-      session->second->announce(*followed.excitation);
+    if (run.excitation && session != runs_.end()) {
+      session->second->announce(*run.excitation);
     }
-    run = followed_.erase(run);
+    followed_.erase(key);
   }
 }
 
@@ -394,7 +339,7 @@ void AnalysisService::say_what_was_left_out() {
   };
   say("benches", benches_.left_out().benches, KnownBenches::max_benches);
   say("sources of a bench", benches_.left_out().sources, KnownBenches::max_sources);
-  say("runs", runs_left_out_, max_runs);
+  say("runs", runs_left_out_ + followed_.left_out(), max_runs);
   say("runs of other analyses", others_.left_out(), OtherAnalyses::max_runs);
 }
 
@@ -422,7 +367,7 @@ AnalysisFigures AnalysisService::figures() const {
   figures.runs_of_others = followed_.size();
   figures.left_out = {{"benches", benches_.left_out().benches},
                       {"sources", benches_.left_out().sources},
-                      {"runs", runs_left_out_},
+                      {"runs", runs_left_out_ + followed_.left_out()},
                       {"runs_of_others", others_.left_out()}};
   figures.malformed_messages = participant_.malformed_messages();
   figures.refused_packets = participant_.refused_packets()->count();

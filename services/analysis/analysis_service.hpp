@@ -6,9 +6,10 @@
 // `max_runs` of all: few, since every program that joins the network is told of the writers of
 // each.
 //
-// All that the wire can make it keep has a limit (here, known_benches.hpp, other_analyses.hpp).
-// What lives is never dropped for something new: a run that is armed, or one that waits and of
-// which a source is there. What had no room is counted, and said once for each kind.
+// All that the wire can make it keep has a limit (here, known_benches.hpp, other_analyses.hpp,
+// followed_runs.hpp). What lives is never dropped for something new: a run that is armed, or one
+// that waits and of which a source is there. What had no room is counted, and said once for each
+// kind.
 //
 // Several services share the runs of a network: one leads a run, the others stand by
 // (other_analyses.hpp). A run that goes on without a leader, because that one has died or this
@@ -29,6 +30,7 @@
 #include <string>
 #include <vector>
 
+#include "services/analysis/followed_runs.hpp"
 #include "services/analysis/known_benches.hpp"
 #include "services/analysis/other_analyses.hpp"
 #include "services/analysis/run_session.hpp"
@@ -42,7 +44,6 @@ class AnalysisService {
 public:
   static constexpr std::size_t kept_runs = 3;
   static constexpr std::size_t max_runs = 256;
-  static constexpr std::size_t max_followed = 1000; // runs that others lead, or nobody
 
   // `clock` outlives the service. Fails (network) as readers do.
   [[nodiscard]] static Expected<std::unique_ptr<AnalysisService>>
@@ -67,16 +68,6 @@ private:
   using Wanted = std::function<bool(const std::string& bench, const std::string& source)>;
   using Runs = std::map<RunKey, std::unique_ptr<RunSession>>;
 
-  // A run that another service leads, or whose leader is not known yet.
-  struct FollowedRun {
-    wire::Measurement measurement;
-    std::optional<wire::Excitation> excitation;
-    Instant since;
-    Instant heard;           // of the run
-    int messages = 0;        // of the run itself; none as long as only its excitation was heard of
-    bool left_alone = false; // its leader had other software
-  };
-
   AnalysisService(bus::Participant participant, AnalysisIdentity identity, bus::Clock& clock);
   Expected<void> open_readers();
   [[nodiscard]] Expected<SourceReaders> open_source_readers(const std::string& bench);
@@ -87,16 +78,12 @@ private:
   void read_sources_again(const std::string& bench);
   void leave_benches_without_run();
   void take_measurement(const wire::Measurement& measurement);
-  void follow(const RunKey& key, const wire::Measurement& measurement);
-  [[nodiscard]] FollowedRun& followed(const RunKey& key);
-  [[nodiscard]] bool follows_bench(const std::string& bench) const;
   void begin_run(const RunKey& key, const wire::Measurement& measurement,
                  SourceStreams::Begin begin);
   // Of the runs of this bench that are kept, or new.
   [[nodiscard]] Expected<std::shared_ptr<SourceRequests>> requests_to(const std::string& bench);
   void give_way();
   void take_over();
-  [[nodiscard]] bool is_deserted(const RunKey& key, const FollowedRun& run, Instant now) const;
   // One turn of each run that goes on.
   void work();
   // Armed, or with a source that is there.
@@ -118,7 +105,7 @@ private:
   Runs runs_;
   std::vector<Runs::iterator> order_; // oldest first
   OtherAnalyses others_;
-  std::map<RunKey, FollowedRun> followed_;
+  FollowedRuns followed_{others_};
   std::uint64_t runs_left_out_ = 0;
   std::set<std::string> said_; // of what was left out
   double evaluation_s_ = 0.0;  // that serve() has spent with runs

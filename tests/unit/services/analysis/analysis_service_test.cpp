@@ -364,7 +364,7 @@ protected:
     EXPECT_EQ(figures_.runs_waiting + figures_.runs_armed + figures_.runs_refused +
                   figures_.runs_finished,
               AnalysisService::max_runs);
-    EXPECT_LE(figures_.runs_of_others, AnalysisService::max_followed);
+    EXPECT_LE(figures_.runs_of_others, FollowedRuns::max_runs);
     EXPECT_THAT(left_out("benches"), testing::Gt(names - 2 * KnownBenches::max_benches));
     EXPECT_THAT(left_out("sources"), testing::Gt(names - 2 * KnownBenches::max_benches));
     EXPECT_THAT(left_out("runs"), testing::Gt(names - 2 * AnalysisService::max_runs));
