@@ -1,9 +1,9 @@
 # Part of `cmake --install`: the public headers, under dyncal/ on the include path of who uses them.
 #
 # Inside the tree a header is included as "analysis/sine/sine_fit.hpp"; installed it is
-# dyncal/analysis/sine/sine_fit.hpp, and its includes are rewritten accordingly. Everything of
-# analysis/ is public but what is listed here; of services/ and drivers/ only the headers listed
-# here and what they include.
+# dyncal/analysis/sine/sine_fit.hpp (a door: dyncal/sine.hpp), and its includes are rewritten
+# accordingly. Everything of analysis/ is public but what is listed here; of services/ and drivers/
+# only the headers listed here and what they include.
 #
 # root: of the source tree; made: folder for what is installed; includedir: where headers go.
 cmake_minimum_required(VERSION 3.25)
@@ -28,7 +28,10 @@ set(public
   services/contract/unit.hpp
 )
 
-foreach(header IN LISTS private public)
+# By these others come in: <dyncal/sine.hpp>.
+set(doors analysis/method.hpp analysis/sine.hpp)
+
+foreach(header IN LISTS private public doors)
   if(NOT EXISTS ${root}/${header})
     message(FATAL_ERROR "InstallHeaders.cmake names ${header}, which does not exist")
   endif()
@@ -57,9 +60,13 @@ while(public)
   endforeach()
 
   string(REGEX REPLACE "${own_include}" "#include \"dyncal/\\1\"" text "${text}")
-  set(copy ${made}/include/dyncal/${header})
+  set(installed ${header})
+  if(header IN_LIST doors)
+    cmake_path(GET header FILENAME installed)
+  endif()
+  set(copy ${made}/include/dyncal/${installed})
   file(WRITE ${copy}.new "${text}")
   file(COPY_FILE ${copy}.new ${copy} ONLY_IF_DIFFERENT) # keeps its time
-  cmake_path(GET header PARENT_PATH folder)
+  cmake_path(GET installed PARENT_PATH folder)
   file(INSTALL ${copy} DESTINATION ${CMAKE_INSTALL_PREFIX}/${includedir}/dyncal/${folder})
 endwhile()

@@ -94,10 +94,19 @@ endif()
 
 # dyncal_library(target name): makes a library one that others may link, as dyncal::name, whether
 # they add this tree to theirs or find what was installed. Either way they include
-# <dyncal/analysis/...> and <dyncal/services/...>: in the tree by a link to it in the build folder.
+# <dyncal/sine.hpp>, <dyncal/analysis/...>, <dyncal/services/...>: in the tree by links to it in the
+# build folder.
 set(dyncal_include ${CMAKE_BINARY_DIR}/dyncal-include)
-file(MAKE_DIRECTORY ${dyncal_include})
-file(CREATE_LINK ${dyncal_root} ${dyncal_include}/dyncal SYMBOLIC)
+if(IS_SYMLINK ${dyncal_include}/dyncal) # of an older build: what is made in it would be in the tree
+  file(REMOVE ${dyncal_include}/dyncal)
+endif()
+file(MAKE_DIRECTORY ${dyncal_include}/dyncal)
+foreach(part analysis drivers idl services)
+  file(CREATE_LINK ${dyncal_root}/${part} ${dyncal_include}/dyncal/${part} SYMBOLIC)
+endforeach()
+foreach(door method.hpp sine.hpp)
+  file(CREATE_LINK ${dyncal_root}/analysis/${door} ${dyncal_include}/dyncal/${door} SYMBOLIC)
+endforeach()
 function(dyncal_library target name)
   add_library(dyncal::${name} ALIAS ${target})
   target_compile_features(${target} PUBLIC cxx_std_20)

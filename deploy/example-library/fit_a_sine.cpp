@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include <dyncal/analysis/sine/sine_fit.hpp>
+#include <dyncal/sine.hpp>
 
 int main() {
   const auto frequency = dyncal::analysis::Frequency::parse("80");

@@ -80,6 +80,8 @@ def check_files(options, prefix):
     for name in [
         "lib/sysctl.d/60-dyncal.conf",
         "include/dyncal/analysis/sine/sine_fit.hpp",
+        "include/dyncal/method.hpp",
+        "include/dyncal/sine.hpp",
         "include/dyncal/services/bus/bus.hpp",
         "include/dyncal/idl/dyncal.h",
         "share/dyncal/idl/dyncal.idl",
@@ -141,10 +143,11 @@ def check_programs(options, prefix):
 
 
 def compile_headers(options, prefix, folder):
-    """All headers together, with warnings."""
-    for part in ["analysis", "services"]:
-        headers = files_below(prefix / "include/dyncal" / part)
-        expect(len(headers) >= 4, f"only {len(headers)} headers of {part}")
+    """The doors, and all headers of each part together, with warnings."""
+    doors = [prefix / "include/dyncal" / door for door in ("method.hpp", "sine.hpp")]
+    parts = {part: files_below(prefix / "include/dyncal" / part) for part in ("analysis", "services")}
+    for part, headers in [("doors", doors), *parts.items()]:
+        expect(len(headers) >= (2 if headers == doors else 4), f"only {len(headers)} of {part}")
         source = folder / f"{part}.cpp"
         source.write_text(
             "".join(f"#include <{header.relative_to(prefix / 'include')}>\n" for header in headers)

@@ -24,6 +24,7 @@ FLOORS = {
         ["clock"],
         ["instrument"],
         ["method"],
+        ["."],
     ],
     "drivers": [
         ["."],
