@@ -16,29 +16,6 @@ namespace dyncal::services {
 
 namespace {
 
-// What the evaluation of a step by itself does not know.
-Evaluation completed(Evaluation evaluation, std::uint32_t attempt, std::optional<double> degc) {
-  return [evaluation = std::move(evaluation), attempt, degc](const std::stop_token& stop) {
-    std::vector<StepResult> results = evaluation(stop);
-    for (StepResult& result : results) {
-      result.attempt = attempt;
-      result.temperature_degc = degc;
-    }
-    return results;
-  };
-}
-
-Evaluation counted(Evaluation evaluation, const SharedWorkCount& count) {
-  if (!count) {
-    return evaluation;
-  }
-  return [evaluation = std::move(evaluation), count](const std::stop_token& stop) {
-    std::vector<StepResult> results = evaluation(stop);
-    count->add_done();
-    return results;
-  };
-}
-
 bool is_changed(const StepResult& result, const StepResult& settled) {
   return result.provisional || settled.budget.size() != result.budget.size() ||
          settled.flags.size() != result.flags.size();
@@ -49,7 +26,7 @@ bool is_changed(const StepResult& result, const StepResult& settled) {
 RunEvaluator::RunEvaluator(Recipe recipe, const EvaluationLimits& limits)
     : recipe_(std::make_shared<const Recipe>(std::move(recipe))), method_(make_method(recipe_)),
       records_(*recipe_, method_->searches(), limits.samples_of_a_source, limits.behind,
-               limits.schedule),
+               limits.schedule, given_up_.get_token()),
       level_watch_(*recipe_), rate_watch_(*recipe_), summary_(*recipe_),
       runs_ahead_(limits.ahead && method_->can_run_ahead()),
       clock_to_the_end_(limits.clock_to_the_end), clock_end_(limits.clock_end),
@@ -65,7 +42,14 @@ RunEvaluator::RunEvaluator(Recipe recipe, const EvaluationLimits& limits)
   }
 }
 
-RunEvaluator::~RunEvaluator() = default;
+RunEvaluator::~RunEvaluator() {
+  give_up();
+}
+
+void RunEvaluator::give_up() {
+  given_up_.request_stop();
+  evaluations_.stop();
+}
 
 Expected<void> RunEvaluator::describe(const std::string& source,
                                       drivers::SourceDescription description) {
@@ -276,13 +260,34 @@ bool RunEvaluator::evaluate_next_steps(EvaluationOutput& output) {
       break;
     }
     evaluations_.make_room();
+    if (is_given_up()) {
+      return true;
+    }
     const std::uint32_t attempt = records_.excitation().order().attempt(next_step_);
-    evaluations_.begin(counted(
-        completed(evaluation_of_next_step(), attempt, temperature_of_step(next_step_)), count_));
+    evaluations_.begin(
+        completed(evaluation_of_next_step(), attempt, temperature_of_step(next_step_)));
     ++next_step_;
   }
   take_results(evaluations_.take_finished(), output);
   return has_room;
+}
+
+// With what the evaluation of a step by itself does not know.
+Evaluation RunEvaluator::completed(Evaluation evaluation, std::uint32_t attempt,
+                                   std::optional<double> degc) const {
+  return [evaluation = std::move(evaluation), attempt, degc, count = count_,
+          given_up = given_up_.get_token()](const std::stop_token& stop) {
+    if (given_up.stop_requested()) {
+      return std::vector<StepResult>{};
+    }
+    std::vector<StepResult> results = evaluation(stop);
+    for (StepResult& result : results) {
+      result.attempt = attempt;
+      result.temperature_degc = degc;
+    }
+    add_done(count);
+    return results;
+  };
 }
 
 Evaluation RunEvaluator::evaluation_of_next_step() {
@@ -308,7 +313,7 @@ void RunEvaluator::evaluate_ahead() {
 
 EvaluationOutput RunEvaluator::take_output() {
   EvaluationOutput output;
-  if (finished_ || !undescribed().empty()) {
+  if (finished_ || is_given_up() || !undescribed().empty()) {
     return output;
   }
   if (!has_all_steps()) {
@@ -326,6 +331,9 @@ EvaluationOutput RunEvaluator::take_output() {
     evaluate_ahead();
     records_.forget_before_step(next_step_);
   }
+  if (is_given_up()) {
+    return {};
+  }
   if (records_.excitation().is_cut_short() || (has_all_steps() && !source_of_clock_alone())) {
     finish(output);
   }
@@ -336,21 +344,23 @@ Evaluation RunEvaluator::settlement() {
   std::vector<StepResult> concerned = std::exchange(results_, {});
   if (!method_->settle(concerned)) {
     std::erase_if(concerned, [&](const StepResult& one) {
-      return !is_changed(one, channel_faults_.settled(line_bounds_.settled(one)));
+      return is_given_up() || !is_changed(one, channel_faults_.settled(line_bounds_.settled(one)));
     });
   }
   if (count_) {
     count_->begin("settling", "results", concerned.size());
   }
   return [bounds = line_bounds_, faults = channel_faults_, trials = recipe_->monte_carlo_trials,
-          concerned = std::move(concerned), count = count_](const std::stop_token& stop) {
+          concerned = std::move(concerned), count = count_,
+          given_up = given_up_.get_token()](const std::stop_token& stop) {
     std::vector<StepResult> settled;
     for (const StepResult& one : concerned) {
+      if (given_up.stop_requested()) {
+        break;
+      }
       settled.push_back(faults.settled(bounds.settled(one)));
       redo_monte_carlo_check(trials, stop, settled.back());
-      if (count) {
-        count->add_done();
-      }
+      add_done(count);
     }
     return settled;
   };
@@ -371,6 +381,10 @@ void RunEvaluator::finish(EvaluationOutput& output) {
   for (StepResult& result : evaluations_.take_all()) {
     summary_.add(result);
     output.settled.push_back(std::move(result));
+  }
+  if (is_given_up()) {
+    output = {};
+    return;
   }
   finished_ = true;
   output.transfer_functions = summary_.transfer_functions();

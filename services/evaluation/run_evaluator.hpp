@@ -29,6 +29,7 @@
 
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -147,6 +148,11 @@ public:
   // Monte Carlo checks under way, and those of what is still evaluated, end at once: their results
   // have a flag instead.
   void stop_checks() { evaluations_.stop(); }
+  // Nobody wants anything of this run any more. No step is searched or evaluated from now on, those
+  // under way end between two of their channels, and take_output() hands nothing over; a run that
+  // is not finished stays so. From any thread.
+  void give_up();
+  [[nodiscard]] bool is_given_up() const { return given_up_.stop_requested(); }
 
 private:
   [[nodiscard]] Expected<void> check_description(const SourceRecord& source) const;
@@ -160,6 +166,8 @@ private:
   // Returns false if steps that could be evaluated wait for room.
   bool evaluate_next_steps(EvaluationOutput& output);
   [[nodiscard]] Evaluation evaluation_of_next_step();
+  [[nodiscard]] Evaluation completed(Evaluation evaluation, std::uint32_t attempt,
+                                     std::optional<double> degc) const;
   void evaluate_ahead();
   void keep(const StepResult& result);
   void take_results(std::vector<StepResult> results, EvaluationOutput& output);
@@ -168,6 +176,7 @@ private:
   void finish(EvaluationOutput& output);
 
   std::shared_ptr<const Recipe> recipe_;
+  std::stop_source given_up_;
   std::unique_ptr<Method> method_;
   RunRecords records_;
   std::optional<ClockReportBuilder> clock_;

@@ -120,7 +120,9 @@ Expected<RecordedRunOutcome> evaluate_recording(recording::RecordingReader& read
                           .count = wish.count,
                           .behind = behind,
                           .may_begin_late = true});
-  const std::stop_callback end_checks(stop, [&evaluator] { evaluator.stop_checks(); });
+  const std::stop_callback end(stop, [&evaluator, all = wish.whole_or_none] {
+    all ? evaluator.give_up() : evaluator.stop_checks();
+  });
   RecordedRunFeed feed(reader, *index, evaluator, result.outcome);
   const auto walked =
       reader.scan({.message =
@@ -135,12 +137,12 @@ Expected<RecordedRunOutcome> evaluate_recording(recording::RecordingReader& read
   if (!walked && walked.error().code != ErrorCode::interrupted) {
     return fail(walked.error());
   }
-  if (wish.whole_or_none && stop.stop_requested()) {
-    return fail(ErrorCode::interrupted, "interrupted");
-  }
   const bool aborted = stop.stop_requested() || index->newest.state() != wire::MEASUREMENT_DONE;
   if (const auto finished = feed.finish(aborted); !finished) {
     return fail(finished.error());
+  }
+  if (wish.whole_or_none && stop.stop_requested()) {
+    return fail(ErrorCode::interrupted, "interrupted");
   }
   result.outcome.interrupted = result.outcome.interrupted || stop.stop_requested();
   sort_outcome(result.outcome);

@@ -30,8 +30,8 @@ void collect(const Recipe& recipe, EvaluationOutput output, RunOutcome& outcome)
       StepResult result = from_message(to_message(recipe, evaluated));
       const auto known =
           std::find_if(outcome.results.begin(), outcome.results.end(), [&](const StepResult& one) {
-            return one.channel == result.channel && one.step == result.step &&
-                   one.repetition == result.repetition;
+            return one.step == result.step && one.repetition == result.repetition &&
+                   one.channel == result.channel;
           });
       if (known == outcome.results.end()) {
         outcome.results.push_back(std::move(result));
@@ -72,7 +72,7 @@ RecordedRunFeed::RecordedRunFeed(const recording::RecordingReader& reader,
 }
 
 void RecordedRunFeed::take(const recording::MessageInFile& message) {
-  if (!outcome_of_walk_ || evaluator_.finished()) {
+  if (!outcome_of_walk_ || evaluator_.finished() || evaluator_.is_given_up()) {
     return;
   }
   now_ = message.message.log_time;
@@ -155,7 +155,8 @@ void RecordedRunFeed::take_of_source(const recording::MessageInFile& message) {
   }
   Source& source = found->second;
   const RecordedPosition here = source.recorded.position(decoded->session(), number);
-  while (source.next != source.recorded.messages.end() && source.next->first <= here) {
+  while (source.next != source.recorded.messages.end() && source.next->first <= here &&
+         !evaluator_.is_given_up()) {
     const auto& [position, place] = *source.next++;
     if (position == here) {
       add(found->first, source, *decoded, place.sent_ns);
@@ -233,7 +234,7 @@ void RecordedRunFeed::add(const std::string& name, Source& source,
 }
 
 void RecordedRunFeed::hand_over_waiting(const std::string& name, Source& source, bool at_once) {
-  while (outcome_of_walk_ && !source.waiting.empty()) {
+  while (outcome_of_walk_ && !source.waiting.empty() && !evaluator_.is_given_up()) {
     const auto& [block, sent_ns] = source.waiting.front();
     if (source.waiting_since == 0) {
       source.waiting_since = now_;

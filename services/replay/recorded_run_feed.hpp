@@ -7,6 +7,9 @@
 // What the conductor said counts once all sources have come to it (waiting_announcements.hpp);
 // times are those of the recorder's clock. Results take the way of the contract's messages.
 //
+// Where the evaluation is given up (RunEvaluator::give_up) nothing more is done, and the outcome is
+// not whole.
+//
 // Fails (no_source) as RunEvaluator::describe(), (bad_file) as RecordedMessages. One thread.
 #pragma once
 

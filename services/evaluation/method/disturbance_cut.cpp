@@ -26,6 +26,9 @@ bool cut(const analysis::KnockedChannel& found, std::initializer_list<SelectedCh
 analysis::Expected<EvaluatedStep>
 evaluate_without_knocks(StepTask& task, std::initializer_list<SelectedChannels*> parts,
                         const std::function<analysis::Expected<EvaluatedStep>()>& evaluate) {
+  if (task.given_up.stop_requested()) {
+    return fail(analysis::ErrorCode::not_converged, "the run was given up");
+  }
   auto step = evaluate();
   if (!step) {
     return step;
@@ -34,7 +37,7 @@ evaluate_without_knocks(StepTask& task, std::initializer_list<SelectedChannels*>
   for (const analysis::KnockedChannel& found : step->findings.knocks) {
     any |= cut(found, parts, task.flags);
   }
-  return any ? evaluate() : step;
+  return any && !task.given_up.stop_requested() ? evaluate() : step;
 }
 
 } // namespace dyncal::services

@@ -160,11 +160,14 @@ std::vector<StepResult> make_results(const StepTask& task, const StepInput& inpu
   if (!step) {
     return results_without_value(task.step(), input.dut, step.error().message);
   }
+  if (task.given_up.stop_requested()) {
+    return {};
+  }
   const std::vector<SignalCheck> common = check_common(step->common_fits);
   const std::vector<ChannelLines> common_lines = lines_of_common(task, input, step->common_fits);
   const std::vector<SteppedClock> stepped = stepped_clocks(task, input);
   std::vector<StepResult> results;
-  for (std::size_t i = 0; i < input.dut.size(); ++i) {
+  for (std::size_t i = 0; i < input.dut.size() && !task.given_up.stop_requested(); ++i) {
     StepResult& result =
         results.emplace_back(point_result(task, input.dut[i], step->points[i], step->common_fits));
     result.unit = input.units[i];

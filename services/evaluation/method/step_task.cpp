@@ -94,7 +94,9 @@ std::string likely_cause(const SourceRecord& source, const RecipeStep& step) {
 StepTask make_step_task(std::shared_ptr<const Recipe> recipe, std::size_t step,
                         const RunRecords& records, const std::vector<SourceInterval>& sources) {
   const ExcitationProgress& excitation = records.excitation();
-  StepTask task{std::move(recipe), excitation.order().index(step)};
+  StepTask task{.recipe = std::move(recipe),
+                .index = excitation.order().index(step),
+                .given_up = records.given_up()};
   for (const SourceInterval& source : sources) {
     const auto& record = source.record;
     const TimeInterval& interval = source.interval;

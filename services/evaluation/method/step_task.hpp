@@ -19,11 +19,12 @@ struct StepTask {
   std::shared_ptr<const Recipe> recipe;
   std::size_t index = 0; // among the recipe's steps
   std::vector<Flag> flags{};
-  std::stop_token stop{}; // of its evaluation
+  std::stop_token given_up{}; // RunEvaluator::give_up()
+  std::stop_token stop{};     // of its evaluation
 
   [[nodiscard]] const RecipeStep& step() const { return recipe->steps[index]; }
   [[nodiscard]] StepTask until(std::stop_token asked) const {
-    return {recipe, index, flags, std::move(asked)};
+    return {recipe, index, flags, given_up, std::move(asked)};
   }
 };
 

@@ -10,8 +10,9 @@ namespace dyncal::services {
 
 RunRecords::RunRecords(const Recipe& recipe, const std::vector<SearchedChannel>& searched,
                        std::size_t capacity, bool behind,
-                       std::shared_ptr<const RunSchedule> schedule)
-    : excitation_(recipe), behind_(behind), schedule_(std::move(schedule)) {
+                       std::shared_ptr<const RunSchedule> schedule, std::stop_token given_up)
+    : excitation_(recipe), behind_(behind), schedule_(std::move(schedule)),
+      given_up_(std::move(given_up)) {
   for (const std::string& source : recipe.sources()) {
     records_.emplace(source, std::make_unique<SourceRecord>(source, capacity));
   }
@@ -20,7 +21,8 @@ RunRecords::RunRecords(const Recipe& recipe, const std::vector<SearchedChannel>&
     searches_.push_back(
         {one.channel.source, one.channel.text(), one.sources,
          StepSearch(recipe, excitation_.order(), of(one.channel.source), one.channel.channel,
-                    behind, schedule_ ? std::optional(schedule_->records.at(i)) : std::nullopt)});
+                    behind, schedule_ ? std::optional(schedule_->records.at(i)) : std::nullopt,
+                    given_up_)});
   }
 }
 
@@ -137,7 +139,8 @@ void RunRecords::search(std::size_t end_step) {
 void RunRecords::search_all(std::size_t expected) {
   for (Search& search : searches_) {
     search.steps.advance(expected - 1);
-    while (search.steps.step() < expected && is_over_in(search.source, search.steps.step())) {
+    while (search.steps.step() < expected && !given_up_.stop_requested() &&
+           is_over_in(search.source, search.steps.step())) {
       search.steps.give_up_step();
       search.steps.advance(expected - 1);
     }

@@ -13,6 +13,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -47,10 +48,11 @@ struct SourceInterval {
 
 class RunRecords {
 public:
-  // `capacity`: samples that a source's record holds. `behind`, `schedule`: step_search.hpp.
+  // `capacity`: samples that a source's record holds. `behind`, `schedule`, `given_up`:
+  // step_search.hpp.
   RunRecords(const Recipe& recipe, const std::vector<SearchedChannel>& searched,
              std::size_t capacity = SourceRecord::default_capacity, bool behind = false,
-             std::shared_ptr<const RunSchedule> schedule = nullptr);
+             std::shared_ptr<const RunSchedule> schedule = nullptr, std::stop_token given_up = {});
   RunRecords(const RunRecords&) = delete; // its searches look at it
   RunRecords& operator=(const RunRecords&) = delete;
 
@@ -58,6 +60,8 @@ public:
   // `heard_ns`: by the clock of those times of blocks; without them the newest stamps tell what
   // time it is in a source.
   void announce(const StepAnnouncement& announcement, std::optional<std::int64_t> heard_ns = {});
+  // Nobody wants anything of this run any more.
+  [[nodiscard]] const std::stop_token& given_up() const { return given_up_; }
   // Of every block of a source.
   void note_times(const std::string& source, const SourceBlock& block, const BlockTimes& times) {
     instants_.add(source, block, times);
@@ -155,6 +159,7 @@ private:
   ExcitationProgress excitation_;
   bool behind_; // samples come before what was announced about them
   std::shared_ptr<const RunSchedule> schedule_;
+  std::stop_token given_up_;
   std::map<std::string, std::unique_ptr<SourceRecord>> records_;
   AnnouncedInstants instants_;
   std::map<std::string, std::uint32_t> followed_; // session of a source, once it has sent samples

@@ -24,10 +24,10 @@ std::int64_t to_ns(double seconds) {
 
 StepSearch::StepSearch(const Recipe& recipe, const StepOrder& order, const SourceRecord& record,
                        std::string sync_channel, bool behind,
-                       std::optional<RunSchedule::OfRecord> schedule)
+                       std::optional<RunSchedule::OfRecord> schedule, std::stop_token given_up)
     : recipe_(recipe), order_(order), record_(record), sync_channel_(std::move(sync_channel)),
-      behind_(behind), schedule_(std::move(schedule)), search_from_ns_(beginning_of_time),
-      expected_until_ns_(beginning_of_time) {}
+      behind_(behind), schedule_(std::move(schedule)), given_up_(std::move(given_up)),
+      search_from_ns_(beginning_of_time), expected_until_ns_(beginning_of_time) {}
 
 const std::optional<ScheduledStep>* StepSearch::scheduled(std::size_t step) const {
   return schedule_ && step < schedule_->size() ? &(*schedule_)[step] : nullptr;
@@ -52,7 +52,7 @@ void StepSearch::advance(std::size_t last_step) {
     take_whole_record(record_.ended());
     return;
   }
-  while (step_ <= last_step && step_ < order_.size()) {
+  while (step_ <= last_step && step_ < order_.size() && !given_up_.stop_requested()) {
     if (const auto* seen = scheduled(step_); seen != nullptr && !*seen) {
       search_step(step_ + 1);
       continue;
@@ -111,7 +111,8 @@ bool StepSearch::was_passed_over(const analysis::ExcitationWindow& window) {
   if (in_place_ == window.excited_begin_ns) {
     return false;
   }
-  for (std::size_t later = step_ + 1; later < order_.size(); ++later) {
+  for (std::size_t later = step_ + 1; later < order_.size() && !given_up_.stop_requested();
+       ++later) {
     if (shows_before(later, window.excited_begin_ns)) {
       return true;
     }

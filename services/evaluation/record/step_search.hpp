@@ -14,12 +14,15 @@
 // excitation that was found before it, and only found where it was seen; one that the record lacks
 // is passed over.
 //
+// Where the run is given up (`given_up`) it searches no further.
+//
 // Belongs to one thread; the record and the recipe must outlive it.
 #pragma once
 
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <stop_token>
 #include <string>
 
 #include "analysis/step/excitation_window.hpp"
@@ -37,7 +40,7 @@ public:
   // `order` too outlives the search.
   StepSearch(const Recipe& recipe, const StepOrder& order, const SourceRecord& record,
              std::string sync_channel, bool behind = false,
-             std::optional<RunSchedule::OfRecord> schedule = {});
+             std::optional<RunSchedule::OfRecord> schedule = {}, std::stop_token given_up = {});
 
   // Looks at the samples that have come since the last call, as far as `last_step`.
   void advance(std::size_t last_step);
@@ -108,6 +111,7 @@ private:
   std::string sync_channel_;
   bool behind_;
   std::optional<RunSchedule::OfRecord> schedule_;
+  std::stop_token given_up_;
   std::uint32_t restarts_ = 0;
   std::size_t step_ = 0;
   std::int64_t search_from_ns_;
