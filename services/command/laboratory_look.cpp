@@ -5,6 +5,7 @@
 #include "services/bus/host_network.hpp"
 #include "services/doctor/announcement_listener.hpp"
 #include "services/doctor/laboratory_watch.hpp"
+#include "services/doctor/unheard_analysis.hpp"
 #include "services/host_clocks/clock_messages.hpp"
 #include "services/version.hpp"
 
@@ -74,7 +75,11 @@ Expected<void> look_at_laboratory(const NetworkOptions& network, double seconds,
   found.view = look(**watch, listener ? &*listener : nullptr, seconds, stop);
   found.host.udp_after = doctor::udp_counters();
   found.host.link_changes_after = doctor::link_changes();
+  found.host.queues_after = doctor::send_queues();
   found.view.domain = network.domain;
+  if (!doctor::analysis_is_heard(found.view)) {
+    found.host.tried = doctor::try_hosts(doctor::announcing_hosts(found.view, found.host), stop);
+  }
   judge(found);
   return {};
 }

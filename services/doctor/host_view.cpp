@@ -189,6 +189,7 @@ HostView look_at_host(const std::filesystem::path& output_folder) {
   view.interfaces = interfaces_of_host();
   view.without_ipv4 = interfaces_without_ipv4();
   view.link_changes_before = link_changes();
+  view.queues_before = send_queues();
   view.multicast_loops = multicast_comes_back();
   view.udp_before = udp_counters();
   std::error_code error;

@@ -11,6 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "services/doctor/send_queues.hpp"
+#include "services/doctor/trial_connections.hpp"
+
 namespace dyncal::services::doctor {
 
 struct HostInterface {
@@ -35,7 +38,10 @@ struct HostView {
   // How often the link of an interface has changed between down and up, since it is there.
   std::map<std::string, unsigned> link_changes_before;
   std::map<std::string, unsigned> link_changes_after;
-  std::optional<bool> multicast_loops; // a datagram to a group comes back; nothing: not tried
+  std::map<std::string, SendQueue> queues_before; // by interface
+  std::map<std::string, SendQueue> queues_after;
+  std::map<std::string, TriedHost> tried; // addresses that announcements came from, and no answer
+  std::optional<bool> multicast_loops;    // a datagram to a group comes back; nothing: not tried
   std::optional<UdpCounters> udp_before;
   std::optional<UdpCounters> udp_after;
   std::filesystem::path output_folder;
@@ -43,7 +49,7 @@ struct HostView {
   bool output_writable = false;
 };
 
-// All but udp_after and link_changes_after.
+// All but what is told afterwards, and `tried`.
 [[nodiscard]] HostView look_at_host(const std::filesystem::path& output_folder);
 [[nodiscard]] std::optional<UdpCounters> udp_counters();
 [[nodiscard]] std::map<std::string, unsigned> link_changes();

@@ -9,7 +9,9 @@ namespace dyncal::services::doctor {
 namespace {
 
 constexpr const char* analysis_program = "dyncal-analysis";
-constexpr double bad_link = 0.05; // of probes without echo; runs begin at 20 %, a sound link has 0
+// Of probes without echo, or trials missed; runs begin at 20 %, a sound link has 0.
+constexpr double bad_link = 0.05;
+constexpr std::uint64_t fewest_drops = 20; // that are no chance of some large transfer
 
 std::set<std::string> own_addresses(const HostView& host) {
   std::set<std::string> addresses;
@@ -68,12 +70,48 @@ double worst_loss(const LaboratoryView& view) {
   return worst;
 }
 
-// Addresses of other hosts that announce programs.
-std::vector<std::string> announcing_hosts(const LaboratoryView& view, const HostView& host) {
-  const auto own = own_addresses(host);
-  std::vector<std::string> others;
-  std::ranges::set_difference(view.announced_from, own, std::back_inserter(others));
-  return others;
+// Empty where what this host sent found room.
+std::string about_full_queue(const HostView& host) {
+  for (const auto& [name, after] : host.queues_after) {
+    const auto before = host.queues_before.find(name);
+    if (before == host.queues_before.end()) {
+      continue;
+    }
+    const std::uint64_t dropped = after.dropped - before->second.dropped;
+    const std::uint64_t sent = after.sent - before->second.sent;
+    const double part = static_cast<double>(dropped) / static_cast<double>(dropped + sent + 1);
+    if (dropped >= fewest_drops && part > bad_link) {
+      return fmt::format("the link of {0} is overloaded: {1:.0f} % of what this host sent found no "
+                         "room in its queue (`tc -s qdisc show dev {0}`)",
+                         name, 100.0 * part);
+    }
+  }
+  return "";
+}
+
+// Why packets of hosts come, but no answer.
+std::string about_no_answer(const HostView& host) {
+  for (const auto& [address, tried] : host.tried) {
+    if (tried.in_time + tried.late > 0 && tried.missed_part() > bad_link) {
+      return fmt::format("the link is overloaded or bad: of {} trial connections to {} {} were "
+                         "answered in time, {} late, the others not",
+                         tried.begun, address, tried.in_time, tried.late);
+    }
+  }
+  if (host.tried.empty()) {
+    return "what this host sends does not arrive there (a firewall, a way that is cut in one "
+           "direction, or a link that is overloaded)";
+  }
+  for (const auto& [address, tried] : host.tried) {
+    if (tried.in_time == 0) {
+      return fmt::format("what this host sends does not arrive there, or nothing comes back; not "
+                         "one of {} trial connections to {} was answered: a firewall, or a way "
+                         "that is cut in one direction",
+                         tried.begun, address);
+    }
+  }
+  return "trial connections by TCP are answered at once, so the link is sound: a firewall, here or "
+         "there, does not let UDP through, or the program hangs";
 }
 
 std::string about_others(const LaboratoryView& view, const HostView& host) {
@@ -86,13 +124,12 @@ std::string about_others(const LaboratoryView& view, const HostView& host) {
     return "a dyncal-analysis answers now, which did not in time: it was started late, or the link "
            "was interrupted or overloaded";
   }
-  const auto hosts = announcing_hosts(view, host);
+  const std::set<std::string> hosts = announcing_hosts(view, host);
   const std::string where = hosts.empty() ? "" : fmt::format(" from {}", fmt::join(hosts, ", "));
   if (is_found(view, analysis_program) || (view.programs.empty() && !hosts.empty())) {
-    return fmt::format(
-        "announcements come{}{}, but no answer: what this host sends does not arrive "
-        "there (a firewall, a way that is cut in one direction, or a link that is overloaded)",
-        where, is_found(view, analysis_program) ? ", of a dyncal-analysis too" : "");
+    return fmt::format("announcements come{}{}, but no answer: {}", where,
+                       is_found(view, analysis_program) ? ", of a dyncal-analysis too" : "",
+                       about_no_answer(host));
   }
   if (!view.programs.empty()) {
     std::set<std::string> names;
@@ -109,6 +146,13 @@ std::string about_others(const LaboratoryView& view, const HostView& host) {
 
 } // namespace
 
+std::set<std::string> announcing_hosts(const LaboratoryView& view, const HostView& host) {
+  std::set<std::string> others;
+  std::ranges::set_difference(view.announced_from, own_addresses(host),
+                              std::inserter(others, others.end()));
+  return others;
+}
+
 bool analysis_is_heard(const LaboratoryView& view) {
   return answers(view, analysis_program) || !view.analyses.empty();
 }
@@ -118,8 +162,13 @@ std::string why_no_analysis_is_heard(const LaboratoryView& view, const HostView&
   if (own.empty() && view.programs.empty()) {
     return about_no_address(host);
   }
-  const std::string flapping = about_flapping(host);
-  const std::string why = flapping.empty() ? about_others(view, host) : flapping;
+  std::string why = about_flapping(host);
+  if (why.empty()) {
+    why = about_full_queue(host);
+  }
+  if (why.empty()) {
+    why = about_others(view, host);
+  }
   return own.empty() ? why : why + "; " + own;
 }
 

@@ -4,10 +4,10 @@
     unheard_analysis_test.py PROGRAMS
 
 PROGRAMS is the folder of the built programs. Operator and analysis are on a host each. The network
-carries no multicast, the operator has no IPv4 address, its packets to other hosts are dropped, its
-link goes down and comes back all the time, or is of 1 Mbit/s and others send more both ways; the
-sentence names that cause, and the operator's own address where it has one. The opposite: where the
-network is sound, it names none of them.
+carries no multicast, the operator has no IPv4 address, its packets to other hosts are dropped, or
+its datagrams alone, or nearly all packets; its link goes down and comes back all the time, or is of
+1 Mbit/s and others send more both ways. The sentence names that cause and no other, and the
+operator's own address where it has one. The opposite: where the network is sound, it names none.
 Exit status 1 if a sentence does not fit, 77 where there are no network namespaces.
 """
 
@@ -58,17 +58,23 @@ def rule(hook, match):
 
 
 MULTICAST = "ip daddr 224.0.0.0/4"
-UNICAST = "ip daddr 10.98.0.0/24 meta l4proto udp"
+UNICAST = "ip daddr 10.98.0.0/24"
+DATAGRAMS = f"{UNICAST} meta l4proto udp"
+SEGMENTS = f"{UNICAST} meta l4proto tcp"
 OWN = "this host is 10.98.0.1 (lab)"
-# What is done, the vendor, and what is said.
+FIREWALL = "does not let UDP through"
+CUT = "a way that is cut in one direction"
+# What is done, the vendor, what is said, and what is not.
 CASES = {
-    "no multicast": ("cyclonedds", ("nothing is heard in DDS domain", "--peer", OWN)),
-    "no IPv4": ("cyclonedds", ("no IPv4 address", "lab has IPv6 alone")),
-    "one way": ("fastdds", ("announcements come from 10.98.0.2", "no answer", OWN)),
-    "flapping": ("fastdds", ("the link of lab went down or came back", OWN)),
-    "overloaded": ("fastdds", ("overloaded", OWN)),
-    "no analysis": ("cyclonedds", ("nothing is heard in DDS domain", OWN)),
-    "sound": ("fastdds", ()),
+    "no multicast": ("cyclonedds", ("nothing is heard in DDS domain", "--peer", OWN), ()),
+    "no IPv4": ("cyclonedds", ("no IPv4 address", "lab has IPv6 alone"), ()),
+    "one way": ("fastdds", ("announcements come from 10.98.0.2", "no answer", CUT, OWN), ()),
+    "no datagrams": ("fastdds", ("come from 10.98.0.2", "no answer", FIREWALL, OWN), (CUT,)),
+    "flapping": ("fastdds", ("the link of lab went down or came back", OWN), ()),
+    "overloaded": ("fastdds", ("the link of lab is overloaded", OWN), (CUT, FIREWALL)),
+    "lost": ("fastdds", ("no answer: the link is overloaded or bad", OWN), (CUT, FIREWALL)),
+    "no analysis": ("cyclonedds", ("nothing is heard in DDS domain", OWN), ()),
+    "sound": ("fastdds", (), ()),
 }
 
 
@@ -103,11 +109,16 @@ class TwoHosts:
             hosts.ip(*place, "address", "delete", "10.98.0.1/24", "dev", "lab")
         elif self.case == "one way":
             self.drop("output", UNICAST)
+        elif self.case == "no datagrams":
+            self.drop("output", DATAGRAMS)
         elif self.case == "flapping":
             self.flapping.start()
         elif self.case == "overloaded":
             self.overload("operator", "analysis")
             self.overload("analysis", "operator")
+        elif self.case == "lost":
+            self.drop("output", DATAGRAMS)
+            self.drop("input", f"{SEGMENTS} numgen random mod 10 < 8")
 
     def overload(self, sender, receiver):
         command = self.hosts.command(sender)
@@ -166,7 +177,12 @@ def fits(programs, case):
     missing = [one for one in wanted if one not in text]
     if missing:
         print(f"{case}: it does not say {missing}")
-    return not missing
+    others = [one for one in CASES[case][2] if one in text]
+    if case not in ("overloaded", "lost") and "overloaded" in text:
+        others.append("overloaded")
+    if others:
+        print(f"{case}: it says {others}")
+    return not missing and not others
 
 
 def main():

@@ -51,6 +51,43 @@ TEST_F(UnheardAnalysis, TellsAWayThatIsCutInOneDirection) {
   EXPECT_THAT(why(), HasSubstr("announcements come from 10.98.0.1, of a dyncal-analysis too"));
 }
 
+TEST_F(UnheardAnalysis, TellsALinkThatIsOverloadedFromAWayThatIsCut) {
+  view_.announced_from.insert("10.98.0.1");
+  host_.tried["10.98.0.1"] = {.begun = 40, .in_time = 3, .late = 9};
+  EXPECT_THAT(why(), AllOf(HasSubstr("the link is overloaded or bad: of 40 trial connections to "
+                                     "10.98.0.1 3 were answered in time, 9 late"),
+                           Not(HasSubstr("firewall"))));
+  host_.tried["10.98.0.1"] = {.begun = 40, .in_time = 0, .late = 40}; // deep queues
+  EXPECT_THAT(why(), AllOf(HasSubstr("overloaded"), Not(HasSubstr("firewall"))));
+  host_.tried["10.98.0.1"] = {.begun = 40, .in_time = 0, .late = 0};
+  EXPECT_THAT(why(),
+              AllOf(HasSubstr("a way that is cut in one direction"), Not(HasSubstr("overloaded"))));
+}
+
+TEST_F(UnheardAnalysis, TellsAFirewallThatLetsTcpThrough) {
+  view_.announced_from.insert("10.98.0.1");
+  host_.tried["10.98.0.1"] = {.begun = 40, .in_time = 40, .late = 0};
+  EXPECT_THAT(why(), AllOf(HasSubstr("does not let UDP through"), Not(HasSubstr("overloaded"))));
+}
+
+TEST_F(UnheardAnalysis, JudgesEachHostByItself) {
+  view_.announced_from = {"10.98.0.1", "10.98.0.2", "10.98.0.3"};
+  host_.tried["10.98.0.1"] = {.begun = 40, .in_time = 40, .late = 0};
+  host_.tried["10.98.0.2"] = {.begun = 40, .in_time = 0, .late = 0};
+  EXPECT_THAT(why(),
+              AllOf(HasSubstr("trial connections to 10.98.0.2"), Not(HasSubstr("overloaded"))));
+}
+
+TEST_F(UnheardAnalysis, TellsAFullQueueOfThisHost) {
+  host_.queues_before = {{"lab", {1000, 10}}, {"lo", {0, 0}}};
+  host_.queues_after = {{"lab", {1300, 710}}, {"lo", {0, 0}}};
+  EXPECT_THAT(why(), HasSubstr("the link of lab is overloaded: 70 % of what this host sent"));
+  host_.queues_after["lab"] = {1'010'000, 510}; // a large transfer beside
+  EXPECT_THAT(why(), HasSubstr("nothing is heard"));
+  host_.queues_after["lab"] = {1010, 15}; // chance
+  EXPECT_THAT(why(), HasSubstr("nothing is heard"));
+}
+
 TEST_F(UnheardAnalysis, TellsALinkThatFlaps) {
   view_.announced_from.insert("10.98.0.1");
   host_.link_changes_after["lab"] = 8;
