@@ -198,7 +198,8 @@ void ExciterGuard::look_at_reference() {
   case State::ended:
     break;
   }
-  reference_->look(phase, settings.empty() ? 0.0 : settings.back().frequency_hz, clock_.now());
+  reference_->look(phase, settings.empty() ? 0.0 : settings.back().frequency_hz, watch_.heard_at(),
+                   clock_.now());
 }
 
 void ExciterGuard::keep_record() {

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <numbers>
 
 #include <fmt/format.h>
 
 #include "analysis/base/frequency.hpp"
+#include "analysis/base/phasor.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -17,6 +20,17 @@ constexpr double min_over_quiet = 2.0;  // less is hum that swings
 
 double seconds(ReferenceWatch::Instant instant) {
   return std::chrono::duration<double>(instant.time_since_epoch()).count();
+}
+
+// By how much the phase of the later sine is beyond that of the earlier one at this frequency.
+double phase_beyond(const SineOfPart& earlier, const SineOfPart& later,
+                    const analysis::Frequency& frequency) {
+  const double turns = frequency.reduced_turns(later.at_ns - earlier.at_ns);
+  return analysis::wrap_phase(later.phase_rad - earlier.phase_rad - 2.0 * std::numbers::pi * turns);
+}
+
+double seconds_between(const SineOfPart& earlier, const SineOfPart& later) {
+  return static_cast<double>(later.at_ns - earlier.at_ns) * 1e-9;
 }
 
 std::string text_of(double frequency_hz) {
@@ -37,7 +51,7 @@ ReferenceWatch::ReferenceWatch(bus::Participant& participant, std::string bench,
   }
 }
 
-void ReferenceWatch::look(Phase phase, double frequency_hz, Instant now) {
+void ReferenceWatch::look(Phase phase, double frequency_hz, Instant heard, Instant now) {
   if (phase == Phase::unwatched) {
     meter_.reset();
     phase_ = phase;
@@ -61,7 +75,7 @@ void ReferenceWatch::look(Phase phase, double frequency_hz, Instant now) {
   }
   if (now >= next_look_) {
     next_look_ = now + interval;
-    measure();
+    measure(heard, now);
   }
 }
 
@@ -69,8 +83,12 @@ void ReferenceWatch::enter(Phase phase, double frequency_hz, Instant now) {
   if (phase == Phase::driven) {
     listen_for_hum();
     driven_m_s2_.reset();
+    sine_.reset();
+    rate_rad_s_ = 0.0;
+    has_stopped_ = false;
     still_driven_.clear();
   }
+  unconfirmed_.reset();
   after_m_s2_.clear();
   frequency_hz_ = phase == Phase::off && frequency_hz_ > 0.0 ? frequency_hz_ : frequency_hz;
   phase_ = phase;
@@ -97,26 +115,58 @@ void ReferenceWatch::listen_for_hum() {
   }
 }
 
-void ReferenceWatch::measure() {
+void ReferenceWatch::measure(Instant heard, Instant now) {
   listen_for_hum();
   const auto frequency = analysis::Frequency::parse(text_of(frequency_hz_));
   if (!frequency || phase_ == Phase::quiet) {
     return;
   }
   const auto reading = meter_->level_after(seconds(since_), *frequency, agreement_rel);
-  const std::optional<double> level = reading ? reading->level_m_s2 : std::nullopt;
-  if (phase_ == Phase::driven) {
-    driven_m_s2_ = level ? level : driven_m_s2_;
-  } else if (driven_m_s2_) {
-    judge(level);
+  if (phase_ == Phase::off) {
+    if (driven_m_s2_) {
+      judge(reading ? *reading : LevelReading{}, *frequency);
+    }
+    return;
+  }
+  if (unconfirmed_ && heard >= unconfirmed_->at) {
+    take_driven(unconfirmed_->reading, *frequency);
+    unconfirmed_.reset();
+  }
+  if (reading && reading->level_m_s2 && !unconfirmed_) {
+    unconfirmed_ = Look{now, *reading};
   }
 }
 
-void ReferenceWatch::judge(std::optional<double> level_m_s2) {
+void ReferenceWatch::take_driven(const LevelReading& reading,
+                                 const analysis::Frequency& frequency) {
+  driven_m_s2_ = reading.level_m_s2;
+  if (sine_ && reading.sine.at_ns > sine_->at_ns) {
+    rate_rad_s_ =
+        phase_beyond(*sine_, reading.sine, frequency) / seconds_between(*sine_, reading.sine);
+  }
+  sine_ = reading.sine;
+}
+
+// With the sine that was driven; otherwise it has stopped.
+bool ReferenceWatch::goes_on(const LevelReading& reading, const analysis::Frequency& frequency) {
+  const double beyond = phase_beyond(*sine_, reading.sine, frequency) -
+                        rate_rad_s_ * seconds_between(*sine_, reading.sine);
+  const bool is_same = std::abs(std::polar(*reading.level_m_s2, beyond) - *driven_m_s2_) <=
+                       same_level_rel * *driven_m_s2_;
+  has_stopped_ = has_stopped_ || !is_same;
+  if (!has_stopped_) {
+    sine_ = reading.sine;
+  }
+  return !has_stopped_;
+}
+
+void ReferenceWatch::judge(const LevelReading& reading, const analysis::Frequency& frequency) {
   const auto quiet = quiet_m_s2_.find(text_of(frequency_hz_));
+  const auto level_m_s2 = reading.level_m_s2;
   const bool is_same = level_m_s2 &&
                        std::abs(*level_m_s2 / *driven_m_s2_ - 1.0) <= same_level_rel &&
-                       (quiet == quiet_m_s2_.end() || *level_m_s2 > min_over_quiet * quiet->second);
+                       (quiet == quiet_m_s2_.end() ? goes_on(reading, frequency)
+                                                   : *level_m_s2 > min_over_quiet * quiet->second);
   if (!is_same) {
     after_m_s2_.clear();
     still_driven_.clear();

@@ -7,8 +7,6 @@
 
 #include <fmt/core.h>
 
-#include "services/evaluation/record/channel_level.hpp"
-
 namespace dyncal::services {
 namespace {
 
@@ -64,7 +62,8 @@ Expected<LevelReading> read_level(const SourceRecord& record, std::size_t channe
                             record.source(), described.name, 100.0 * part));
   }
   const std::int64_t middle_ns = window.begin_ns + (window.end_ns - window.begin_ns) / 2;
-  const auto level = level_in(record, channel, window, frequency);
+  const auto sine = sine_in(record, channel, window, frequency);
+  const auto level = sine ? std::optional(sine->amplitude) : std::nullopt;
   const double all_rms = standard_deviation(values);
   const double sine_rms = level.value_or(0.0) / std::numbers::sqrt2;
   if (!values.empty() && (!level || all_rms * all_rms > 2.0 * sine_rms * sine_rms)) {
@@ -78,7 +77,7 @@ Expected<LevelReading> read_level(const SourceRecord& record, std::size_t channe
   if (!level || !first || !second || std::abs(*second - *first) > agreement_rel * *level) {
     return LevelReading{.lacking = "is settling_s long enough?"};
   }
-  return LevelReading{.level_m_s2 = level};
+  return LevelReading{.level_m_s2 = level, .sine = *sine};
 }
 
 } // namespace dyncal::services

@@ -20,12 +20,14 @@
 
 #include "analysis/base/frequency.hpp"
 #include "services/error.hpp"
+#include "services/evaluation/record/channel_level.hpp"
 #include "services/evaluation/record/source_record.hpp"
 
 namespace dyncal::services {
 
 struct LevelReading {
   std::optional<double> level_m_s2{};
+  SineOfPart sine{};     // of the window, where there is a level
   std::string lacking{}; // why there is none, where the samples tell
 };
 

@@ -17,8 +17,9 @@ double level_window_s(double frequency_hz) {
   return std::max(min_window_s, window_periods / frequency_hz);
 }
 
-std::optional<double> level_in(const SourceRecord& record, std::size_t channel,
-                               const TimeInterval& interval, const analysis::Frequency& frequency) {
+std::optional<SineOfPart> sine_in(const SourceRecord& record, std::size_t channel,
+                                  const TimeInterval& interval,
+                                  const analysis::Frequency& frequency) {
   const auto stamps = record.stamps_ns();
   const auto values = record.column(channel);
   const auto begin = std::lower_bound(stamps.begin(), stamps.end(), interval.begin_ns);
@@ -31,7 +32,14 @@ std::optional<double> level_in(const SourceRecord& record, std::size_t channel,
   const auto part = values.subspan(first, count);
   const auto fit =
       analysis::fit_sine(frequency, *begin, stamps.subspan(first, count), std::span(&part, 1));
-  return fit ? std::optional(fit->front().amplitude()) : std::nullopt;
+  return fit ? std::optional(SineOfPart{fit->front().amplitude(), fit->front().phase_rad(), *begin})
+             : std::nullopt;
+}
+
+std::optional<double> level_in(const SourceRecord& record, std::size_t channel,
+                               const TimeInterval& interval, const analysis::Frequency& frequency) {
+  const auto sine = sine_in(record, channel, interval, frequency);
+  return sine ? std::optional(sine->amplitude) : std::nullopt;
 }
 
 } // namespace dyncal::services

@@ -1,4 +1,4 @@
-// The amplitude of a sine of known frequency in part of a channel's record (three-parameter
+// Amplitude and phase of a sine of known frequency in part of a channel's record (three-parameter
 // approximation, analysis/sine/sine_fit.hpp), in the unit of the channel: for what is decided while
 // a step is excited, without uncertainty.
 //
@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 
 #include "analysis/base/frequency.hpp"
@@ -17,8 +18,18 @@ namespace dyncal::services {
 // How many seconds of samples show the amplitude at this frequency: four periods, 0.2 s at least.
 [[nodiscard]] double level_window_s(double frequency_hz);
 
+struct SineOfPart {
+  double amplitude = 0.0;
+  double phase_rad = 0.0; // lead, at
+  std::int64_t at_ns = 0; // its first sample
+};
+
 // Nothing where the interval holds fewer than 16 samples, the record has no such column, or a value
 // is not finite.
+[[nodiscard]] std::optional<SineOfPart> sine_in(const SourceRecord& record, std::size_t channel,
+                                                const TimeInterval& interval,
+                                                const analysis::Frequency& frequency);
+// Its amplitude.
 [[nodiscard]] std::optional<double> level_in(const SourceRecord& record, std::size_t channel,
                                              const TimeInterval& interval,
                                              const analysis::Frequency& frequency);

@@ -44,7 +44,11 @@ protected:
   std::function<double(double)> motion_ = [](double) { return 0.0; };
   double hum_m_s2_ = 0.0;
   double hum_turns_ = 0.0;
+  double hum_off_rel_ = 0.0;   // of its frequency
+  double clock_off_rel_ = 0.0; // of the generator against the reference's
   std::uint64_t sample_ = 0;
+  bool is_heard_ = true; // the run
+  bus::Clock::Instant heard_{};
 
   void SetUp() override {
     wire::SourceDescription description;
@@ -72,8 +76,9 @@ protected:
     std::normal_distribution<double> noise(0.0, 0.01 * level_m_s2);
     for (std::size_t i = 0; i < samples; ++i, ++sample_) {
       const double turns = frequency_hz_ * now_s();
-      block.values().push_back(motion_(now_s()) * std::sin(turn * turns) +
-                               hum_m_s2_ * std::sin(turn * (turns + hum_turns_)) + noise(random_));
+      const double hum_turns = hum_turns_ + frequency_hz_ * hum_off_rel_ * now_s();
+      block.values().push_back(motion_(now_s()) * std::sin(turn * turns * (1.0 + clock_off_rel_)) +
+                               hum_m_s2_ * std::sin(turn * (turns + hum_turns)) + noise(random_));
     }
     blocks_.write(block, 0s);
   }
@@ -81,7 +86,8 @@ protected:
     for (; time > 0ms; time -= 50ms) {
       clock_.advance(50ms);
       send_block();
-      watch_.look(phase, frequency_hz_, clock_.now());
+      heard_ = is_heard_ ? clock_.now() : heard_;
+      watch_.look(phase, frequency_hz_, heard_, clock_.now());
     }
   }
   void drive() {
@@ -142,15 +148,50 @@ TEST_F(ReferenceWatchTest, SaysNothingOfHumThatWasThereBefore) {
   }
 }
 
+// Hum that is about as large as the level, and beats with it, may look like an exciter that rings.
 TEST_F(ReferenceWatchTest, TellsHumThatItNeverHeardAloneFromTheLevel) {
-  for (int drawn = 0; drawn < 30; ++drawn) {
-    hum_m_s2_ = draw(0.0, 0.4) * level_m_s2;
+  for (int drawn = 0; drawn < 60; ++drawn) {
+    const bool beats = drawn % 2 == 0;
+    hum_m_s2_ = draw(0.0, beats ? 0.4 : 2.5) * level_m_s2;
     hum_turns_ = draw(0.0, 1.0);
+    clock_off_rel_ = draw(-1e-4, 1e-4);
+    hum_off_rel_ = beats ? draw(-4e-4, 4e-4) : clock_off_rel_;
     drive();
     motion_ = [](double) { return 0.0; };
-    EXPECT_FALSE(is_said_within(10s)) << "draw " << drawn;
+    EXPECT_FALSE(is_said_within(10s)) << "draw " << drawn << ", " << hum_m_s2_ << " m/s^2";
     drive();
-    EXPECT_TRUE(is_said_within(3s)) << "draw " << drawn << ", and now it goes on";
+    EXPECT_TRUE(is_said_within(3s))
+        << "draw " << drawn << ", and now it goes on, with hum of " << hum_m_s2_ << " m/s^2";
+    pass(Phase::unwatched, 1s);
+  }
+}
+
+// With a generator whose clock is not that of the reference.
+TEST_F(ReferenceWatchTest, FollowsTheSineOfTheGeneratorsClock) {
+  for (int drawn = 0; drawn < 30; ++drawn) {
+    frequency_hz_ = std::vector{10.0, 40.0, 400.0}[static_cast<std::size_t>(drawn % 3)];
+    clock_off_rel_ = draw(-3e-4, 3e-4);
+    drive();
+    EXPECT_TRUE(is_said_within(3s)) << drawn << ": " << clock_off_rel_;
+    const std::string said = watch_.still_driven();
+    pass(Phase::off, 20s);
+    EXPECT_EQ(watch_.still_driven(), said);
+    pass(Phase::unwatched, 1s);
+  }
+}
+
+// Its conductor has died, and its own guard has switched off: what is left is no level of the run.
+TEST_F(ReferenceWatchTest, TakesNothingForTheLevelFromAfterTheRunWasLastHeard) {
+  for (int drawn = 0; drawn < 30; ++drawn) {
+    is_heard_ = true;
+    hum_m_s2_ = draw(0.1, 2.5) * level_m_s2;
+    hum_turns_ = draw(0.0, 1.0);
+    hum_off_rel_ = draw(-4e-4, 4e-4);
+    drive();
+    is_heard_ = false;
+    motion_ = [](double) { return 0.0; };
+    pass(Phase::driven, 2s);
+    EXPECT_FALSE(is_said_within(10s)) << "draw " << drawn << ", " << hum_m_s2_ << " m/s^2";
     pass(Phase::unwatched, 1s);
   }
 }
@@ -164,7 +205,7 @@ TEST_F(ReferenceWatchTest, SaysNothingBetweenStepsOrWithoutSamples) {
   drive();
   for (int turn_of_loop = 0; turn_of_loop < 200; ++turn_of_loop) {
     clock_.advance(50ms); // its source has died
-    watch_.look(Phase::off, frequency_hz_, clock_.now());
+    watch_.look(Phase::off, frequency_hz_, heard_, clock_.now());
   }
   EXPECT_EQ(watch_.still_driven(), "");
 }
