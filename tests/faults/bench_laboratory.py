@@ -19,8 +19,8 @@ import time
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
 from dds_domain import reserve_dds_domain  # noqa: E402
 
-# A campaign under nohup ignores SIGHUP, and what ignores it hands that on to its programs, which then
-# do as they are told. A handler is not handed on.
+# A campaign under nohup ignores SIGHUP, and what ignores it hands that on to its programs, which
+# then do as they are told. A handler is not handed on.
 if signal.getsignal(signal.SIGHUP) == signal.SIG_IGN:
     signal.signal(signal.SIGHUP, lambda *_: None)
 
