@@ -108,10 +108,17 @@ bool RunRecords::is_over_in(const std::string& source, std::size_t step) const {
   return newest_ns && then_ns && *then_ns <= *newest_ns && *newest_ns - *then_ns > grace.count();
 }
 
+// That samples may show by now.
+std::size_t RunRecords::steps_searched() const {
+  return behind_ ? excitation_.steps_expected() : excitation_.steps_begun();
+}
+
 bool RunRecords::end_session(const std::string& source, std::size_t next_step) {
   bool is_needed = false;
+  const std::size_t expected = steps_searched();
   for (Search& search : searches_) {
-    if (search.source == source) {
+    if (search.source == source && expected > 0) {
+      search_one(search, expected);
       search.steps.end_session();
     }
     const bool selects =
@@ -123,8 +130,7 @@ bool RunRecords::end_session(const std::string& source, std::size_t next_step) {
 
 void RunRecords::search(std::size_t end_step) {
   follow_restarts();
-  const std::size_t expected =
-      std::min(behind_ ? excitation_.steps_expected() : excitation_.steps_begun(), end_step);
+  const std::size_t expected = std::min(steps_searched(), end_step);
   if (expected == 0) {
     return;
   }
@@ -138,12 +144,16 @@ void RunRecords::search(std::size_t end_step) {
 
 void RunRecords::search_all(std::size_t expected) {
   for (Search& search : searches_) {
+    search_one(search, expected);
+  }
+}
+
+void RunRecords::search_one(Search& search, std::size_t expected) const {
+  search.steps.advance(expected - 1);
+  while (search.steps.step() < expected && !given_up_.stop_requested() &&
+         is_over_in(search.source, search.steps.step())) {
+    search.steps.give_up_step();
     search.steps.advance(expected - 1);
-    while (search.steps.step() < expected && !given_up_.stop_requested() &&
-           is_over_in(search.source, search.steps.step())) {
-      search.steps.give_up_step();
-      search.steps.advance(expected - 1);
-    }
   }
 }
 

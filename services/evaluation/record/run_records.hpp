@@ -139,7 +139,9 @@ private:
 
   void note_newest_stamps();
   [[nodiscard]] bool agree_with_step_before(std::size_t step) const;
+  [[nodiscard]] std::size_t steps_searched() const;
   void search_all(std::size_t expected);
+  void search_one(Search& search, std::size_t expected) const;
   // Passes over what was found of a step and is of a later one.
   void compare_instants();
   void compare_with_announced(std::size_t step);

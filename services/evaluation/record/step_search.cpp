@@ -218,6 +218,10 @@ StepSearch::Found StepSearch::found(const analysis::ExcitationWindow& window) co
 }
 
 void StepSearch::end_session() {
+  if (finder_) {
+    expected_until_ns_ = beginning_of_time; // what has come since the last look counts as well
+    expect();
+  }
   if (expected_) {
     found_[step_] = *expected_;
     search_from_ns_ = expected_->excitation.end_ns(); // it is no other step of its frequency

@@ -70,7 +70,8 @@ public:
   [[nodiscard]] bool begins_within_step() const;
   // The step whose excitation is searched now.
   [[nodiscard]] std::size_t step() const { return step_; }
-  // Nothing comes any more in the source's present session: a step that is expected is found.
+  // Nothing comes any more in the source's present session, of which all was looked at: a step that
+  // is expected is found.
   void end_session();
   // Takes what there is of the step searched, or passes over it when there is nothing; the search
   // goes on with the next.
