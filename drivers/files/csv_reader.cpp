@@ -62,7 +62,7 @@ Expected<void> CsvReader::read_header() {
     return fail(
         ErrorCode::invalid_setting,
         settings_.path.string() +
-            ": no column t_ns, and no sample rate is given (sample_rate_hz of the source in a "
+            ":1: names no column t_ns, and no sample rate is given (sample_rate_hz of the source in a "
             "bench file, --nominal-rate of a command); one of them must tell the time");
   }
   auto described = describe_file_channels(settings_, layout_.channels);

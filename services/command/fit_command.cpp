@@ -223,7 +223,7 @@ void print_table(const Fit& fit) {
   for (std::size_t i = 0; i < fit.names.size(); ++i) {
     const analysis::SineFit& one = fit.fits[i];
     const RoundedValue amplitude = round_by_uncertainty(one.amplitude(), one.u_amplitude());
-    const RoundedValue phase = round_by_uncertainty(one.phase_rad(), one.u_phase_rad());
+    const RoundedValue phase = round_phase(one.phase_rad(), one.u_phase_rad()).radians;
     const RoundedValue offset = round_by_uncertainty(one.offset, std::sqrt(one.covariance[5]));
     fmt::print("{:>20} {:>16} {:>10} {:>16} {:>10} {:>14} {:>10} {:>10}\n", one_line(fit.names[i]),
                amplitude.value, amplitude.u, phase.value, phase.u, offset.value, offset.u,

@@ -14,6 +14,7 @@
 #include "services/printable_text.hpp"
 #include "services/program/program.hpp"
 #include "services/report/figures/drift.hpp"
+#include "services/report/rounding.hpp"
 #include "services/store/history.hpp"
 
 namespace dyncal::services {
@@ -99,13 +100,14 @@ void print_line(const HistoryLine& line, const History& history) {
   for (const HistoryValue& value : line.values) {
     const Calibration& calibration = history.calibrations[value.calibration];
     const RecordedPoint& point = value.point;
-    fmt::print("{:<20} {:<12} {:>13.6g} {:>10.2g} {:>10.3f} {:>7} {:>11.4f} {:>9.2g} {:>9.4f} "
+    const RoundedValue phase = round_phase(point.phase_rad, point.expanded_phase_rad).degrees;
+    fmt::print("{:<20} {:<12} {:>13.6g} {:>10.2g} {:>10.3f} {:>7} {:>11} {:>9} {:>9.4f} "
                "{:>7}{}{}\n",
                one_line(day_and_time(calibration)), one_line(calibration.run.state),
                point.magnitude, point.expanded_magnitude, 100.0 * value.deviation_magnitude_rel,
-               en_text(value.en_magnitude), degrees * point.phase_rad,
-               degrees * point.expanded_phase_rad, degrees * value.deviation_phase_rad,
-               en_text(value.en_phase), value.agrees() ? "" : "  disagrees with the one before",
+               en_text(value.en_magnitude), phase.value, phase.u,
+               degrees * value.deviation_phase_rad, en_text(value.en_phase),
+               value.agrees() ? "" : "  disagrees with the one before",
                point.flags.empty() ? "" : "  " + one_line(point.flags));
   }
 }

@@ -50,7 +50,7 @@ std::string result_line(const std::string& place, const StepResult& result, Line
     return fmt::format("{}: no result: {}{}", head, result.problem, flags);
   }
   const RoundedValue magnitude = round_by_uncertainty(result.magnitude, result.u_magnitude);
-  const RoundedValue phase = round_by_uncertainty(result.phase_rad, result.u_phase_rad);
+  const RoundedValue phase = round_phase(result.phase_rad, result.u_phase_rad).radians;
   return fmt::format("{}: |H| = {} (u {}), arg H = {} rad (u {}), {} lost{}", head, magnitude.value,
                      magnitude.u, phase.value, phase.u, result.lost, flags);
 }

@@ -185,7 +185,7 @@ Line channel_line(const std::string& name, const ChannelSummary& channel, BenchS
   }
   const StepResult& result = *channel.newest;
   const RoundedValue magnitude = round_by_uncertainty(result.magnitude, result.u_magnitude);
-  const RoundedValue phase = round_by_uncertainty(result.phase_rad, result.u_phase_rad);
+  const RoundedValue phase = round_phase(result.phase_rad, result.u_phase_rad).radians;
   const std::string unit = result.unit == R"(\one)" ? "" : " " + short_form(result.unit);
   text += fmt::format(" {:>6} Hz |H| {} u {}{} arg {}", harmless(result.frequency_text_hz),
                       magnitude.value, magnitude.u, harmless(unit), phase.value);

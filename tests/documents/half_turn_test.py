@@ -210,5 +210,27 @@ class HalfATurn(unittest.TestCase):
         self.assertLess(high - low, 2.0, "the table spans 0.6 degrees, not a whole turn")
 
 
+    def test_history_states_the_same(self):
+        store = self.folder / "runs.sqlite"
+        run(DYNCAL, "store", "add", self.stored, "--store", store)
+        text = run(DYNCAL, "history", "acs", "--store", store)
+        self.assertNotIn("-180.0", text)
+        sections = re.split(r"\n(?=acs/dut at )", text)[1:]
+        self.assertEqual(len(sections), len(self.means))
+        for mean in self.means:
+            head = f"acs/dut at {mean['frequency_text_hz']} Hz,"
+            rows = [one.splitlines()[2:] for one in sections if one.startswith(head)]
+            self.assertEqual(len(rows), 1, text)
+            # begin, state, |H|, U, its drift, E_n, arg H, U
+            degrees, expanded = rows[0][0].split()[6:8]
+            self.assertEqual(
+                expanded, stored_run.rounded(mean["phase_deg"], mean["U_phase_deg"])[1]
+            )
+            self.assertGreater(float(degrees), -180.0)
+            self.assertLessEqual(float(degrees), 180.0)
+            error = of_turns(float(degrees) - mean["phase_deg"], 360.0)
+            self.assertLessEqual(error, 0.06 * mean["U_phase_deg"])
+
+
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1], verbosity=2)

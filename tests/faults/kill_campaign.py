@@ -6,7 +6,8 @@
 
 PROGRAMS is the folder of the built programs. A case is a service that is killed and restarted, as
 systemd does, `run` (`dyncal run` killed, and resumed), `host` (both it and the analysis at once, as
-when the host dies that they share), or `stop:SERVICE` (SIGSTOP for --stop-s).
+when the host dies that they share), `stop:SERVICE` (SIGSTOP for --stop-s), or `end:SERVICE` (killed
+beside the end of what is evaluated of a step, or of the step itself).
 Every draw is a laboratory of its own: a run of three steps of which the fault meets one instant.
 dyncal-dso has a bench of its own, with a sensor that it triggers; the recorder and the web page are
 started for their own draws alone.
@@ -16,7 +17,9 @@ of a series, which a run of few shots may leave undecided), within five standard
 the undisturbed run's; the output is off in the end, and is never on for more than two seconds while
 its conductor is dead. Who only looks on, the recorder and the web page, disturbs no step; the
 recording of a recorder that is there again before the run ends gives the run's values to the last
-bit, that of another says what it lacks. A run that missed the analysis or a source at its start,
+bit, that of another says what it lacks. So does the recording that every run keeps of itself where
+a source was killed beside the end of a step, and that step is only repeated where its planned
+samples had not come. A run that missed the analysis or a source at its start,
 and said so before anything was excited, counts as refused. Exit status 1 if a draw did not hold, or
 if all draws of a cell were refused.
 """
@@ -39,6 +42,9 @@ from series_laboratory import SeriesLaboratory
 SPECTATORS = ("dyncal-recorder", "dyncal-web")
 MAX_UNATTENDED_S = 2.0
 AGREEMENT_U = 5.0
+PLANNED_S = 2.0  # of a step of BenchLaboratory
+BESIDE_END_S = (-0.1, 0.4)  # of the planned end: frames of the search, and the end of the step
+ALL_HAVE_COME_S = 0.3  # behind it: the same, and the last block
 # Few shots do not always tell, whoever was killed; u allows for both.
 FLAGS_OF_ANY_RUN = ("start of the series: undecided, taken as with the trigger",)
 REFUSALS = (
@@ -95,6 +101,24 @@ def stopped_service(laboratory, service, instant_s, stop_s, run):
     return run
 
 
+def killed_beside_end(laboratory, service, step, after_s, away_s, run):
+    for place in range(step + 1):
+        wait_until(laboratory.output_is_on, f"step {place + 1}", interval_s=0.005)
+        began_s = time.monotonic()
+        if place < step:
+            wait_until(lambda: not laboratory.output_is_on(), "the end of a step")
+    time.sleep(max(0.0, began_s + after_s - time.monotonic()))  # to the drawn instant
+    return killed_service(laboratory, service, 0.0, away_s, run)
+
+
+def judge_beside_end(run, step, after_s):
+    is_repeated = f"step {step + 1} is excited again" in run.errors()
+    if is_repeated and after_s > PLANNED_S + ALL_HAVE_COME_S:
+        raise Failure(f"step {step + 1} is repeated although its planned samples had come")
+    if "evaluated once more, gives the same" not in run.errors():
+        raise Failure(f"its own recording: {run.errors().splitlines()[-1:]}")
+
+
 def killed_run(laboratory, instant_s, run, with_analysis_for_s=None):
     time.sleep(instant_s)
     if with_analysis_for_s is not None:
@@ -147,7 +171,7 @@ def bench_of(case):
 
 def disturbed_run(arguments, case, laboratory, instant_s, away_s):
     """The run's programs in their order: one, or with the one that resumed it two."""
-    service = case.removeprefix("stop:")
+    service = case.removeprefix("stop:").removeprefix("end:")
     if service in SPECTATORS:
         laboratory.restart(service)
     run = laboratory.run("--run", "campaign")
@@ -155,9 +179,19 @@ def disturbed_run(arguments, case, laboratory, instant_s, away_s):
         return [run, killed_run(laboratory, instant_s, run)]
     if case == "host":
         return [run, killed_run(laboratory, instant_s, run, away_s)]
+    if case.startswith("end:"):
+        step, after_s = beside_end(laboratory, instant_s)
+        return [killed_beside_end(laboratory, service, step, after_s, away_s, run)]
     if case != service:
         return [stopped_service(laboratory, service, instant_s, arguments.stop_s, run)]
     return [killed_service(laboratory, service, instant_s, away_s, run)]
+
+
+def beside_end(laboratory, instant_s):
+    """A step, and the time since its begin, drawn by the instant in the run."""
+    first, last = BESIDE_END_S
+    after_s = PLANNED_S + first + (last - first) * (instant_s / PLANNED_S % 1.0)
+    return int(instant_s / PLANNED_S) % len(laboratory.frequencies), after_s
 
 
 def was_refused(runs):
@@ -189,6 +223,8 @@ def draw(arguments, case, vendors, number, undisturbed):
                 raise Failure("who looks on has disturbed the run")
             if case == "dyncal-recorder":
                 judge_recording(laboratory)
+            if case.startswith("end:"):
+                judge_beside_end(runs[-1], *beside_end(laboratory, instant_s))
     except Failure as failure:
         problem = str(failure)
     took_s = time.monotonic() - begin_s
@@ -232,7 +268,8 @@ def campaign(arguments, case, vendors, pool, undisturbed):
 
 
 def main():
-    cases = ["run", "host", *SERVICES, "dyncal-dso", *SPECTATORS, "stop:dyncal-analysis"]
+    cases = ["run", "host", *SERVICES, "dyncal-dso", *SPECTATORS]
+    cases += ["stop:dyncal-analysis", "end:dyncal-dau"]
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("programs", type=pathlib.Path)
     parser.add_argument("--cases", type=lambda text: text.split(","), default=cases)

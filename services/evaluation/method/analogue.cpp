@@ -81,7 +81,7 @@ Evaluation Analogue::evaluation(std::size_t step, const RunRecords& records) {
   const auto interval = records.interval(0, step);
   if (!interval) {
     return [results = results_without_value(records.planned(step), roles_.dut,
-                                            no_sine(records, step, roles_.excitation))](
+                                            no_sine(*recipe_, records, step, roles_.excitation))](
                const std::stop_token&) { return results; };
   }
   SourceInterval acs = records.samples(roles_.reference.source, *interval);

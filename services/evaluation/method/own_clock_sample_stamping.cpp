@@ -115,9 +115,8 @@ Evaluation OwnClockSampleStamping::evaluation(std::size_t step, const RunRecords
   if (!of_acs || !of_dau) {
     const ChannelName& sync = of_acs ? roles_.sync_dau : roles_.sync_acs;
     return [results = results_without_value(records.planned(step), roles_.dut,
-                                            no_sine(records, step, sync))](const std::stop_token&) {
-      return results;
-    };
+                                            no_sine(*recipe_, records, step, sync))](
+               const std::stop_token&) { return results; };
   }
   StepSources sources{records.samples(roles_.sync_acs.source, *of_acs),
                       records.samples(roles_.sync_dau.source, *of_dau),

@@ -108,9 +108,9 @@ Evaluation SampleTimeStamping::evaluation(std::size_t step, const RunRecords& re
   if (!of_acs || !of_dau) {
     const auto dut = channels_under_calibration(*recipe_, records.of(roles_.sync_dau.source));
     const ChannelName& sync = of_acs ? roles_.sync_dau : roles_.sync_acs;
-    return
-        [results = results_without_value(records.planned(step), dut, no_sine(records, step, sync))](
-            const std::stop_token&) { return results; };
+    return [results = results_without_value(records.planned(step), dut,
+                                            no_sine(*recipe_, records, step, sync))](
+               const std::stop_token&) { return results; };
   }
   SourceInterval acs = records.samples(roles_.sync_acs.source, *of_acs);
   SourceInterval dau = records.samples(roles_.sync_dau.source, *of_dau);

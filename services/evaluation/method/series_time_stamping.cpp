@@ -107,7 +107,8 @@ std::vector<StepResult> SeriesTimeStamping::evaluate(std::size_t step, const Run
   const StepAttempt attempt = attempt_at(step, records);
   const auto interval = records.interval(0, step);
   if (!interval) {
-    return results_without_value(planned, roles_.dut, no_sine(records, step, roles_.sync_acs));
+    return results_without_value(planned, roles_.dut,
+                                 no_sine(*recipe_, records, step, roles_.sync_acs));
   }
   const SourceInterval acs = records.samples(roles_.sync_acs.source, *interval);
   SeriesStepOutput evaluated =

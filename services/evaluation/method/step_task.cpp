@@ -7,6 +7,9 @@
 #include <vector>
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include "services/evaluation/record/shown_sine.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -67,7 +70,8 @@ std::string known_cause(const RunRecords& records, std::size_t step, const std::
   }
   if (const double part = distrusted_part(source); part > max_distrusted_part) {
     return fmt::format(": {:.0f} % of its time stamps are not trusted; has its clock lost its fix, "
-                       "or does it lose samples that its numbers do not show?",
+                       "are its samples read in batches, or does it lose samples that its numbers "
+                       "do not show?",
                        100.0 * part);
   }
   if (records.excitation().is_cut_short()) {
@@ -79,14 +83,42 @@ std::string known_cause(const RunRecords& records, std::size_t step, const std::
   return records.excitation().is_broken_off(step) ? ": its excitation was broken off" : "";
 }
 
-std::string likely_cause(const SourceRecord& source, const RecipeStep& step) {
+// What the other channels of the run show of it.
+std::string where_it_shows(const Recipe& recipe, const RunRecords& records, std::size_t step,
+                           const ChannelName& sync) {
+  if (shown_sine(recipe, records, step, sync) == ShownSine::shown) {
+    return fmt::format("; did it last longer than the {} s of settling?",
+                       records.planned(step).settling_s);
+  }
+  std::vector<std::string> without;
+  bool is_known = true;
+  for (const ChannelName& channel : recipe.channels()) {
+    if (channel == recipe.temperature || !records.of(channel.source).newest_stamp_ns()) {
+      continue;
+    }
+    const ShownSine shown = shown_sine(recipe, records, step, channel);
+    if (shown == ShownSine::shown) {
+      return fmt::format(", where {} shows one; is the sync signal connected?", channel.text());
+    }
+    is_known = is_known && shown == ShownSine::not_shown;
+    without.push_back(channel.text());
+  }
+  return is_known ? fmt::format(": no excitation was found in {} either; was the exciter driven?",
+                                fmt::join(without, ", "))
+                  : "; is the sync signal connected?";
+}
+
+std::string likely_cause(const Recipe& recipe, const RunRecords& records, std::size_t step_index,
+                         const ChannelName& sync) {
+  const SourceRecord& source = records.of(sync.source);
+  const RecipeStep& step = records.planned(step_index);
   const double uneven = uneven_ns(source);
   if (2.0 * std::numbers::pi * step.frequency.hz() * uneven * 1e-9 > worth_naming_rad) {
     return fmt::format(": the time stamps of source '{}' are up to {:.2g} ms off an even rate; are "
                        "its samples read in batches, or stamped in coarse ticks?",
                        source.source(), uneven * 1e-6);
   }
-  return "; is the sync signal connected?";
+  return where_it_shows(recipe, records, step_index, sync);
 }
 
 } // namespace
@@ -117,14 +149,15 @@ StepTask make_step_task(std::shared_ptr<const Recipe> recipe, std::size_t step,
   return task;
 }
 
-std::string no_sine(const RunRecords& records, std::size_t step, const ChannelName& sync) {
+std::string no_sine(const Recipe& recipe, const RunRecords& records, std::size_t step,
+                    const ChannelName& sync) {
   if (auto known = records.why_missing(step); !known.empty()) {
     return known;
   }
   const std::string when = records.when_missing(step, sync.text());
   std::string cause = known_cause(records, step, sync.source);
   if (cause.empty() && when.empty()) {
-    cause = likely_cause(records.of(sync.source), records.planned(step));
+    cause = likely_cause(recipe, records, step, sync);
   }
   return fmt::format("no steady sine of {} Hz was found in {}{}{}",
                      records.planned(step).frequency_text_hz, sync.text(), when, cause);

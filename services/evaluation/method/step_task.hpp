@@ -35,9 +35,9 @@ struct StepTask {
                                       const std::vector<SourceInterval>& sources);
 
 // Why a step has no interval in the source of this sync channel: what the whole records show where
-// somebody has looked at them, what is known of the source, the connection of sync only where
-// nothing else is.
-[[nodiscard]] std::string no_sine(const RunRecords& records, std::size_t step,
+// somebody has looked at them, and what is known of the source; else whether any channel of the run
+// shows an excitation. The connection of sync only where another one does.
+[[nodiscard]] std::string no_sine(const Recipe& recipe, const RunRecords& records, std::size_t step,
                                   const ChannelName& sync);
 
 } // namespace dyncal::services

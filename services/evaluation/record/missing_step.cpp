@@ -13,6 +13,7 @@ using Plan = std::span<const RecipeStep* const>;
 using Shown = std::vector<JoinedExcitation>;
 
 constexpr double max_untrusted_part = 0.1; // with more they are the likely cause
+constexpr double min_length_part = 0.5;    // of the other record: a shorter one lacks the steps
 
 bool shows_any(const JoinedExcitation& one) {
   return one.first || one.second;
@@ -42,6 +43,12 @@ std::optional<TimeInterval> in_other_clock(const std::vector<RecordedExcitations
   return offset_ns
              ? std::optional(TimeInterval{one.begin_ns() + *offset_ns, one.end_ns() + *offset_ns})
              : std::nullopt;
+}
+
+// The record is about as long as the other one, its stamps are good, and it shows no step at all.
+bool lacks_sync(const RecordedExcitations& lacking, const RecordedExcitations& showing) {
+  return lacking.found.empty() && lacking.untrusted_part <= max_untrusted_part &&
+         lacking.length_s > min_length_part * showing.length_s;
 }
 
 std::string cause(const RecordedExcitations& record, const TimeInterval& excited) {
@@ -130,6 +137,11 @@ std::string why_missing(Plan plan, const std::vector<RecordedExcitations>& recor
     const RecordedExcitations& lacking = records[one.first ? 1 : 0];
     const RecordedExcitations& showing = records[one.first ? 0 : 1];
     const auto excited = in_other_clock(records, shown, step);
+    if (lacks_sync(lacking, showing)) {
+      return fmt::format("no steady sine of {} Hz was found in {}, where {} shows one; it shows no "
+                         "step at all: is the sync signal connected?",
+                         frequency, lacking.channel, showing.channel);
+    }
     return fmt::format("no steady sine of {} Hz was found in {}, where {} shows one: {}", frequency,
                        lacking.channel, showing.channel,
                        excited ? cause(lacking, *excited)

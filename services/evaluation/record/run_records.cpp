@@ -7,6 +7,16 @@
 #include <fmt/core.h>
 
 namespace dyncal::services {
+namespace {
+
+bool shows_any_step(const RunSchedule& schedule) {
+  return std::any_of(schedule.records.begin(), schedule.records.end(), [](const auto& record) {
+    return std::any_of(record.begin(), record.end(),
+                       [](const auto& step) { return step.has_value(); });
+  });
+}
+
+} // namespace
 
 RunRecords::RunRecords(const Recipe& recipe, const std::vector<SearchedChannel>& searched,
                        std::size_t capacity, bool behind,
@@ -130,6 +140,13 @@ bool RunRecords::end_session(const std::string& source, std::size_t next_step) {
 
 void RunRecords::search(std::size_t end_step) {
   follow_restarts();
+  // Whether anything was excited, only the other channels tell, once all of it has come.
+  const bool has_come =
+      excitation_.is_cut_short() ||
+      std::all_of(records_.begin(), records_.end(), [](auto& one) { return one.second->ended(); });
+  if (schedule_ && !shows_any_step(*schedule_) && !has_come) {
+    return;
+  }
   const std::size_t expected = std::min(steps_searched(), end_step);
   if (expected == 0) {
     return;
@@ -273,11 +290,16 @@ std::optional<TimeInterval> RunRecords::interval(std::size_t search, std::size_t
   return searches_.at(search).steps.interval(step);
 }
 
-std::optional<TimeInterval> RunRecords::interval_in(const std::string& source,
-                                                    std::size_t step) const {
-  const auto search = std::find_if(searches_.begin(), searches_.end(), [&](const Search& one) {
+std::vector<RunRecords::Search>::const_iterator
+RunRecords::search_of(const std::string& source) const {
+  return std::find_if(searches_.begin(), searches_.end(), [&](const Search& one) {
     return std::find(one.sources.begin(), one.sources.end(), source) != one.sources.end();
   });
+}
+
+std::optional<TimeInterval> RunRecords::interval_in(const std::string& source,
+                                                    std::size_t step) const {
+  const auto search = search_of(source);
   return search == searches_.end() ? std::nullopt : search->steps.interval(step);
 }
 
@@ -328,6 +350,27 @@ std::string RunRecords::when_missing(std::size_t step, const std::string& channe
   }
   const auto found = channels->second.find(channel);
   return found == channels->second.end() ? "" : found->second;
+}
+
+TimeInterval RunRecords::where_missing(const std::string& source, std::size_t step) const {
+  TimeInterval where{std::numeric_limits<std::int64_t>::min(),
+                     std::numeric_limits<std::int64_t>::max()};
+  const auto search = search_of(source);
+  if (search == searches_.end()) {
+    return where;
+  }
+  for (std::size_t other = 0; other < excitation_.order().size(); ++other) {
+    const FoundExcitation* found = search->steps.excitation(other);
+    if (found == nullptr || search->steps.session(other) != of(source).restarts()) {
+      continue;
+    }
+    if (other < step) {
+      where.begin_ns = std::max(where.begin_ns, found->end_ns());
+    } else if (other > step) {
+      where.end_ns = std::min(where.end_ns, found->begin_ns());
+    }
+  }
+  return where;
 }
 
 bool RunRecords::began_after(const std::string& source, std::size_t step) const {

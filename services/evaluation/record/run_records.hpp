@@ -111,6 +111,8 @@ public:
   // When a channel did not show a step, where what it shows was found to be of a later one: the end
   // of a sentence, else empty.
   [[nodiscard]] std::string when_missing(std::size_t step, const std::string& channel) const;
+  // Where in its clock a source may show a step that was not found: between those that were.
+  [[nodiscard]] TimeInterval where_missing(const std::string& source, std::size_t step) const;
   // The step was announced to be over before the first sample of the source.
   [[nodiscard]] bool began_after(const std::string& source, std::size_t step) const;
   // Or behind its last one, so far.
@@ -139,6 +141,8 @@ private:
 
   void note_newest_stamps();
   [[nodiscard]] bool agree_with_step_before(std::size_t step) const;
+  // That selects the samples of the source; none: the end.
+  [[nodiscard]] std::vector<Search>::const_iterator search_of(const std::string& source) const;
   [[nodiscard]] std::size_t steps_searched() const;
   void search_all(std::size_t expected);
   void search_one(Search& search, std::size_t expected) const;

@@ -5,14 +5,12 @@
 
 import { element, name_element, set_attribute, set_name, set_shown, set_text } from "./element.js";
 import {
-  count_text, duration_text, full, is_number, rounded_by_uncertainty, short_time,
+  count_text, duration_text, full, is_number, rounded_by_uncertainty, rounded_phase, short_time,
   with_unit,
 } from "./number_text.js";
 import { href_of } from "./route.js";
 import { StateBadge } from "./state_badge.js";
 import { unit_text } from "./unit_text.js";
-
-const DEGREES = 180 / Math.PI;
 
 export class BenchTile {
   constructor(bench, clock) {
@@ -121,7 +119,7 @@ function result_text(result) {
   }
   const unit = unit_text(result.unit);
   const size = rounded_by_uncertainty(result.magnitude, result.u_magnitude);
-  const phase = rounded_by_uncertainty(result.phase_rad * DEGREES, result.u_phase_rad * DEGREES);
+  const phase = rounded_phase(result.phase_rad, result.u_phase_rad).degrees;
   const flags = result.flags?.length ? `, ${result.flags.length} flagged` : "";
   return [
     `${result.frequency_text_hz} Hz: ${size.value}${unit ? ` ${unit}` : ""}, ${phase.value}°${flags}`,

@@ -5,7 +5,9 @@
 
 import { bench_path, get } from "./api.js";
 import { element, name_element, set_shown, set_text, table_in_scroll } from "./element.js";
-import { full, is_number, rounded_by_uncertainty, significant, UNKNOWN } from "./number_text.js";
+import {
+  full, is_number, rounded_by_uncertainty, rounded_phase, significant, UNKNOWN,
+} from "./number_text.js";
 import { unit_text } from "./unit_text.js";
 
 const HEADINGS = ["Contribution", "Of", { text: "u(|H|) / |H|", number: true }, "",
@@ -45,7 +47,7 @@ export class BudgetPanel {
   show({ channel, step, repetition, frequency_text_hz, magnitude, u_magnitude, phase_rad,
          u_phase_rad, unit, contributions }) {
     const size = rounded_by_uncertainty(magnitude, u_magnitude);
-    const phase = rounded_by_uncertainty(phase_rad, u_phase_rad);
+    const phase = rounded_phase(phase_rad, u_phase_rad).radians;
     const short = unit_text(unit);
     const values = is_number(magnitude)
       ? `: ${size.value}${short ? ` ${short}` : ""}, u ${size.u}; ${phase.value} rad, u ${phase.u} rad`

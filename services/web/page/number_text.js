@@ -9,6 +9,7 @@ export const UNKNOWN = "–";
 
 const MIN_WITHOUT_EXPONENT = 1e-3; // of the larger of value and u
 const MAX_WITHOUT_EXPONENT = 1e7;
+const DEGREES = 180 / Math.PI;
 
 export function is_number(value) {
   return typeof value === "number" && Number.isFinite(value);
@@ -58,6 +59,21 @@ export function rounded_by_uncertainty(value, u) {
     value: round_to_place(value, Math.max(place, -17)),
     u: u < 1e-9 ? exponential(u, 2) : round_to_place(u, place),
   };
+}
+
+/**
+ * In both units, each rounded by its own u, and of one turn: what rounds to -180 degrees is stated as
+ * +180 degrees (round_phase() of the same header).
+ * @returns {{radians: {value: string, u: string}, degrees: {value: string, u: string}}}
+ */
+export function rounded_phase(phase_rad, u_rad) {
+  const rounded = (phase) => ({
+    radians: rounded_by_uncertainty(phase, u_rad),
+    degrees: rounded_by_uncertainty(is_number(phase) ? phase * DEGREES : phase,
+                                    is_number(u_rad) ? u_rad * DEGREES : u_rad),
+  });
+  const result = rounded(phase_rad);
+  return Number(result.degrees.value) === -180 ? rounded(phase_rad + 2 * Math.PI) : result;
 }
 
 /** So many significant digits, without trailing zeros. */

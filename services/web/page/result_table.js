@@ -6,7 +6,7 @@
 import { element, name_element, set_name, set_shown, set_text, table_in_scroll } from "./element.js";
 import { KeyedList } from "./keyed_list.js";
 import {
-  count_text, full, is_number, rounded_by_uncertainty, significant, UNKNOWN,
+  count_text, full, is_number, rounded_by_uncertainty, rounded_phase, significant, UNKNOWN,
 } from "./number_text.js";
 import { unit_text } from "./unit_text.js";
 
@@ -66,7 +66,8 @@ function number_cell() {
 
 // A value and its u in two cells, to the digits of u.
 function show_pair([value_cell, u_cell], value, u, unit, is_shown = true) {
-  const { value: text, u: u_text } = rounded_by_uncertainty(value, u);
+  const { value: text, u: u_text } = unit === "rad"
+    ? rounded_phase(value, u).radians : rounded_by_uncertainty(value, u);
   set_text(value_cell, is_shown ? text : UNKNOWN);
   set_text(u_cell, is_shown ? u_text : UNKNOWN);
   value_cell.title = full(value, unit);

@@ -260,6 +260,18 @@ class Views(PageCase):
                                  ["1.00", "0.10"], ["1.00e-05", "1.0e-06"], ["0.000", "0.014"],
                                  ["5", "0"]])
 
+    def test_phases_beside_half_a_turn_are_of_one_turn_as_on_the_terminal(self):
+        self.laboratory.benches["acc-1"]["last_result"].update(phase_rad=-3.1415, u_phase_rad=0.1)
+        page = self.open()
+        page.wait_for("document.querySelectorAll('.tile').length === 3")
+        self.assertRegex(self.field(page, "acc-1", "last_result"), ", 180.0°")
+        cases = [[-3.14159, 0.00087], [-3.1, 0.01], [3.14159, 0.00087], [-3.2, 0.01], [None, None]]
+        given = page.value("import('/page/number_text.js').then(m => "
+                           f"{json.dumps(cases)}.map(([v, u]) => m.rounded_phase(v, u))"
+                           ".map(({radians, degrees}) => [radians.value, degrees.value]))")
+        self.assertEqual(given, [["3.14160", "180.000"], ["-3.100", "-177.62"],
+                                 ["3.14159", "180.000"], ["-3.200", "-183.35"], ["–", "–"]])
+
 
 def digit(text):
     """Half of the last digit of a decimal text, and a little for its binary form."""

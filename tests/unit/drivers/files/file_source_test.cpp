@@ -159,7 +159,7 @@ TEST(FileSource, SaysThatThereIsNoFileOrNoTime) {
   EXPECT_THAT(problem_of(settings), HasSubstr("/nowhere/acs.csv: cannot read this file"));
   const TemporaryFile file("untimed.csv", "a\n1\n");
   EXPECT_THAT(problem_of(settings_for(file)),
-              HasSubstr("no column t_ns, and no sample rate is given"));
+              HasSubstr(":1: names no column t_ns, and no sample rate is given"));
 }
 
 TEST(FileSource, KeepsThePaceItIsAskedFor) {

@@ -333,6 +333,10 @@ TEST_F(StepAlignment, ARecordWithoutAnyStepHasNone) {
   EXPECT_THAT(of_acs(), ElementsAre(0, 1));
   EXPECT_THAT(of_dau(), Each(-1));
   EXPECT_THAT(schedule_.problems, Each(HasSubstr("'dau' shows no step that both have")));
+  RecordedExcitations whole = record("dau", dau_clock, {0, 1});
+  whole.length_s = end_s_; // as long as the other record, so that it lacks no samples
+  align({record("acs", acs_clock, {}), whole});
+  EXPECT_THAT(schedule_.problems, Each(HasSubstr("is the sync signal connected?")));
   align({0, 1}, {0, 1});
   EXPECT_THAT(schedule_.problems, Each(IsEmpty())) << "other causes are likelier";
 }
