@@ -6,6 +6,7 @@
 #include "analysis/method/blocks_of_clock.hpp"
 #include "analysis/method/channels_of_one_clock.hpp"
 #include "analysis/method/own_clock_channel.hpp"
+#include "analysis/method/stamp_rows.hpp"
 
 namespace dyncal::analysis {
 namespace {
@@ -44,6 +45,7 @@ Expected<ComparisonResult> evaluate_analogue(const AnalogueInput& input) {
   const Budget systematic = systematic_rows(w, input.reference_response, input.systematic);
   ComparisonResult result{reference.result, {}, {}};
   add_knock(reference, result.findings);
+  const StampBeat beat = stamp_beat(input.frequency, input.stamps_ns);
   for (std::size_t i = 0; i < system->others.size(); ++i) {
     const RecordedChannel& dut = system->others[i];
     Budget budget;
@@ -51,6 +53,8 @@ Expected<ComparisonResult> evaluate_analogue(const AnalogueInput& input) {
     budget.append(noise);
     const auto ratio = compare(blocks.others[i], blocks.pilot, {});
     add_ratio_rows(budget, ratio, budget.u_magnitude_rel(), budget.u_phase_rad());
+    add_beat_rows(budget, "the", w, beat,
+                  reach_on_ratio(dut.result.fit.phase_rad(), reference.result.fit.phase_rad()));
     budget.append(systematic);
     result.points.push_back(transfer_point(dut, link * factor_of(ratio), budget));
     result.findings.points.push_back(
@@ -72,11 +76,17 @@ Expected<ComparisonResult> evaluate_absolute_time(const AbsoluteTimeInput& input
   add_knock(reference, result.findings);
   const double w = reference.result.frequency.angular();
   const Budget noise = noise_of(reference);
-  const Budget systematic = systematic_rows(w, input.reference_response, input.systematic);
+  Budget systematic = systematic_rows(w, input.reference_response, input.systematic);
+  add_beat_rows(
+      systematic, "the reference's", w,
+      stamp_beat(input.frequency, input.reference_stamps_ns, input.systematic.reference_tick_s),
+      {});
   const std::complex<double> link = std::polar(1.0, w * input.channel_delay_s) /
                                     reference.phasor() * input.reference_response.phasor();
-  const OwnClockUncertainty clock{.clock_offset_s = input.systematic.clock_offset_s,
-                                  .stamp_jitter_s = input.systematic.stamp_jitter_s};
+  const OwnClockUncertainty clock{
+      .clock_offset_s = input.systematic.clock_offset_s,
+      .stamp_jitter_s = input.systematic.stamp_jitter_s,
+      .stamp_beat = stamp_beat(input.frequency, input.dut_stamps_ns, input.systematic.dut_tick_s)};
   for (const ChannelSamples& channel : input.dut) {
     auto point = evaluate_own_clock_channel(reference.result, input.reference_stamps_ns.front(),
                                             {.link = link,

@@ -35,9 +35,11 @@ namespace dyncal::analysis {
 struct ComparisonUncertainty { // standard uncertainties that no residual shows
   double reference_magnitude_rel = 0.0;
   double reference_phase_rad = 0.0;
-  double channel_delay_s = 0.0; // u(tau_ch)
-  double clock_offset_s = 0.0;  // absolute time: one clock against the other
-  double stamp_jitter_s = 0.0;  // absolute time: white noise of the sensor's stamps
+  double channel_delay_s = 0.0;  // u(tau_ch)
+  double clock_offset_s = 0.0;   // absolute time: one clock against the other
+  double stamp_jitter_s = 0.0;   // absolute time: white noise of the sensor's stamps
+  double reference_tick_s = 0.0; // absolute time: quantum of the stamps, 0: none
+  double dut_tick_s = 0.0;
 };
 
 struct AnalogueInput {

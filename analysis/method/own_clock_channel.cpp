@@ -5,6 +5,7 @@
 
 #include "analysis/method/blocks_of_clock.hpp"
 #include "analysis/method/channels_of_one_clock.hpp"
+#include "analysis/method/stamp_rows.hpp"
 
 namespace dyncal::analysis {
 namespace {
@@ -71,6 +72,7 @@ evaluate_own_clock_channel(const ChannelFit& pilot, std::int64_t pilot_first_ns,
               .u_phase_rad = 2.0 * std::numbers::pi * pilot.u_frequency_hz * std::abs(distance_s)});
   budget.add({.kind = ContributionKind::clock_offset,
               .u_phase_rad = pilot.frequency.angular() * clock.clock_offset_s});
+  add_beat_rows(budget, "the sensor's", pilot.frequency.angular(), clock.stamp_beat, {});
   budget.append(link.systematic);
   findings.points.push_back(findings_of(ratio, link.noise_unknown || sensor->noise_unknown));
   add_knock(*sensor, findings);

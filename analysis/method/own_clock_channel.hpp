@@ -19,6 +19,7 @@
 #include <span>
 
 #include "analysis/base/error.hpp"
+#include "analysis/clock/stamp_beat.hpp"
 #include "analysis/method/channels_of_one_clock.hpp"
 #include "analysis/method/step_findings.hpp"
 #include "analysis/method/transfer_point.hpp"
@@ -43,6 +44,7 @@ struct OwnClockLink {
 struct OwnClockUncertainty { // standard uncertainties
   double clock_offset_s = 0.0;
   double stamp_jitter_s = 0.0; // white noise of the sensor's stamps
+  StampBeat stamp_beat{};      // bounds: of errors of these that are in step with the signal
 };
 
 // What it finds along the step is added to `findings`.

@@ -10,6 +10,7 @@
 #include "analysis/method/blocks_of_clock.hpp"
 #include "analysis/method/channels_of_one_clock.hpp"
 #include "analysis/method/own_clock_channel.hpp"
+#include "analysis/method/stamp_rows.hpp"
 
 namespace dyncal::analysis {
 namespace {
@@ -31,7 +32,8 @@ Budget common_noise(const SampleStampingInput& input, const ChannelsOfOneClock& 
 }
 
 // Rows of the corrections, the same for every channel of the sensor.
-Budget systematic_rows(const SampleStampingInput& input, const RecordedChannel& sync_dau) {
+Budget systematic_rows(const SampleStampingInput& input, const ChannelsOfOneClock& acs,
+                       const RecordedChannel& sync_dau, const StampBeat& dau_beat) {
   const SystematicUncertainty& systematic = input.systematic;
   const double w = input.frequency.angular();
   Budget budget;
@@ -44,13 +46,22 @@ Budget systematic_rows(const SampleStampingInput& input, const RecordedChannel& 
               .u_phase_rad = w * systematic.acs_delay_s});
   add_reference_rows(budget, input.reference_response, systematic.reference_magnitude_rel,
                      systematic.reference_phase_rad);
+  const BeatReach reach =
+      reach_on_ratio(acs.others.front().result.fit.phase_rad(), acs.pilot.result.fit.phase_rad());
+  add_beat_rows(
+      budget, "the ACS", w, stamp_beat(input.frequency, input.acs_stamps_ns),
+      {.in_step_magnitude = 1.0, .in_step_phase = reach.in_step_phase, .on_average = 0.0});
+  if (!input.dut_stamps_ns.empty()) {
+    add_beat_rows(budget, "the DAU", w, dau_beat,
+                  {.in_step_magnitude = 0.0, .in_step_phase = 1.0, .on_average = 1.0});
+  }
   return budget;
 }
 
 // Stamp noise common to sync and the sensor: the phase of the ratio sees it only as far as the two
 // sines differ in phase.
 void add_stamp_noise(Budget& budget, const SampleStampingInput& input, const RecordedChannel& dut,
-                     const RecordedChannel& sync_dau, double beat_s) {
+                     const RecordedChannel& sync_dau, const StampBeat& beat) {
   const double tick_s = input.systematic.dau_tick_s / std::sqrt(12.0);
   const double rest_s = std::sqrt(std::max(
       0.0, input.systematic.dau_jitter_s * input.systematic.dau_jitter_s - tick_s * tick_s));
@@ -69,14 +80,8 @@ void add_stamp_noise(Budget& budget, const SampleStampingInput& input, const Rec
   };
   add(ContributionKind::stamp_jitter, Distribution::normal, rest_s);
   add(ContributionKind::stamp_tick, Distribution::rectangular, tick_s);
-  if (beat_s > 0.0) {
-    const double bound = input.frequency.angular() * beat_s;
-    budget.add({.kind = ContributionKind::stamp_tick,
-                .subject = "the DAU stamps, in step with the signal",
-                .distribution = Distribution::rectangular,
-                .u_magnitude_rel = bound / std::sqrt(3.0),
-                .u_phase_rad = 2.0 * across * bound / std::sqrt(3.0)});
-  }
+  add_beat_rows(budget, "the DAU", input.frequency.angular(), beat,
+                {.in_step_magnitude = 1.0, .in_step_phase = 2.0 * across, .on_average = 0.0});
 }
 
 // The records of the two clocks begin where the search found their step, in frames of a grid of
@@ -107,7 +112,7 @@ struct Comparison {
   std::optional<BlockSeries> blocks;
   BlockAlignment alignment;
   bool noise_unknown = false;
-  double stamp_beat_s = 0.0; // of the DAU's stamps
+  StampBeat stamp_beat{}; // of the DAU's stamps
 };
 
 TransferPoint evaluate_channel(const SampleStampingInput& input, const RecordedChannel& dut,
@@ -116,7 +121,7 @@ TransferPoint evaluate_channel(const SampleStampingInput& input, const RecordedC
                                StepFindings& findings) {
   Budget budget;
   add_sensor_rows(budget, dut, common_jitter_s(input.systematic));
-  add_stamp_noise(budget, input, dut, sync_dau, with.stamp_beat_s);
+  add_stamp_noise(budget, input, dut, sync_dau, with.stamp_beat);
   budget.append(with.noise);
   BlockAlignment alignment = with.alignment;
   alignment.seen = seen_offset(dut, with.reference);
@@ -142,20 +147,23 @@ std::complex<double> link_of(const SampleStampingInput& input, const ChannelsOfO
 Expected<void> add_own_clock_points(const SampleStampingInput& input, const RecordedChannel& pilot,
                                     const BlocksOfClock& dau_blocks, const Comparison& with,
                                     SampleStampingResult& result) {
+  const StampBeat dut_beat =
+      stamp_beat(input.frequency, input.dut_stamps_ns, input.systematic.dut_tick_s);
   for (const ChannelSamples& dut : input.dut) {
-    auto point = evaluate_own_clock_channel(
-        pilot.result, input.dau_stamps_ns.front(),
-        {.link = with.link,
-         .noise = with.noise,
-         .systematic = with.systematic,
-         .reference = with.reference,
-         .sync = dau_blocks.pilot,
-         .denominator = with.blocks,
-         .alignment = with.alignment,
-         .noise_unknown = with.noise_unknown},
-        input.dut_stamps_ns, dut,
-        {.clock_offset_s = input.systematic.clock_offset_s, .stamp_jitter_s = 0.0},
-        result.findings);
+    auto point = evaluate_own_clock_channel(pilot.result, input.dau_stamps_ns.front(),
+                                            {.link = with.link,
+                                             .noise = with.noise,
+                                             .systematic = with.systematic,
+                                             .reference = with.reference,
+                                             .sync = dau_blocks.pilot,
+                                             .denominator = with.blocks,
+                                             .alignment = with.alignment,
+                                             .noise_unknown = with.noise_unknown},
+                                            input.dut_stamps_ns, dut,
+                                            {.clock_offset_s = input.systematic.clock_offset_s,
+                                             .stamp_jitter_s = 0.0,
+                                             .stamp_beat = dut_beat},
+                                            result.findings);
     if (!point) {
       return fail(point.error());
     }
@@ -190,7 +198,9 @@ Expected<SampleStampingResult> evaluate_sample_stamping(const SampleStampingInpu
 
   const std::complex<double> link = link_of(input, *acs, dau->pilot);
   const Budget noise = common_noise(input, *acs, dau->pilot);
-  const Budget systematic = systematic_rows(input, dau->pilot);
+  const StampBeat dau_beat =
+      stamp_beat(input.frequency, input.dau_stamps_ns, input.systematic.dau_tick_s);
+  const Budget systematic = systematic_rows(input, *acs, dau->pilot, dau_beat);
   const Comparison with{.link = link,
                         .noise = noise,
                         .systematic = systematic,
@@ -198,7 +208,7 @@ Expected<SampleStampingResult> evaluate_sample_stamping(const SampleStampingInpu
                         .blocks = acs_blocks.beside_pilot(0),
                         .alignment = alignment_of(input, *acs, dau->pilot),
                         .noise_unknown = reference.noise_unknown,
-                        .stamp_beat_s = stamp_beat_s(input.frequency, input.dau_stamps_ns)};
+                        .stamp_beat = dau_beat};
   SampleStampingResult result{reference.result, acs->pilot.result, dau->pilot.result, {}, {}};
   add_knock(reference, result.findings);
   for (std::size_t i = 0; i < dau->others.size(); ++i) {

@@ -43,6 +43,7 @@ struct SystematicUncertainty { // standard uncertainties that no residual shows
   double sync_adc_jitter_s = 0.0; // scatter of the instant at which the DAU's ADC samples sync,
                                   // which its stamp does not show
   double clock_offset_s = 0.0;    // of a sensor with stamps of its own: its clock against the DAU's
+  double dut_tick_s = 0.0;        // quantum of these stamps, 0: none
 };
 
 struct SampleStampingInput {

@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "analysis/clock/stamp_beat.hpp"
 #include "analysis/sine/disturbances.hpp"
 #include "analysis/sine/extended_sine_fit.hpp"
 #include "analysis/sine/frequency_estimate.hpp"
@@ -173,6 +174,16 @@ void correct_scatter(const SeriesFile& series, const std::vector<std::span<const
   }
 }
 
+// What errors of the stamps that are in step with the sine may do to it, in any direction.
+void allow_for_beat(const SeriesFile& series, Fit& fit) {
+  const double bound_rel = analysis::stamp_beat(fit.frequency, series.stamps_ns).in_step_rad;
+  for (analysis::SineFit& one : fit.fits) {
+    const double variance = std::pow(bound_rel * one.amplitude(), 2) / 3.0;
+    one.covariance[0] += variance;
+    one.covariance[3] += variance;
+  }
+}
+
 void print_json(const Fit& fit) {
   nlohmann::ordered_json columns = nlohmann::ordered_json::object();
   for (std::size_t i = 0; i < fit.names.size(); ++i) {
@@ -267,6 +278,7 @@ Expected<Fit> fit_file(const FitCommand& command) {
     return fail(at(command, fitted.error()));
   }
   correct_scatter(*series, *columns, fit);
+  allow_for_beat(*series, fit);
   return fit;
 }
 

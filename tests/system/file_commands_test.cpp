@@ -92,6 +92,31 @@ TEST_F(FileCommands, FitTakesHarmonicsOutOfTheResiduals) {
 }
 
 // A file of a program that writes Latin-1.
+// Ticks of 500 us of a sensor of 1010.5 Hz: a saw-tooth of 21 Hz, its third harmonic at 2 f.
+TEST_F(FileCommands, FitAllowsForTicksInStepWithTheSine) {
+  int drawn = 0;
+  double largest = 0.0;
+  for (const double begin_s : {0.0, 1.1e-4, 2.7e-4, 4.2e-4}) {
+    const std::filesystem::path path = folder / "ticks.csv";
+    std::ofstream stream(path);
+    stream << "t_ns,y\n";
+    for (int i = 0; i < 2000; ++i) {
+      const double t_s = begin_s + i / 1010.5;
+      const auto ticks = std::int64_t{500'000} * static_cast<std::int64_t>(t_s / 5e-4) + 250'000;
+      const double angle = 2.0 * std::numbers::pi * 31.5 * t_s;
+      stream << fmt::format("{},{:.17g}\n", ticks, amplitude * std::sin(angle + phase_rad));
+    }
+    stream.close();
+    const auto y = json_of({"fit", path, "--frequency", "31.5", "--json"})["columns"]["y"];
+    const double error = y["amplitude"].get<double>() - amplitude;
+    EXPECT_LE(std::abs(error), 2.0 * y["u_amplitude"].get<double>()) << begin_s;
+    largest = std::max(largest, std::abs(error));
+    ++drawn;
+  }
+  EXPECT_EQ(drawn, 4);
+  EXPECT_GT(largest, 2e-3 * amplitude);
+}
+
 TEST_F(FileCommands, FitTakesNamesThatAreNotUtf8) {
   const auto json =
       json_of({"fit", sine_file(folder, 0.0, "Verst\xe4rker"), "--frequency", "79.8", "--json"});

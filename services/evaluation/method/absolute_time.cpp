@@ -35,7 +35,9 @@ evaluate_channels(const StepTask& task, const SelectedChannels& acs, const Selec
                       .reference_phase_rad = recipe.systematic.reference_phase_rad,
                       .channel_delay_s = recipe.systematic.acs_delay_s,
                       .clock_offset_s = u_clock_offset_s(acs, dut),
-                      .stamp_jitter_s = 0.0};
+                      .stamp_jitter_s = 0.0,
+                      .reference_tick_s = acs.record().description().tick_s,
+                      .dut_tick_s = dut.record().description().tick_s};
   return analysis::evaluate_absolute_time(input).map([](const analysis::ComparisonResult& result) {
     return EvaluatedStep{{result.reference}, result.points, result.findings};
   });

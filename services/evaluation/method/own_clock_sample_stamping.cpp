@@ -53,6 +53,7 @@ analysis::Expected<EvaluatedStep> evaluate_channels(const StepTask& task,
                                       .reference_response = *reference,
                                       .systematic = recipe.systematic};
   input.systematic.dau_tick_s = channels.sync.record().description().tick_s;
+  input.systematic.dut_tick_s = channels.dut.record().description().tick_s;
   input.systematic.clock_offset_s = u_clock_offset_s(channels.sync, channels.dut);
   return analysis::evaluate_sample_stamping(input).map(
       [](const analysis::SampleStampingResult& result) {

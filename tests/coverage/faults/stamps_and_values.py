@@ -23,8 +23,8 @@ class ScatteringStamps(Fault):
         late_s += self.exponential_s * (self.rng.exponential(size=stamps.size) - 1.0)
         seen_ns = (stamps - stamps[0]) + 1e9 * late_s
         if self.tick_s:
-            tick_ns = 1e9 * self.tick_s
-            seen_ns = np.round(seen_ns / tick_ns + self.rng.uniform(-0.5, 0.5)) * tick_ns
+            tick_ns, beside = 1e9 * self.tick_s, self.rng.uniform(-0.5, 0.5)
+            seen_ns = (np.round(seen_ns / tick_ns + beside) - beside) * tick_ns
         rising = np.maximum.accumulate(np.round(seen_ns).astype(np.int64))
         # Two of one tick: a reader of stamps gives the second one the next nanosecond.
         for place in np.flatnonzero(np.diff(rising) <= 0):
@@ -66,6 +66,13 @@ def misplaced(**how):
 
 ABOVE_AN_EIGHTH = {"frequencies": ("90", "100.3", "128", "160", "200", "240")}
 BELOW_AN_EIGHTH = {"frequencies": ("12.5", "20", "31.5", "40", "63", "80")}
+# Rates at which the errors of the stamps, a saw-tooth of 21 Hz, have their third harmonic at twice
+# 31.5 Hz, and the other steps do not show it.
+BESIDE_31_HZ = ("12.5", "20", "31.5", "44.7", "80", "100.3")
+RATES_IN_STEP = {100: 1002.1, 200: 1004.2, 500: 1010.5}
+STAMPED_WELL = {"method": "absolute-time", "u_stamp_s": 2e-6}
+OWN_CLOCK = {"own_clock": True, "u_stamp_s": 2e-6}
+MODES = {"": {}, ", absolute time": STAMPED_WELL, ", own clock": OWN_CLOCK}
 AT_80_HZ = {"frequencies": ("31.5", "40", "63", "80", "100.3", "125")}
 
 CLASSES = {
@@ -78,6 +85,32 @@ CLASSES = {
     ),
     "stamps scatter by 300 us": bench(LITTLE_NOISE, fault=scattering(normal_s=3e-4)),
     "one-sided latencies of 100 us": bench(LITTLE_NOISE, fault=scattering(exponential_s=1e-4)),
+    **{
+        f"ticks of {us} us in step{how}": bench(
+            LITTLE_NOISE,
+            mode,
+            frequencies=BESIDE_31_HZ,
+            sensor_rate_hz=rate_hz,
+            sensor_rate_scatter_rel=1e-5,
+            fault=scattering(tick_s=1e-6 * us),
+        )
+        for us, rate_hz in RATES_IN_STEP.items()
+        for how, mode in MODES.items()
+    },
+    **{
+        f"ticks of {us} us, any rate{how}": bench(
+            LITTLE_NOISE, mode, sensor_rate_scatter_rel=3e-3, fault=scattering(tick_s=1e-6 * us)
+        )
+        for us in RATES_IN_STEP
+        for how, mode in MODES.items()
+    },
+    "ticks of 250 us, a saw-tooth of seconds": bench(
+        LITTLE_NOISE,
+        STAMPED_WELL,
+        sensor_rate_hz=1000.12,
+        sensor_rate_scatter_rel=2e-5,
+        fault=scattering(tick_s=2.5e-4),
+    ),
     "1 % of the values held": bench(fault=misplaced(held=0.01)),
     "10 % of the values held": bench(fault=misplaced(held=0.1)),
     "0.2 % of the values exchanged": bench(BELOW_AN_EIGHTH, fault=misplaced(exchanged=0.002)),
@@ -115,6 +148,13 @@ EXPECTED = [
             "one-sided latencies of 100 us",
         )
     ),
+    *(
+        Row(f"ticks of {us} us{which}{how}", VALUE, "covered or flagged")
+        for us in RATES_IN_STEP
+        for which in (" in step", ", any rate")
+        for how in MODES
+    ),
+    Row("ticks of 250 us, a saw-tooth of seconds", VALUE, "covered or flagged"),
     *(
         Row(name, VALUE, "covered or flagged")
         for name in (

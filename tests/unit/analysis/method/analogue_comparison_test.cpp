@@ -121,6 +121,39 @@ TEST(AbsoluteTime, TheClocksOffsetGoesInFullIntoThePhase) {
   EXPECT_GE(result->points[0].u_phase_rad, shift);
 }
 
+// Stamps in the middle of ticks of 200 us, whose saw-tooth of 318.4 Hz is in step with 2 f.
+TEST(AbsoluteTime, CoversTheTruthWhereTicksAreInStep) {
+  int covered = 0, covered_without = 0;
+  constexpr int runs = 50;
+  for (unsigned run = 0; run < runs; ++run) {
+    const Record reference = record(10.0, 0.0, 1e-3, 0.0, 5000.0, 0.0, 2 * run + 1);
+    const double begin_s = 0.137 + 1.3e-5 * run;
+    Record dut = record(10.0 * magnitude, delay_s, 1e-3, 0.0, 1063.68, begin_s, 2 * run + 2);
+    for (std::int64_t& stamp_ns : dut.stamps_ns) {
+      stamp_ns += 100'000 - stamp_ns % 200'000;
+    }
+    AbsoluteTimeInput input{.frequency = *Frequency::parse("159.2")};
+    input.reference_stamps_ns = reference.stamps_ns;
+    input.reference = {"reference", reference.values};
+    input.dut_stamps_ns = dut.stamps_ns;
+    input.dut = {{"dut", dut.values}};
+    const auto result = evaluate_absolute_time(input);
+    ASSERT_TRUE(result.has_value()) << result.error().message;
+    const TransferPoint& point = result->points[0];
+    double without = 0.0, of_ticks = 0.0;
+    for (const Contribution& row : point.budget) {
+      (row.kind == ContributionKind::stamp_tick ? of_ticks : without) +=
+          row.u_phase_rad * row.u_phase_rad;
+    }
+    const double error = std::abs(point.phase_rad - true_phase());
+    covered += error <= 2.0 * point.u_phase_rad;
+    covered_without += error <= 2.0 * std::sqrt(without);
+    EXPECT_GT(of_ticks, 0.0);
+  }
+  EXPECT_GE(covered, 47);
+  EXPECT_LE(covered_without, 40); // there was something to allow for
+}
+
 TEST(AnalogueComparison, WithoutExcitationThereIsNoResult) {
   const Record reference = record(0.0, 0.0, 1.0, 0.0, 5000.0, 0.0, 1);
   AnalogueInput input{.frequency = *Frequency::parse("159.2")};
