@@ -144,8 +144,9 @@ def check_programs(options, prefix):
 
 def compile_headers(options, prefix, folder):
     """The doors, and all headers of each part together, with warnings."""
-    doors = [prefix / "include/dyncal" / door for door in ("method.hpp", "sine.hpp")]
-    parts = [(one, files_below(prefix / "include/dyncal" / one)) for one in ("analysis", "services")]
+    include = prefix / "include/dyncal"
+    doors = [include / door for door in ("method.hpp", "sine.hpp")]
+    parts = [(one, files_below(include / one)) for one in ("analysis", "services")]
     for part, headers in [("doors", doors), *parts]:
         expect(len(headers) >= (2 if headers == doors else 4), f"only {len(headers)} of {part}")
         source = folder / f"{part}.cpp"
