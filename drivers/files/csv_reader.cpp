@@ -59,11 +59,11 @@ Expected<void> CsvReader::read_header() {
   }
   layout_ = std::move(*layout);
   if (!layout_.has_time && !settings_.sample_rate) {
-    return fail(
-        ErrorCode::invalid_setting,
-        settings_.path.string() +
-            ":1: names no column t_ns, and no sample rate is given (sample_rate_hz of the source in a "
-            "bench file, --nominal-rate of a command); one of them must tell the time");
+    return fail(ErrorCode::invalid_setting,
+                settings_.path.string() +
+                    ":1: names no column t_ns, and no sample rate is given (sample_rate_hz of the "
+                    "source in a bench file, --nominal-rate of a command); one of them must tell "
+                    "the time");
   }
   auto described = describe_file_channels(settings_, layout_.channels);
   if (!described) {
