@@ -2,18 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "drivers/can/dbc/signal_decoder.hpp"
-#include "drivers/can/time/frame_duration.hpp"
+#include "drivers/can/stream_description.hpp"
 #include "drivers/can/time/system_clock.hpp"
 
 namespace dyncal::drivers::can {
 
 namespace {
 
-constexpr std::int64_t block_span_ns = 50'000'000;
 constexpr std::size_t max_waiting = 1U << 17U; // 16 s at 8000 samples/s
 constexpr std::size_t max_causes = 32;
 constexpr std::uint8_t trusted = 0;
@@ -99,44 +97,19 @@ bool SensorStream::follows_sensor_clock() const {
 }
 
 double SensorStream::u_stamp_s() const {
-  double u_wait_s = 0.0;
   const bool waits_count =
       time_source_ == TimeSource::kernel_stamp || time_source_ == TimeSource::hardware_stamp;
-  if (waits_count && settings_.bus_is_shared) { // a longest frame of another device may have been
-                                                // on the bus: 0 ... that, one-sided
-    u_wait_s = max_frame_s(link_.fd && settings_.bit_rates.data_per_s > 0.0, true,
-                           link_.fd ? 64 : 8, settings_.bit_rates) /
-               std::sqrt(3.0);
-  }
+  const double u_wait_s =
+      waits_count && settings_.bus_is_shared ? u_bus_wait_s(link_, settings_.bit_rates) : 0.0;
   const double u_common_s = timer_->u_common_s();
   return std::sqrt(u_common_s * u_common_s + u_utc_s_ * u_utc_s_ + u_wait_s * u_wait_s);
 }
 
-SourceDescription SensorStream::description() const {
-  SourceDescription description;
-  for (const DbcMessage* message : layout_.messages) {
-    description.device += (description.device.empty() ? "" : ", ") + message->name;
-  }
-  description.device += " of " + dbc_->path.filename().string();
-  description.driver = "can " + link_.name + ", time by " + to_string(time_source_);
-  if (timer_->uses_hardware() && time_source_ != TimeSource::hardware_stamp) {
-    description.driver += " over hardware-stamp";
-  }
-  for (const ChannelLayout& channel : layout_.channels) {
-    description.channels.push_back(channel.description);
-  }
-  description.nominal_rate_hz = layout_.nominal_rate_hz;
-  description.time_base = settings_.time_base;
-  description.stamp_instant = time_source_ == TimeSource::canopen_sync ? StampInstant::frame_end
-                                                                       : StampInstant::frame_start;
-  description.tick_s = timer_->uses_hardware() ? settings_.hardware_tick_s : 0.0;
-  description.stamp_uncertainty_s = u_stamp_s();
-  return description;
-}
-
 void SensorStream::describe(SampleSink& sink) {
   described_u_s_ = u_stamp_s();
-  sink.describe(description());
+  sink.describe(describe_stream(
+      settings_, layout_, dbc_->path, link_.name,
+      {.source = time_source_, .by_adapter = timer_->uses_hardware(), .u_s = described_u_s_}));
 }
 
 // A host that has just been started becomes synchronised while the service runs, and may lose it
@@ -169,7 +142,7 @@ Expected<void> SensorStream::take(const BusEvent& event, SampleSink& sink) {
   }
   if (const auto* lost = std::get_if<FramesLost>(&event)) {
     counts_.dropped_frames += lost->frames;
-    frames_dropped_since_ += lost->frames;
+    numbers_.frames_were_dropped(lost->frames);
   } else if (const auto* change = std::get_if<LinkChange>(&event)) {
     take_change(*change, sink);
   } else if (const auto* fault = std::get_if<BusFault>(&event)) {
@@ -187,11 +160,11 @@ void SensorStream::take_change(const LinkChange& change, SampleSink& sink) {
     return;
   }
   ++counts_.interruptions;
-  interrupted_ = true;
+  numbers_.was_interrupted();
   joiner_.give_up_open();
   sync_.reset();
   give_up_bus_time(sink);
-  timer_->restart(); // drivers seed the adapter's clock anew when the link comes up
+  timer_->restart(); // drivers seed the adapter's clock again when the link comes up
 }
 
 // The clock that the waiting samples would have been timed by is gone; the next one knows nothing
@@ -213,7 +186,9 @@ void SensorStream::take_fault(const BusFault& fault) {
   if (counts_.faults.size() < max_causes || counts_.faults.contains(fault.cause)) {
     ++counts_.faults[fault.cause];
   }
-  interrupted_ = interrupted_ || fault.frames_lost || fault.state == BusState::bus_off;
+  if (fault.frames_lost || fault.state == BusState::bus_off) {
+    numbers_.was_interrupted();
+  }
 }
 
 Expected<void> SensorStream::take_frame(const CanFrame& frame, SampleSink& sink) {
@@ -283,81 +258,39 @@ void SensorStream::complete(JoinedSample joined, SampleSink& sink) {
   if (time_source_ == TimeSource::canopen_sync) {
     sample.timed = *sync_;
   }
-  if (!layout_.keys.empty()) {
-    if (!number_by_key(joined.key, head, sample, sink)) {
-      return;
-    }
-  } else {
-    number_by_arrival(head, sample);
+  if (!number(joined.key, head, sample, sink)) {
+    return;
   }
-  if (last_number_ && sample.number > *last_number_ + 1) {
-    counts_.lost += sample.number - *last_number_ - 1;
-  }
-  last_number_ = sample.number;
-  last_arrival_ns_ = head.kernel_ns;
-  last_key_ = sample.key;
-  frames_dropped_since_ = 0;
-  interrupted_ = false;
   decode(joined, sample.values);
   for_bus_time_.push_back(std::move(sample));
   resolve(sink, false);
 }
 
-bool SensorStream::number_by_key(std::uint64_t key, const CanFrame& head, Waiting& sample,
-                                 SampleSink& sink) {
-  const auto reading = counter_->read(key, head.kernel_ns);
-  if (reading.step == WrappingCounter::Step::repeated) {
-    ++counts_.repeated;
-    return false;
-  }
-  if (reading.step == WrappingCounter::Step::late) { // the number it would have had counts as lost
-    ++counts_.late;
-    return false;
-  }
-  if (reading.step == WrappingCounter::Step::restarted) {
-    ++counts_.restarts;
-    finish(sink);
-    sink.begin_session();
-    key_line_.restart();
-    last_number_.reset();
-    last_stamp_ns_.reset();
-  }
-  sample.key = reading.value;
-  if (!last_number_) {
-    sample.number = 0;
-    return true;
-  }
-  std::int64_t step = sample.key - last_key_;
-  if (layout_.key_is_time) { // the numbers follow the nominal rate where there is one
-    step =
-        layout_.nominal_rate_hz > 0.0
-            ? std::llround(static_cast<double>(step) * layout_.key_tick_s * layout_.nominal_rate_hz)
-            : 1;
-  }
-  const std::int64_t least =
-      layout_.key_is_time && layout_.nominal_rate_hz <= 0.0 && interrupted_ ? 2 : 1;
-  sample.number = *last_number_ + static_cast<std::uint64_t>(std::max(step, least));
-  return true;
-}
-
-void SensorStream::number_by_arrival(const CanFrame& head, Waiting& sample) {
-  if (!last_number_) {
-    return;
-  }
-  std::uint64_t step = 1 + frames_dropped_since_ / layout_.messages.size();
-  if (layout_.nominal_rate_hz > 0.0) {
-    constexpr double gap_intervals = 1.5;
-    const double intervals =
-        static_cast<double>(head.kernel_ns - last_arrival_ns_) * 1e-9 * layout_.nominal_rate_hz;
-    if (intervals > gap_intervals) {
-      step = std::max(step, static_cast<std::uint64_t>(std::llround(intervals)));
+bool SensorStream::number(std::uint64_t key, const CanFrame& head, Waiting& sample,
+                          SampleSink& sink) {
+  if (!layout_.keys.empty()) {
+    const auto reading = counter_->read(key, head.kernel_ns);
+    if (reading.step == WrappingCounter::Step::repeated) {
+      ++counts_.repeated;
+      return false;
     }
+    if (reading.step == WrappingCounter::Step::late) { // its number counts as lost already
+      ++counts_.late;
+      return false;
+    }
+    if (reading.step == WrappingCounter::Step::restarted) {
+      ++counts_.restarts;
+      finish(sink);
+      sink.begin_session();
+      key_line_.restart();
+      numbers_.begin_session();
+      block_.begin_session();
+    }
+    sample.key = reading.value;
   }
-  if (interrupted_) {
-    // The number missed is unknown; at least one is reported, so that the gap is visible.
-    step = std::max<std::uint64_t>(step, 2);
-  }
-  sample.number = *last_number_ + step;
+  sample.number = numbers_.next(layout_, sample.key, head.kernel_ns);
+  counts_.lost += numbers_.lost_before();
+  return true;
 }
 
 void SensorStream::decode(const JoinedSample& joined, std::vector<double>& values) {
@@ -393,14 +326,14 @@ void SensorStream::resolve(SampleSink& sink, bool give_up_waiting) {
     for_bus_time_.pop_front();
     if (hopeless || !follows_sensor_clock()) {
       const std::int64_t stamp_ns = resolved.base_ns;
-      emit(std::move(resolved), stamp_ns, hopeless ? not_trusted : trusted, sink);
+      emit(resolved, stamp_ns, hopeless ? not_trusted : trusted, sink);
       continue;
     }
     if (!key_line_.add(sensor_clock_ns(resolved.key), resolved.base_ns)) {
       ++counts_.clock_restarts;
       for (; !for_sensor_time_.empty(); for_sensor_time_.pop_front()) {
         const std::int64_t stamp_ns = for_sensor_time_.front().base_ns;
-        emit(std::move(for_sensor_time_.front()), stamp_ns, not_trusted, sink);
+        emit(for_sensor_time_.front(), stamp_ns, not_trusted, sink);
       }
     }
     for_sensor_time_.push_back(std::move(resolved));
@@ -411,55 +344,33 @@ void SensorStream::resolve(SampleSink& sink, bool give_up_waiting) {
     for_sensor_time_.pop_front();
     const std::int64_t stamp_ns =
         key_line_.ready() ? key_line_.to_host(sensor_clock_ns(sample.key)) : sample.base_ns;
-    emit(std::move(sample), stamp_ns, key_line_.ready() ? trusted : not_trusted, sink);
+    emit(sample, stamp_ns, key_line_.ready() ? trusted : not_trusted, sink);
   }
 }
 
-void SensorStream::emit(Waiting sample, std::int64_t stamp_ns, std::uint8_t flags,
+void SensorStream::emit(const Waiting& sample, std::int64_t stamp_ns, std::uint8_t flags,
                         SampleSink& sink) {
-  const bool gap = block_.samples > 0 && sample.number != next_number_;
-  const bool full = block_.samples > 0 && stamp_ns - block_.stamps_ns.front() >= block_span_ns;
-  if (gap || full) {
+  if (block_.must_go_before(sample.number, stamp_ns)) {
     flush(sink);
   }
-  if (last_stamp_ns_ && stamp_ns <= *last_stamp_ns_) {
-    flags |= stamp_ns == *last_stamp_ns_ ? stamp_repeated : stamp_backwards;
-  }
-  if (flags != 0) {
-    ++counts_.not_trusted;
-  }
-  last_stamp_ns_ = stamp_ns;
-  if (block_.samples == 0) {
-    block_.first_sample = sample.number;
-  }
-  ++block_.samples;
-  ++counts_.samples;
-  block_.stamps_ns.push_back(stamp_ns);
   const double u_line_s =
       std::hypot(timer_->u_line_s(), follows_sensor_clock() ? key_line_.u_s() : 0.0);
-  const double u_ns = std::hypot(u_stamp_s(), u_line_s) * 1e9;
-  block_.stamp_uncertainty_ns.push_back(static_cast<std::uint32_t>(
-      std::min(u_ns, double{std::numeric_limits<std::uint32_t>::max()})));
-  block_.flags.push_back(flags);
-  block_.received_utc_ns = sample.timed.kernel_ns;
-  rows_.insert(rows_.end(), sample.values.begin(), sample.values.end());
-  next_number_ = sample.number + 1;
+  const bool is_trusted = block_.add({.number = sample.number,
+                                      .stamp_ns = stamp_ns,
+                                      .u_stamp_s = std::hypot(u_stamp_s(), u_line_s),
+                                      .flags = flags,
+                                      .received_utc_ns = sample.timed.kernel_ns},
+                                     sample.values);
+  counts_.not_trusted += is_trusted ? 0 : 1;
+  ++counts_.samples;
 }
 
 void SensorStream::flush(SampleSink& sink) {
-  if (block_.samples == 0) {
+  if (block_.empty()) {
     return;
   }
   refresh_utc(sink);
-  const std::size_t channels = layout_.channels.size();
-  block_.values.resize(rows_.size());
-  for (std::size_t sample = 0; sample < block_.samples; ++sample) {
-    for (std::size_t channel = 0; channel < channels; ++channel) {
-      block_.values[channel * block_.samples + sample] = rows_[sample * channels + channel];
-    }
-  }
-  rows_.clear();
-  sink.take(std::exchange(block_, {}));
+  sink.take(block_.release());
 }
 
 void SensorStream::finish(SampleSink& sink) {

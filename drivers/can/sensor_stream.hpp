@@ -6,12 +6,9 @@
 // a time field they are taken from the line between the sensor's clock and the frames' starts,
 // which leaves out what a frame had to wait for the bus. Samples wait until that line has settled.
 //
-// Numbers follow the counter or time field where there is one, so that every lost sample shows as a
-// gap of just its size; otherwise arrival, with gaps by the nominal rate where it is known and by
-// the frames that the socket has dropped. After an interruption of the link there is always a gap.
-// Nothing is ever filled. A signal that a frame lacks gives NaN.
+// Numbers: sample_numbers.hpp. Nothing is ever filled. A signal that a frame lacks gives NaN.
 //
-// The stream has no clock of its own: count() is to be called by whoever drives it, about twice a
+// The stream has no clock of its own: count() is to be called by its caller, about twice a
 // second. Fails: invalid_setting. One thread; the DBC file is copied.
 #pragma once
 
@@ -24,8 +21,10 @@
 
 #include "drivers/can/bus/frame_source.hpp"
 #include "drivers/can/dbc/dbc.hpp"
+#include "drivers/can/growing_block.hpp"
 #include "drivers/can/message_index.hpp"
 #include "drivers/can/sample_joiner.hpp"
+#include "drivers/can/sample_numbers.hpp"
 #include "drivers/can/sensor_layout.hpp"
 #include "drivers/can/stream_counts.hpp"
 #include "drivers/can/stream_settings.hpp"
@@ -79,16 +78,15 @@ private:
   void refresh_utc(SampleSink& sink);
   void choose_time_source(const CanFrame& first, SampleSink& sink);
   void complete(JoinedSample joined, SampleSink& sink);
-  [[nodiscard]] bool number_by_key(std::uint64_t key, const CanFrame& head, Waiting& sample,
-                                   SampleSink& sink);
-  void number_by_arrival(const CanFrame& head, Waiting& sample);
+  // False: the sample is one that was there before, or late.
+  [[nodiscard]] bool number(std::uint64_t key, const CanFrame& head, Waiting& sample,
+                            SampleSink& sink);
   void decode(const JoinedSample& joined, std::vector<double>& values);
   void resolve(SampleSink& sink, bool give_up_waiting);
   void give_up_bus_time(SampleSink& sink);
-  void emit(Waiting sample, std::int64_t stamp_ns, std::uint8_t flags, SampleSink& sink);
+  void emit(const Waiting& sample, std::int64_t stamp_ns, std::uint8_t flags, SampleSink& sink);
   [[nodiscard]] std::int64_t sensor_clock_ns(std::int64_t key) const;
   [[nodiscard]] bool follows_sensor_clock() const;
-  [[nodiscard]] SourceDescription description() const;
 
   StreamSettings settings_;
   std::shared_ptr<const DbcFile> dbc_;
@@ -108,18 +106,10 @@ private:
   std::optional<CanFrame> sync_;
   bool sync_used_ = false;
 
-  std::optional<std::uint64_t> last_number_;
-  std::int64_t last_arrival_ns_ = 0;
-  std::int64_t last_key_ = 0;
-  std::uint64_t frames_dropped_since_ = 0;
-  bool interrupted_ = false;
-
   std::deque<Waiting> for_bus_time_;    // until the adapter's clock is known
   std::deque<Waiting> for_sensor_time_; // until the sensor's clock is known
-  SampleBlock block_;
-  std::uint64_t next_number_ = 0;
-  std::optional<std::int64_t> last_stamp_ns_;
-  std::vector<double> rows_; // values sample after sample, until the block is emitted
+  SampleNumbers numbers_;
+  GrowingBlock block_;
   std::int64_t last_kernel_ns_ = 0;
   StreamCounts counts_;
 };

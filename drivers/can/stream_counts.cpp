@@ -12,7 +12,7 @@ SampleCounts sample_counts(const StreamCounts& stream, const LinkState& link, do
   counts.clock_uncertainty_s = u_clock_s;
   counts.add_cause("frames received", stream.frames);
   counts.add_cause("frames dropped by the socket", stream.dropped_frames);
-  counts.add_cause("samples of which a frame is missing", stream.incomplete);
+  counts.add_cause("samples with a missing frame", stream.incomplete);
   counts.add_cause("frames without counter, SYNC or known rate", stream.rejected);
   counts.add_cause("samples that came behind later ones", stream.late);
   counts.add_cause("signals beyond the end of a frame", stream.short_frames);

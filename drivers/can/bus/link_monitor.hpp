@@ -35,7 +35,7 @@ public:
   // Reads what has come: every change by itself, in its order, so that down and up between two
   // calls are both seen.
   [[nodiscard]] Expected<std::vector<Change>> update();
-  // Asks the kernel for everything anew.
+  // Asks the kernel for everything again.
   [[nodiscard]] Expected<void> ask();
 
   // After bus-off. Fails (refused) without CAP_NET_ADMIN or where the driver cannot.

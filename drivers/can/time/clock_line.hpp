@@ -8,11 +8,11 @@
 // 1999): it follows the smallest delays and no mean of them. What remains is the smallest delay
 // itself, which no reading can tell from the offset; the user of the line has to know it.
 //
-// Points are kept for `window_s` and the line is drawn anew every `refresh_s`. Nothing is answered
+// Points are kept for `window_s` and the line is drawn again every `refresh_s`. Nothing is answered
 // before `settle_s` and `settle_points`; at low rates older points are kept for it.
 //
 // A point that lies more than `step_s` below the line, or in the free clock before its predecessor,
-// means that one of the clocks was set: the estimate begins anew. A point far above is a late frame
+// means that one of the clocks was set: the estimate starts over. A point far above is a late frame
 // and changes nothing; but when `step_points` in a row are that far above, the host clock was set
 // forward.
 //
@@ -41,7 +41,7 @@ class ClockLine {
 public:
   explicit ClockLine(ClockLineOptions options = {}) : options_(options) {}
 
-  // False: the estimate began anew with this point.
+  // False: the estimate started over with this point.
   bool add(std::int64_t free_ns, std::int64_t host_ns);
   void restart();
 

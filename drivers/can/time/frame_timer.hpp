@@ -42,7 +42,7 @@ public:
   // Every frame, in the order received. False when a clock was set: what was said before is no
   // longer comparable.
   bool add(const CanFrame& frame);
-  // The adapter's clock has started anew.
+  // The adapter's clock has restarted.
   void restart();
 
   [[nodiscard]] bool uses_hardware() const { return uses_hardware_.value_or(false); }
