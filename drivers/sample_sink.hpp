@@ -2,7 +2,7 @@
 // its account of them, and warnings.
 //
 // Order of calls: describe() at the latest before the first take() that needs it (a sensor may send
-// samples before it has described itself), begin_session() whenever sample numbers begin anew or
+// samples before it has described itself), begin_session() whenever sample numbers start over or
 // the columns change, count() about twice a second and at the end.
 //
 // Nothing here fails: what a sink cannot take it counts itself. Called on the driver's thread, one

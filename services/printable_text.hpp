@@ -1,6 +1,6 @@
 // Texts of others (names in files, what instruments and programs on the network say of themselves)
-// as they may be written into JSON and onto a terminal. Whoever writes Latin-1, "Br\xfcel", or
-// anything else that is not UTF-8 (RFC 3629) costs no result and steers no terminal; and whoever
+// as they may be written into JSON and onto a terminal. Anyone who writes Latin-1, "Br\xfcel", or
+// anything else that is not UTF-8 (RFC 3629) costs no result and steers no terminal; and anyone who
 // writes a book, forges no line and hides none. one_line() stands at every door to people: log,
 // last line of a program, tables, page.
 //

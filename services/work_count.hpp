@@ -1,5 +1,5 @@
-// How far a long computation is, for whoever shows its progress: what is done now, and how much of
-// it. Counted and read from any thread.
+// How far a long computation is, for anyone who shows its progress: what is done now, and how much
+// of it. Counted and read from any thread.
 #pragma once
 
 #include <algorithm>

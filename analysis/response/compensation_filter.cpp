@@ -14,7 +14,7 @@ constexpr double pi = std::numbers::pi;
 constexpr double transition_weight = 0.01;
 constexpr double stop_weight = 0.1;
 constexpr int min_taps = 33, max_taps = 257; // of those chosen here
-constexpr int most_taps = 513;
+constexpr int max_wanted_taps = 513;
 constexpr int max_poles = 8;
 constexpr double taps_per_width = 4.0; // times rate / (stop - cutoff)
 
@@ -219,8 +219,8 @@ Expected<void> check(const CompensationSettings& settings) {
   if (!(settings.cutoff_hz > 0.0) || !(settings.cutoff_hz < 0.5 * settings.rate_hz)) {
     return invalid("the cutoff of a filter must be above 0 Hz and below half the sample rate");
   }
-  if (settings.taps < 0 || settings.taps == 1 || settings.taps > most_taps) {
-    return invalid("a filter needs from 2 to " + std::to_string(most_taps) + " taps");
+  if (settings.taps < 0 || settings.taps == 1 || settings.taps > max_wanted_taps) {
+    return invalid("a filter needs from 2 to " + std::to_string(max_wanted_taps) + " taps");
   }
   if (settings.poles < 0 || settings.poles > max_poles) {
     return invalid("a filter needs from 0 to " + std::to_string(max_poles) + " poles");

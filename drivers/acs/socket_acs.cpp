@@ -99,7 +99,7 @@ Expected<void> SocketAcs::connect_again(SampleSink& sink) {
   while (!stop_.wait_for(retry_interval)) {
     auto connected = connect(settings_.connect_limit);
     if (connected) {
-      // An instrument that came back with other channels: whoever needs them will miss them.
+      // An instrument that came back with other channels: anyone who needs them will miss them.
       if (const auto named = name_channels(); !named) {
         ++channels_missing_;
         sink.warn(named.error().message);

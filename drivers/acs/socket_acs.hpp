@@ -5,7 +5,7 @@
 // gap are joined to one. When the instrument disconnects, run() tries to reach it again every half
 // second until stop(); each return is a new session, because its sample numbers and its clock's
 // origin are new. An instrument that falls silent in the middle of a frame is disconnected and
-// reached anew, for it will not go on where it stopped; between frames it may be silent as long as
+// reached again, for it will not go on where it stopped; between frames it may be silent as long as
 // it likes. A sink that blocks makes the instrument wait.
 //
 // describe() fails with invalid_setting when the settings name a channel that the instrument does

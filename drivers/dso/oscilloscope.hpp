@@ -6,7 +6,7 @@
 //
 // After anything that leaves it open which answer belongs to which question (time-out, half an
 // answer, garbage, lost connection) the connection is closed, and the next call connects,
-// identifies and sets up anew: an instrument that was switched off comes back by itself. The shot
+// identifies and sets up again: an instrument that was switched off comes back by itself. The shot
 // that failed is not repeated here.
 //
 // Fails: refused (the instrument's own error, or an instrument that is in no table), timeout (also:

@@ -133,7 +133,7 @@ Expected<void> DumpReader::read_description() {
   const Json json = line ? Json::parse(*line, nullptr, false) : Json();
   if (!json.is_object()) {
     return malformed("a dump of the SmartUp receiver begins with the sensor's description (JSON); "
-                     "this is none");
+                     "this file is not one");
   }
   const auto declared = declared_columns(json);
   std::vector<std::string> names;

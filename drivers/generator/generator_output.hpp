@@ -1,4 +1,4 @@
-// The output of a generator over SCPI, for whoever guards it beside the program that drives it:
+// The output of a generator over SCPI, for anyone who guards it beside the program that drives it:
 // asks whether and with what it is on, and switches it off. Nothing else of the instrument is
 // changed, since a person may have set it.
 //

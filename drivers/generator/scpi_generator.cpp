@@ -16,8 +16,8 @@ using std::chrono::milliseconds;
 constexpr milliseconds answer_limit{8000};
 constexpr milliseconds connect_limit{4000}; // and for each answer meanwhile; it is tried again
 constexpr milliseconds delivery_limit{2000};
-// Of an output that is on. Whoever conducts waits in turns of 0.4 s and says between them that it
-// has hold of the output, which the answer of every turn makes true.
+// Of an output that is on. Anyone who conducts waits in turns of 0.4 s and says between them that
+// it has hold of the output, which the answer of every turn makes true.
 constexpr double question_interval_s = 0.3;
 
 // Of an unknown instrument to a question that it may not know.
@@ -39,7 +39,7 @@ Expected<std::unique_ptr<ScpiGenerator>> ScpiGenerator::connect(const std::strin
 
 ScpiGenerator::~ScpiGenerator() {
   if (connection_) {
-    // Nothing can be done about a failure here; whoever needs to know calls set_output(false)
+    // Nothing can be done about a failure here; anyone who needs to know calls set_output(false)
     // first.
     switches_off_ = true;
     static_cast<void>(command(":OUTPut1 OFF"));

@@ -5,7 +5,7 @@
 // :OUTPut1, each followed by :SYSTem:ERRor?; an error that the instrument reports is passed on as
 // it is (refused). An answer may take 8 s (timeout), which TCP needs where a fifth of the packets
 // are lost (4 s while connecting); after that the connection is given up, and the next call
-// connects anew, which switches the output off.
+// reconnects, which switches the output off.
 //
 // What another program may have left (left_over_state.hpp) is reset while connecting, with the
 // output off, and read back: an instrument that answers that it is still there is refused, a reset
@@ -79,7 +79,7 @@ private:
   std::string address_;
   std::optional<ScpiConnection> connection_;
   std::function<bool(Awaited)> while_waiting_;
-  bool switches_off_ = false; // now: its answer is waited for, whoever would wait no longer
+  bool switches_off_ = false; // now: its answer is waited for even where the caller would not
   std::string identity_;
   bool has_bench_clock_ = false;
   bool reads_back_ = true; // an unknown instrument may not answer the questions

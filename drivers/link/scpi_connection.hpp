@@ -6,7 +6,7 @@
 //
 // A query without an answer (timeout), an answer to nothing, or a block of another length than it
 // announces (malformed) mean that question and answer no longer belong together. Such a connection
-// fails, and lost() is true from then on: its owner connects anew, because talking on would mistake
+// fails, and lost() is true from then on: its owner reconnects, because talking on would mistake
 // one answer for another. It is closed at once, so that no command of it arrives later.
 //
 // One thread at a time.

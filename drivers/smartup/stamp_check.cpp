@@ -146,7 +146,7 @@ bool StampCheck::follows_from_last(const Stamp& stamp, double tolerance) const {
 }
 
 // Whether stamps have been off for so long that the model must be wrong. The model is then founded
-// anew from the stamps to come.
+// again from the stamps to come.
 bool StampCheck::lasts(const Stamp& stamp) {
   ++distrusted_in_a_row_;
   const double since_ns = static_cast<double>(stamp.sample - origin_.sample) * period_ns_;

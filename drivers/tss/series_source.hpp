@@ -5,7 +5,7 @@
 // left of earlier ones is dropped (discard_pending), and after it the next series is waited for.
 //
 // Fails: timeout, malformed, disconnected, refused, not_found. After malformed or disconnected a
-// socket is closed, and the next call connects anew.
+// socket is closed, and the next call reconnects.
 //
 // One thread; StopSignal ends waits from another.
 #pragma once

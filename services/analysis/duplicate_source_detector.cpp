@@ -1,8 +1,8 @@
-#include "services/analysis/twin_watch.hpp"
+#include "services/analysis/duplicate_source_detector.hpp"
 
 namespace dyncal::services {
 
-void TwinWatch::add(std::uint64_t session) {
+void DuplicateSourceDetector::add(std::uint64_t session) {
   if (session_ == session) {
     if (++in_a_row_ == alone_) {
       left_.reset();

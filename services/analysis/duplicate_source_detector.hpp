@@ -11,13 +11,13 @@
 
 namespace dyncal::services {
 
-class TwinWatch {
+class DuplicateSourceDetector {
 public:
   static constexpr int min_returns = 2;
 
-  TwinWatch() = default; // never forgets
+  DuplicateSourceDetector() = default; // never forgets
   // Forgets the other session when one has come `alone` times in a row.
-  explicit TwinWatch(int alone) : alone_(alone) {}
+  explicit DuplicateSourceDetector(int alone) : alone_(alone) {}
 
   // The session of a message of the source, in the order of reception.
   void add(std::uint64_t session);

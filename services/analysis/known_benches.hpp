@@ -2,7 +2,7 @@
 // bus.
 //
 // What is new beyond a limit takes the place of what was heard of longest ago and no living run
-// uses; where all is in use, the new one is left out. A source describes itself once, so whoever
+// uses; where all is in use, the new one is left out. A source describes itself once, so anyone who
 // begins a run on a bench after something had no room has to read its sources again. Plain data,
 // one thread.
 #pragma once

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "idl/dyncal.h"
-#include "services/analysis/twin_watch.hpp"
+#include "services/analysis/duplicate_source_detector.hpp"
 
 namespace dyncal::services {
 
@@ -25,7 +25,8 @@ struct KnownSource {
   std::optional<wire::SourceDescription> description{};
   std::vector<wire::SourceDescription> earlier{}; // of other sessions, the newest first
   std::optional<wire::SourceStatus> status{};
-  TwinWatch twins{5};          // by statuses, one a second: a twin that has ended is soon forgotten
+  DuplicateSourceDetector twins{
+      5};                      // by statuses, one a second: a twin that has ended is soon forgotten
   int statuses_of_earlier = 0; // in a row, of one session other than `description`'s
 
   // Of the session before: a restart, or a twin.

@@ -150,7 +150,7 @@ void RunSession::announce(const wire::Excitation& excitation) {
 }
 
 // The time of a process that was stopped is not the silence of others.
-void RunSession::note_own_absence(Instant now) {
+void RunSession::discount_own_stall(Instant now) {
   if (now - worked_ > max_pause) {
     spdlog::warn("bench {}, run {}: this service did not work for {:.1f} s", bench_, run_,
                  std::chrono::duration<double>(now - worked_).count());
@@ -162,7 +162,7 @@ void RunSession::note_own_absence(Instant now) {
   worked_ = now;
 }
 
-// What its sources have sent so far. How far a silent one is, nobody knows: one that has started
+// What its sources have sent so far. The position of a silent one is unknown: one that has started
 // again answers before it has sent anything.
 bool RunSession::lacks_samples(Instant now) const {
   return streams_->is_catching_up() || (!excitation_over() && streams_->is_held_up(now));
@@ -197,7 +197,7 @@ void RunSession::work(const KnownSources& sources, RunSession* before) {
     return;
   }
   const Instant now = clock_.now();
-  note_own_absence(now);
+  discount_own_stall(now);
   if (before != nullptr) {
     wait_for_bench(*before, now);
   } else {
@@ -225,8 +225,8 @@ std::string RunSession::taking_over_sentence() const {
                      streams_->recovered());
 }
 
-// With the results of all that was measured before: whoever goes on with the run knows by them what
-// is left.
+// With the results of all that was measured before: anyone who goes on with the run knows by them
+// what is left.
 void RunSession::end_takeover(Instant now) {
   if (!taking_over_ || lacks_samples(now) || evaluator_->is_evaluating()) {
     return;
@@ -237,7 +237,7 @@ void RunSession::end_takeover(Instant now) {
   }
 }
 
-// What takes longer than a result should: whoever waits for results goes on waiting.
+// What takes longer than a result should: anyone who waits for results goes on waiting.
 void RunSession::report_work(Instant now) {
   if (status_.arm != wire::ARM_ARMED || status_.health != wire::HEALTH_OK) {
     return;
@@ -292,7 +292,7 @@ void RunSession::take_samples(const KnownSources& sources, Instant now) {
     return;
   }
   streams_->take_samples(now);
-  if (std::string gone = streams_->what_is_gone(); !gone.empty()) {
+  if (std::string gone = streams_->lost_beginning(); !gone.empty()) {
     refuse(std::move(gone));
   }
 }
@@ -305,7 +305,7 @@ void RunSession::arm(const KnownSources& sources, Instant now) {
     }
   }
   const auto missing = streams_->what_is_missing(sources);
-  const std::string other_file = streams_->what_differs(evaluator_->recipe().source_settings);
+  const std::string other_file = streams_->settings_mismatch(evaluator_->recipe().source_settings);
   if (!missing && !other_file.empty()) {
     refuse(other_file);
   } else if (!missing) {
@@ -316,16 +316,16 @@ void RunSession::arm(const KnownSources& sources, Instant now) {
     publisher_.publish(status_);
   } else if (missing->is_there && now - arms_since_ <= present_limit) {
     starting_ = missing->is_starting ? now : starting_;
-    say_what_is_missing(missing->sentence, now);
+    report_missing_source(missing->sentence, now);
   } else if (now - std::max(arms_since_, starting_) > arm_limit || missing->is_starting) {
     refuse(missing->sentence);
   } else {
-    say_what_is_missing(missing->sentence, now);
+    report_missing_source(missing->sentence, now);
   }
 }
 
-// Before the run is refused for it: whoever waits may be able to mend it.
-void RunSession::say_what_is_missing(const std::string& sentence, Instant now) {
+// Before the run is refused for it: anyone who waits may be able to mend it.
+void RunSession::report_missing_source(const std::string& sentence, Instant now) {
   if (now - arms_since_ > notice_after && status_.message != sentence) {
     status_.message = sentence;
     publisher_.publish(status_);
@@ -419,8 +419,8 @@ void RunSession::finish() {
   publisher_.publish(status_);
 }
 
-// Whoever excites by steps goes on, or ends the run, as soon as it knows what was measured before.
-// Files, and excitation by hand, announce nothing.
+// Anyone who excites by steps goes on, or ends the run, as soon as it knows what was measured
+// before. Files, and excitation by hand, announce nothing.
 bool RunSession::is_played_to_its_end(Instant now) const {
   return !excited_by_steps_ && !excitation_over() && !taking_over_ &&
          evaluator_->has_planned_steps() && now - last_progress_ > announcement_limit;
@@ -437,7 +437,8 @@ void RunSession::end_overdue(Instant now) {
     return;
   }
   if (runner_lost) {
-    spdlog::warn("bench {}, run {}: nothing heard of the run for {} s; it ends with what there is",
+    spdlog::warn("bench {}, run {}: no message from the conductor for {} s; finishing with the "
+                 "results so far",
                  bench_, run_, runner_limit.count());
   }
   evaluator_->end_of_excitation(runner_lost);

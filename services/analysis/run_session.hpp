@@ -108,14 +108,14 @@ private:
              std::shared_ptr<SourceRequests> requests, RunPublisher publisher);
   void prepare(const wire::Measurement& measurement, SourceStreams::Begin begin);
   [[nodiscard]] bool is_of_this_run(const wire::Measurement& measurement);
-  void note_own_absence(Instant now);
+  void discount_own_stall(Instant now);
   void take_samples(const KnownSources& sources, Instant now);
   void catch_up(Instant now);
   void wait_for_bench(RunSession& before, Instant now);
   // Ends this run for the next one.
   void give_way_to(const std::string& next);
   void arm(const KnownSources& sources, Instant now);
-  void say_what_is_missing(const std::string& sentence, Instant now);
+  void report_missing_source(const std::string& sentence, Instant now);
   void watch_sources(Instant now);
   void watch_measurement();
   [[nodiscard]] std::string taking_over_sentence() const;

@@ -2,7 +2,7 @@
 // send again what somebody has missed (idl/README.md, "The run protocol", "Who was away"). Who
 // resumes a run that cannot go on as it is now is asked to end it.
 //
-// The runs of a bench share one object, and so two writers: one a run would have to be found anew
+// The runs of a bench share one object, and so two writers: one a run would have to be found again
 // by every source at each beginning, and every new program of the network would be told of those of
 // the runs before. A request that the network does not take within 50 ms is logged and given up: it
 // is repeated until it is answered. Belongs to the service's one thread.

@@ -61,7 +61,7 @@ Expected<void> SourceStreams::describe(const std::string& name, Stream& stream,
     return {}; // what its samples mean was known from the beginning
   }
   if (stream.description || begin_ == Begin::behind) {
-    if (std::string why = why_unfit(name, description); !why.empty()) {
+    if (std::string why = rejection_reason(name, description); !why.empty()) {
       stream.unfit = {description, std::move(why), false};
       return {};
     }
@@ -73,15 +73,15 @@ Expected<void> SourceStreams::describe(const std::string& name, Stream& stream,
   if (!stream.follower) {
     stream.follower.emplace(make_follower(name, triggered));
     if (begin_ == Begin::behind) {
-      std::visit([&](auto& follower) { follower.begin_behind(now); }, *stream.follower);
+      std::visit([&](auto& follower) { follower.start_by_catching_up(now); }, *stream.follower);
     }
   }
   return triggered ? open_reader(record_readers_, description.kind())
                    : open_reader(block_readers_, description.kind());
 }
 
-std::string SourceStreams::why_unfit(const std::string& name,
-                                     const wire::SourceDescription& description) {
+std::string SourceStreams::rejection_reason(const std::string& name,
+                                            const wire::SourceDescription& description) {
   const auto& settings = evaluator_.recipe().source_settings;
   if (const auto difference = settings_difference(description.settings(), settings, name)) {
     return refusal(*difference, bench_, name, description.host());
@@ -227,7 +227,7 @@ void SourceStreams::take_samples(Instant now) {
 template <class Message, class Take>
 void SourceStreams::take(bus::Reader<Message>& reader, Take take) {
   reader.take([&](const Message& message) {
-    // What is given again comes in a partition of this run's own, whoever writes there.
+    // What is given again comes in a partition of this run's own, regardless of who writes there.
     const auto found =
         message.bench() == bench_ ? streams_.find(message.source().to_string()) : streams_.end();
     if (found == streams_.end() || !found->second.follower) {
@@ -283,7 +283,7 @@ bool SourceStreams::is_held_up(Instant now) const {
   });
 }
 
-std::string SourceStreams::what_is_gone() const {
+std::string SourceStreams::lost_beginning() const {
   for (const auto& [name, stream] : streams_) {
     if (stream.follower &&
         std::visit([](const auto& one) { return one.lacks_beginning(); }, *stream.follower)) {
@@ -354,7 +354,7 @@ SourceStreams::what_is_missing(const KnownSources& known) const {
 }
 
 std::string
-SourceStreams::what_differs(const std::map<std::string, std::string>& settings_of_run) const {
+SourceStreams::settings_mismatch(const std::map<std::string, std::string>& settings_of_run) const {
   for (const auto& [name, stream] : streams_) {
     if (!stream.description) {
       continue;

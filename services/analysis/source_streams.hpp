@@ -24,9 +24,9 @@
 #include <vector>
 
 #include "services/analysis/described_sessions.hpp"
+#include "services/analysis/duplicate_source_detector.hpp"
 #include "services/analysis/known_sources.hpp"
 #include "services/analysis/stream_follower.hpp"
-#include "services/analysis/twin_watch.hpp"
 #include "services/analysis/waiting_blocks.hpp"
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
@@ -78,7 +78,7 @@ public:
 
   // One sentence about the first source that no longer has what it sent at the beginning of a run
   // that began before this service; empty if none. Steps would be taken for others.
-  [[nodiscard]] std::string what_is_gone() const;
+  [[nodiscard]] std::string lost_beginning() const;
   // Some source's messages are behind what it has sent.
   [[nodiscard]] bool is_catching_up() const;
   // What some source sends now does not reach the evaluator: it is not there, or silent
@@ -94,7 +94,7 @@ public:
   // One sentence about the first source whose service has read another bench file than the run, by
   // the settings that the run has for each; empty if none has.
   [[nodiscard]] std::string
-  what_differs(const std::map<std::string, std::string>& settings_of_run) const;
+  settings_mismatch(const std::map<std::string, std::string>& settings_of_run) const;
   // The first source without which the run cannot go on: it sent nothing for `silence_limit` since
   // its last block and since `watched_from`, or, if `may_not_end`, it ended.
   [[nodiscard]] std::optional<LostSource> lost_source(Instant now, Instant watched_from,
@@ -118,7 +118,7 @@ private:
     bool is_undescribed = false;   // what came last, and was left out
     Instant waiting_since{};
     std::optional<Follower> follower; // from the first description on
-    TwinWatch twins;
+    DuplicateSourceDetector twins;
     std::string service{}; // that described it last, host and process; empty: not known
     std::string service_before{};
   };
@@ -132,8 +132,8 @@ private:
   [[nodiscard]] Expected<void> describe(const std::string& name, Stream& stream,
                                         const wire::SourceDescription& description, Instant now);
   // Why the run cannot go on by this description of a source that it knows; empty: it can.
-  [[nodiscard]] std::string why_unfit(const std::string& name,
-                                      const wire::SourceDescription& description);
+  [[nodiscard]] std::string rejection_reason(const std::string& name,
+                                             const wire::SourceDescription& description);
   [[nodiscard]] Follower make_follower(const std::string& name, bool triggered);
   template <class Message>
   [[nodiscard]] Expected<void>

@@ -61,7 +61,7 @@ public:
       : run_(std::move(run)), asker_(std::move(asker)), hand_over_(std::move(hand_over)) {}
 
   // The run began before: everything from the source's answer on is to be asked for.
-  void begin_behind(Instant now) {
+  void start_by_catching_up(Instant now) {
     awaits_beginning_ = true;
     begin_catch_up(now);
   }

@@ -60,7 +60,7 @@ public:
 private:
   [[nodiscard]] const toml::node* find(const std::string& key);
   [[nodiscard]] std::string full_name(const std::string& key) const;
-  // Tells whoever collects what is asked for; `what.name` is filled in here.
+  // Tells anyone who collects what is asked for; `what.name` is filled in here.
   void tell(const std::string& key, AskedKey what) const;
   [[nodiscard]] const toml::source_region& region(const std::string& key) const;
 

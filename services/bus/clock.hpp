@@ -2,8 +2,8 @@
 // waiting for messages.
 //
 // What has a time limit takes a Clock, so that a test can move time by itself
-// (services/bus/memory/stepped_clock.hpp); programs use system_clock(). Whoever has a Clock waits
-// through it and through nothing else.
+// (services/bus/memory/stepped_clock.hpp); programs use system_clock(). Anyone who has a Clock
+// waits through it and through nothing else.
 #pragma once
 
 #include <chrono>

@@ -1,8 +1,8 @@
 // The host's network: its name, interfaces, addresses of peers, and how large a socket's receive
 // buffer may be.
 //
-// All functions ask the operating system anew, throw nothing and may be called from any thread.
-// resolve_peers() may wait for a name server.
+// All functions ask the operating system each time, throw nothing and may be called from any
+// thread. resolve_peers() may wait for a name server.
 #pragma once
 
 #include <string>

@@ -1,6 +1,6 @@
 // The checksum that every message of the contract ends with (idl/README.md, "Checksums").
 //
-// UDP's own has 16 bits, network cards and switches may set it anew, and a packet that was changed
+// UDP's own has 16 bits, network cards and switches may set it again, and a packet that was changed
 // and sent again has a right one. A changed byte in a sample or a result would be a wrong number
 // that nobody sees. So the writer sums up the payload, and the reader drops a message whose sum is
 // another one; what it lacks then is asked for like anything that was lost.

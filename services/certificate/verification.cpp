@@ -58,10 +58,11 @@ Finding check_schema(const VerificationRequest& request, const XmlDocument& docu
 Finding check_trust(const VerificationRequest& request, const XmlDocument& document,
                     const Signer& signer) {
   if (request.trusted.empty()) {
-    return failed(Verification::signer,
-                  fmt::format("the signer calls himself {}, and nothing says that it is him: name "
-                              "the certificate of the laboratory or of its CA with --trust",
-                              signer.subject));
+    return failed(
+        Verification::signer,
+        fmt::format("signer name \"{}\" is not confirmed by any trusted certificate: name "
+                    "the certificate of the laboratory or of its CA with --trust",
+                    signer.subject));
   }
   const auto known = check_signer(document, request.trusted, day_of_issue(document));
   return known ? held(Verification::signer,

@@ -34,7 +34,7 @@ Expected<OtherRecipe> read_recipe(const std::filesystem::path& file) {
 
 Expected<RunOutcome> analyse_recording(const AnalyseCommand& command, const std::stop_token& stop,
                                        const SharedWorkCount& count) {
-  RecordedRunWish wish{.run = command.run, .recipe = {}, .count = count};
+  RecordedRunOptions wish{.run = command.run, .recipe = {}, .count = count};
   std::optional<AdcFile> adc_file;
   if (command.recipe) {
     auto other = read_recipe(*command.recipe);

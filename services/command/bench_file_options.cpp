@@ -7,8 +7,7 @@ namespace {
 
 void add_check(CLI::App& app, CheckCommand& check) {
   CLI::App* command =
-      app.add_subcommand("check", "look at whole bench files and all that they name, and say what "
-                                  "is wrong; nothing is driven");
+      app.add_subcommand("check", "validate bench files and the files they reference (dry run)");
   command
       ->add_option("BENCH.toml", check.bench_files,
                    "bench files; several are also held against each other")

@@ -60,8 +60,8 @@ void add_certify(CLI::App& app, CertifyCommand& certify) {
                       "file to write (default: certificate.xml in the run folder, "
                       "NAME-certificate.xml for NAME.json)");
   command->add_flag("--force", certify.force,
-                    "in spite of losses, missing values and flags that forbid it; the certificate "
-                    "says so");
+                    "issue despite losses, missing values or blocking flags; recorded in the "
+                    "certificate");
 }
 
 void add_verify(CLI::App& app, VerifyCommand& verify) {

@@ -67,8 +67,7 @@ void add_keep_options(CLI::App& command, KeepOptions& keep) {
 void add_store(CLI::App& app, StoreCommands& commands) {
   CLI::App* store = app.add_subcommand("store", "the store of all results");
   store->require_subcommand(1);
-  CLI::App* add = store->add_subcommand(
-      "add", "add results to the store; one that is there already does no harm");
+  CLI::App* add = store->add_subcommand("add", "add results to the store (idempotent)");
   take_run(*add->add_option("RESULT", commands.add.results,
                             "result file (JSON) or run folder, repeatable")
                 ->required());

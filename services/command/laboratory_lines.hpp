@@ -1,5 +1,5 @@
 // What the bus shows now as lines, for pipes and logs: one for each clock, source, program, step
-// and result, by a key that stays the same while the line changes. Whoever prints those that
+// and result, by a key that stays the same while the line changes. Anyone who prints those that
 // changed has a log. Plain functions, any thread.
 #pragma once
 

@@ -33,8 +33,8 @@ void add_list(CLI::App& app, ListCommand& list) {
 }
 
 void add_doctor(CLI::App& app, DoctorCommand& doctor) {
-  CLI::App* command = app.add_subcommand(
-      "doctor", "look at laboratory, network and this host, and say what is wrong and what to do");
+  CLI::App* command =
+      app.add_subcommand("doctor", "diagnose the laboratory, the network and this host");
   command->add_option("BENCH.toml", doctor.bench_file,
                       "bench file that the services should have read");
   command->add_option("--seconds", doctor.seconds, "look for this time")

@@ -34,9 +34,7 @@ void add_run(CLI::App& app, RunCommand& run) {
   command->add_option("BENCH.toml", run.bench_file, "bench file")->required();
   command->add_option("--run", run.run, "name of the run (default: the time)");
   auto* wait = command->add_flag("--wait", run.wait, "wait while another run has the bench");
-  command
-      ->add_option("--resume", run.resume,
-                   "go on with the run of this name, whose program has died")
+  command->add_option("--resume", run.resume, "resume the named run after its conductor died")
       ->excludes("--run")
       ->excludes(wait);
   command->add_option("--json", run.json, "write the result to this file as JSON");
@@ -72,7 +70,7 @@ void add_demo(CLI::App& app, DemoCommand& demo) {
                       "write the result to this file as JSON (default: result.json in the folder)");
   command->add_option("--folder", demo.keep.folder,
                       "keep the run below this folder as 'dyncal run' does (default: not)");
-  command->add_option("--store", demo.keep.store, "of that run, as of 'dyncal run'");
+  command->add_option("--store", demo.keep.store, "store for that run, as in 'dyncal run'");
   command->add_option("--repetitions", demo.repetitions, "repetitions of the excitation list")
       ->check(CLI::Range(1, 1000));
   command

@@ -32,7 +32,7 @@ void add_replay(CLI::App& app, ReplayCommand& replay) {
                       "name of the bench on DDS (default: as it was recorded)");
   command->add_flag("--without-results", replay.without_results,
                     "leave out results and states of the analysis: a running analysis service "
-                    "evaluates the run anew");
+                    "evaluates the run again");
   add_network_options(*command, replay.network);
 }
 

@@ -25,7 +25,7 @@ Expected<double> parse_speed(const std::string& text) {
 }
 
 Expected<ReplayFigures> replay(const ReplayCommand& command, const std::stop_token& asked) {
-  ReplayWish wish = command.wish;
+  ReplayOptions wish = command.wish;
   wish.results = !command.without_results;
   const auto speed = parse_speed(command.speed);
   if (!speed) {

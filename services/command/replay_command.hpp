@@ -11,7 +11,7 @@
 namespace dyncal::services {
 
 struct ReplayCommand {
-  ReplayWish wish;
+  ReplayOptions wish;
   std::string speed = "1"; // multiple of real time, or "max"
   bool without_results = false;
   NetworkOptions network;

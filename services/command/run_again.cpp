@@ -48,7 +48,7 @@ void run_again(const std::string& why, const std::string& resume) {
              "{}\n",
              why,
              resume.empty() ? "begins again"
-                            : fmt::format("goes on anew, as 'dyncal run --resume {}'", resume));
+                            : fmt::format("continues as 'dyncal run --resume {}'", resume));
   std::vector<std::string> words = arguments_again(own_arguments(), resume);
   std::vector<char*> pointers;
   for (std::string& word : words) {

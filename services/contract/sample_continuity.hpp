@@ -22,7 +22,7 @@ namespace dyncal::services {
 // What one block says about those before it.
 struct ContinuityFinding {
   bool first = false;       // of this source
-  bool new_session = false; // the source, or its device, has started anew: its stamps and numbers
+  bool new_session = false; // the source, or its device, has restarted: its stamps and numbers
                             // have no relation to those before
   bool duplicate = false;   // its number was there already, or it comes too late: do not use it
   std::uint64_t missing_blocks = 0;

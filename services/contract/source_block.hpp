@@ -1,7 +1,7 @@
 // One block of samples where it lies, in a message of the bus or in a driver's block, without a
 // copy of its arrays.
 //
-// A view: whoever looks at it must have done so before the message or block changes. Values are
+// A view: anyone who looks at it must have done so before the message or block changes. Values are
 // channel after channel, values[channel * samples + sample]; times are int64 nanoseconds in the
 // time base of the source. Plain data; any thread may own one, none may share one.
 #pragma once

@@ -72,16 +72,18 @@ Finding check_udp(const HostView& host) {
   const std::uint64_t damaged = host.udp_after->damaged - host.udp_before->damaged;
   const std::uint64_t received = host.udp_after->received - host.udp_before->received;
   if (lost > 0) {
-    return {Severity::warning, "packets",
-            fmt::format("{} UDP packets found no room in their socket while I looked ({} were "
-                        "received); see 'buffers', or a program hangs",
-                        lost, received)};
+    return {
+        Severity::warning, "packets",
+        fmt::format("{} UDP packets were dropped (socket buffer full) during the check ({} were "
+                    "received); see 'buffers', or a program hangs",
+                    lost, received)};
   }
   if (damaged > 0) {
-    return {Severity::warning, "packets",
-            fmt::format("{} UDP packets came damaged while I looked ({} came whole); look at cable "
-                        "and switch",
-                        damaged, received)};
+    return {
+        Severity::warning, "packets",
+        fmt::format("{} UDP packets came damaged during the check ({} came whole); look at cable "
+                    "and switch",
+                    damaged, received)};
   }
   return {Severity::ok, "packets",
           fmt::format("{} UDP packets came while I looked, none was lost in this host{}", received,

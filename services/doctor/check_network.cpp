@@ -82,7 +82,7 @@ Findings check_unicast(const LaboratoryView& view) {
   return findings;
 }
 
-std::string sender_of_packets(const HeardProgram& program, int domain) {
+std::string sender_of_packets(const DiscoveredProgram& program, int domain) {
   if (!program.packets_refused_from.empty()) {
     return "the last one came from " + program.packets_refused_from;
   }
@@ -94,7 +94,7 @@ std::string sender_of_packets(const HeardProgram& program, int domain) {
 // Malformed packets that programs have refused.
 Findings check_packets(const LaboratoryView& view) {
   Findings findings;
-  for (const HeardProgram& program : view.programs) {
+  for (const DiscoveredProgram& program : view.programs) {
     if (program.packets_refused == 0) {
       continue;
     }

@@ -22,7 +22,7 @@ Findings check_presence(const LaboratoryView& view) {
                          view.domain, view.seconds)}};
   }
   Findings findings;
-  for (const HeardProgram& program : view.programs) {
+  for (const DiscoveredProgram& program : view.programs) {
     findings.push_back({Severity::ok, "programs",
                         fmt::format("{}: {}, {}", place_of(program.identity),
                                     program.identity.software, program.identity.dds)});
@@ -38,7 +38,7 @@ Findings check_presence(const LaboratoryView& view) {
 // Others in the domain, such as tools of others, or `dyncal run`.
 Findings check_others(const LaboratoryView& view) {
   std::set<std::string> services;
-  for (const HeardProgram& program : view.programs) {
+  for (const DiscoveredProgram& program : view.programs) {
     services.insert(program.identity.program);
   }
   std::set<std::string> others;
@@ -63,7 +63,7 @@ Findings check_analysis(const LaboratoryView& view) {
                    : "no analysis service is there; start dyncal-analysis on one machine of the "
                      "laboratory"}};
   }
-  const auto analyses = std::ranges::count_if(view.programs, [](const HeardProgram& program) {
+  const auto analyses = std::ranges::count_if(view.programs, [](const DiscoveredProgram& program) {
     return program.identity.program == "dyncal-analysis";
   });
   return {{Severity::ok, "analysis",
@@ -91,13 +91,13 @@ Versions versions_of(const LaboratoryView& view) {
     versions.contracts[contract].insert(place);
   };
   add(view.own.program, view.own.host, view.own.software, wire::CONTRACT_VERSION);
-  for (const HeardProgram& program : view.programs) {
+  for (const DiscoveredProgram& program : view.programs) {
     const ProgramIdentity& identity = program.identity;
     add(identity.program, identity.host, identity.software, program.contract_version);
   }
   const auto name_of = [&](const std::string& host, std::uint32_t process_id,
                            const std::string& otherwise) {
-    const auto program = std::ranges::find_if(view.programs, [&](const HeardProgram& one) {
+    const auto program = std::ranges::find_if(view.programs, [&](const DiscoveredProgram& one) {
       return one.identity.host == host && one.identity.process_id == process_id;
     });
     return program == view.programs.end() ? otherwise : program->identity.program;

@@ -19,17 +19,17 @@ std::string name_of(const SourceKey& key) {
   return key.first + "/" + key.second;
 }
 
-std::string host_of(const SeenSource& source) {
+std::string host_of(const ObservedSource& source) {
   const bool known = source.description && !source.description->host().empty();
   return known ? " on " + source.description->host() : "";
 }
 
 // The sentence that the source gives itself, if it gives one.
-std::string reason_of(const SeenSource& source) {
+std::string reason_of(const ObservedSource& source) {
   return source.status && !source.status->message().empty() ? ": " + source.status->message() : "";
 }
 
-Finding check_state(const SourceKey& key, const SeenSource& source) {
+Finding check_state(const SourceKey& key, const ObservedSource& source) {
   const std::string subject = "source " + name_of(key) + host_of(source);
   if (!source.status) {
     return {Severity::problem, "sources",
@@ -70,7 +70,7 @@ void add_loss(const std::string& subject, std::uint64_t before, std::uint64_t no
   }
 }
 
-Findings check_losses(const SourceKey& key, const SeenSource& source) {
+Findings check_losses(const SourceKey& key, const ObservedSource& source) {
   Findings findings;
   if (!source.status || !source.first_status) {
     return findings;
@@ -82,7 +82,7 @@ Findings check_losses(const SourceKey& key, const SeenSource& source) {
            "were lost between device and service",
            "look at the network between them, and at 'buffers' of that host", findings);
   add_loss(subject, before.lost_in_device(), now.lost_in_device(), "were lost in the device",
-           "it says so itself: lower its rate, or look at its manual", findings);
+           "reported by the device: lower its rate or see its manual", findings);
   add_loss(subject, before.dropped_in_service(), now.dropped_in_service(),
            "were dropped because the network did not take them",
            "a reader hangs or the network is slower than the source", findings);
@@ -95,7 +95,7 @@ Findings check_losses(const SourceKey& key, const SeenSource& source) {
   return findings;
 }
 
-Findings check_twins(const SourceKey& key, const SeenSource& source) {
+Findings check_twins(const SourceKey& key, const ObservedSource& source) {
   if (!source.twins && source.writers.size() < 2) {
     return {};
   }
@@ -111,7 +111,7 @@ void append(Findings& findings, const Findings& more) {
 }
 
 // Frequencies are held against half of the stated rate before a run.
-Findings check_rate(const SourceKey& key, const SeenSource& source,
+Findings check_rate(const SourceKey& key, const ObservedSource& source,
                     const SourceSettings& settings) {
   const bool is_running = source.status && source.status->state() == wire::SOURCE_RUNNING;
   const double stated_hz = settings.nominal_rate_hz.value_or(0.0);

@@ -1,6 +1,6 @@
 // What was observed of this host, for check_host(): limits of its network, and room for results.
 //
-// Asks the operating system anew, changes nothing but that it opens sockets for a moment. Any
+// Asks the operating system each time, changes nothing but that it opens sockets for a moment. Any
 // thread.
 #pragma once
 

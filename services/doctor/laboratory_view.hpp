@@ -18,7 +18,7 @@
 namespace dyncal::services::doctor {
 
 // A source, by what it publishes of itself.
-struct SeenSource {
+struct ObservedSource {
   std::optional<wire::SourceDescription> description; // the newest
   std::optional<wire::SourceStatus> first_status;     // since the doctor looks
   std::optional<wire::SourceStatus> status;           // the newest
@@ -32,10 +32,10 @@ struct LaboratoryView {
   int domain = 0;
   double seconds = 0.0; // for which was looked
   ProgramIdentity own;  // the doctor
-  std::map<SourceKey, SeenSource> sources;
+  std::map<SourceKey, ObservedSource> sources;
   std::map<std::string, wire::ServiceStatus> analyses; // by their names, the newest of each
   std::map<std::string, wire::ServiceStatus> guards;   // by bench and name, "acc-1 guard@lab-1:7"
-  std::vector<HeardProgram> programs;                  // that answer
+  std::vector<DiscoveredProgram> programs;             // that answer
   std::vector<HostClock> clocks;
   std::vector<LinkLoss> losses; // one of each of the programs
   bus::Discovery discovery;

@@ -47,15 +47,15 @@ void LaboratoryWatch::work() {
 
 void LaboratoryWatch::take() {
   readers_.descriptions.take([this](const wire::SourceDescription& description) {
-    SeenSource& source = view_.sources[key_of(description)];
+    ObservedSource& source = view_.sources[key_of(description)];
     source.description = description;
     if (std::string service = service_of(description); !service.empty()) {
       source.writers.insert(std::move(service));
     }
   });
   readers_.statuses.take([this](const wire::SourceStatus& status) {
-    SeenSource& source = view_.sources[key_of(status)];
-    TwinWatch& turns = turns_[key_of(status)];
+    ObservedSource& source = view_.sources[key_of(status)];
+    DuplicateSourceDetector& turns = turns_[key_of(status)];
     turns.add(status.session());
     source.twins = turns.twins();
     if (!source.first_status || source.first_status->session() != status.session()) {

@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "services/analysis/twin_watch.hpp"
+#include "services/analysis/duplicate_source_detector.hpp"
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
 #include "services/doctor/laboratory_view.hpp"
@@ -50,7 +50,7 @@ private:
   ClockAsker asker_;
   LinkMeter meter_;
   LaboratoryView view_;
-  std::map<LaboratoryView::SourceKey, TwinWatch> turns_;
+  std::map<LaboratoryView::SourceKey, DuplicateSourceDetector> turns_;
 };
 
 } // namespace dyncal::services::doctor

@@ -30,7 +30,7 @@ std::string state_text(wire::SourceState state) {
 
 ordered_json programs_json(const LaboratoryView& view) {
   ordered_json programs = ordered_json::array();
-  for (const HeardProgram& program : view.programs) {
+  for (const DiscoveredProgram& program : view.programs) {
     programs.push_back({{"program", program.identity.program},
                         {"host", program.identity.host},
                         {"process_id", program.identity.process_id},
@@ -112,7 +112,7 @@ ordered_json participants_json(const LaboratoryView& view) {
   return participants;
 }
 
-// Every text, whoever wrote it.
+// Every text, regardless of who wrote it.
 void shorten(ordered_json& json) {
   if (json.is_string()) {
     json = one_line(json.get_ref<const std::string&>());

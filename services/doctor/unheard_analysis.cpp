@@ -133,7 +133,7 @@ std::string about_others(const LaboratoryView& view, const HostView& host) {
   }
   if (!view.programs.empty()) {
     std::set<std::string> names;
-    for (const HeardProgram& one : view.programs) {
+    for (const DiscoveredProgram& one : view.programs) {
       names.insert(fmt::format("{} on {}", one.identity.program, one.identity.host));
     }
     return fmt::format("{} answer{}, but no dyncal-analysis is among them: start one",

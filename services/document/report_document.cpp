@@ -59,7 +59,7 @@ Expected<std::vector<std::string>> chosen_channels(const StoredResult& result,
   return responding.empty() ? known : responding;
 }
 
-// What the run folder has beside the transfer functions, which are drawn anew.
+// What the run folder has beside the transfer functions, which are drawn again.
 void add_pictures(const std::filesystem::path& run, ReportContents& contents) {
   std::error_code unknown;
   if (!std::filesystem::is_directory(run, unknown)) {

@@ -5,7 +5,7 @@
 // and so many may have come (shots of which the trace was lost). A series whose number says that it
 // belongs to one of the earlier triggers is late: the right one is still to come. A number that
 // fits no count, or more than one, leaves it open; then the shot is given up, and counting begins
-// anew with it.
+// again with it.
 //
 // The first series of all belongs to nothing that is known: an edge before the oscilloscope was
 // armed may have triggered the sensor, which then did not take the trigger that was seen. It only

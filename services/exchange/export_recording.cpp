@@ -11,7 +11,7 @@
 namespace dyncal::services {
 namespace {
 
-Expected<void> write(const ExportWish& wish, const ExportedRecording& recording,
+Expected<void> write(const ExportOptions& wish, const ExportedRecording& recording,
                      const ExportedRuns& runs, const ExportProgress& progress) {
   if (wish.format == ExportFormat::hdf5) {
     return export_hdf5(recording, runs, wish.to, progress);
@@ -69,7 +69,8 @@ Expected<ExportFormat> parse_export_format(const std::string& name,
                   : fmt::format("unknown format '{}'; there are: hdf5, npz, csv, mcap-rows", name));
 }
 
-Expected<ExportedFigures> export_recording(const ExportWish& wish, const ExportProgress& progress) {
+Expected<ExportedFigures> export_recording(const ExportOptions& wish,
+                                           const ExportProgress& progress) {
   if (wish.format == ExportFormat::hdf5 && !wish.channels.empty()) {
     return fail(ErrorCode::bad_argument,
                 "--channel is for csv, npz and mcap-rows: an HDF5 file holds the whole recording");

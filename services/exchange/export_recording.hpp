@@ -20,7 +20,7 @@ enum class ExportFormat { hdf5, npz, csv, mcap_rows };
 [[nodiscard]] Expected<ExportFormat> parse_export_format(const std::string& name,
                                                          const std::filesystem::path& to);
 
-struct ExportWish {
+struct ExportOptions {
   std::filesystem::path recording; // as open_recording() takes it
   std::filesystem::path to;
   ExportFormat format = ExportFormat::hdf5;
@@ -43,7 +43,7 @@ struct ExportedFigures {
   std::vector<std::string> warnings; // what is damaged in the recording
 };
 
-[[nodiscard]] Expected<ExportedFigures> export_recording(const ExportWish& wish,
+[[nodiscard]] Expected<ExportedFigures> export_recording(const ExportOptions& wish,
                                                          const ExportProgress& progress);
 
 } // namespace dyncal::services

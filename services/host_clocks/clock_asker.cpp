@@ -11,7 +11,7 @@ constexpr std::size_t open_requests = 8; // an answer to an older one is too lat
 // By how much our clock may have moved against the time that passed: slewing, not setting.
 constexpr std::chrono::milliseconds max_slew{1};
 
-void take_refused_packets(const wire::ClockAnswer& answer, HeardProgram& program) {
+void take_refused_packets(const wire::ClockAnswer& answer, DiscoveredProgram& program) {
   const std::uint64_t count = answer.packets_refused();
   if (program.answers > 0 && count > program.packets_refused) {
     program.packets_refused_now += count - program.packets_refused;
@@ -93,8 +93,8 @@ void ClockAsker::take(const wire::ClockAnswer& answer) {
   }
 }
 
-std::vector<HeardProgram> ClockAsker::programs() const {
-  std::vector<HeardProgram> programs;
+std::vector<DiscoveredProgram> ClockAsker::programs() const {
+  std::vector<DiscoveredProgram> programs;
   programs.reserve(heard_.size());
   for (const auto& [name, heard] : heard_) {
     programs.push_back(heard.program);
@@ -105,7 +105,7 @@ std::vector<HeardProgram> ClockAsker::programs() const {
 
 std::vector<HostClock> ClockAsker::other_hosts() const {
   std::map<std::string, ClockOffset> best;
-  for (const HeardProgram& program : programs()) {
+  for (const DiscoveredProgram& program : programs()) {
     if (!program.clock || program.identity.host == host_) {
       continue;
     }

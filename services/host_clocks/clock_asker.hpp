@@ -31,7 +31,7 @@ struct AskingPace {
 };
 
 // A program that has answered.
-struct HeardProgram {
+struct DiscoveredProgram {
   ProgramIdentity identity;
   std::uint32_t contract_version = 0;
   std::optional<ClockOffset> clock;
@@ -65,7 +65,7 @@ public:
   [[nodiscard]] Instant next_request() const { return next_request_; }
 
   // In alphabetical order of their names on the bus.
-  [[nodiscard]] std::vector<HeardProgram> programs() const;
+  [[nodiscard]] std::vector<DiscoveredProgram> programs() const;
   // One a host that is not ours: by its program with the best exchange. In alphabetical order.
   [[nodiscard]] std::vector<HostClock> other_hosts() const;
   [[nodiscard]] std::size_t program_count() const { return heard_.size(); }
@@ -78,7 +78,7 @@ private:
     Instant sent;
   };
   struct Heard {
-    HeardProgram program;
+    DiscoveredProgram program;
     OffsetTracker offsets;
     Instant last_answer;
   };

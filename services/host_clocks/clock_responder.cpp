@@ -82,7 +82,7 @@ void ClockResponder::answer(const wire::ClockRequest& request, std::int64_t rece
   answer.packets_refused(refused_->count());
   answer.packets_refused_from(refused_->last_sender());
   answer.answer_sent_utc_ns(clock_->utc_now_ns());
-  // One that does not get through is given up: whoever still wants to know asks again.
+  // One that does not get through is given up: anyone who still wants to know asks again.
   static_cast<void>(topics_.answers.write(answer, std::chrono::nanoseconds(0)));
 }
 

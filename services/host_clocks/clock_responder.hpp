@@ -1,5 +1,5 @@
-// Answers whoever asks for this host's clock (clock_offset.hpp), and so tells that the program is
-// there; and echoes the probes of whoever measures the path to it (link_meter.hpp).
+// Answers anyone who asks for this host's clock (clock_offset.hpp), and so tells that the program
+// is there; and echoes the probes of anyone who measures the path to it (link_meter.hpp).
 //
 // Bounds: `max_answers_per_s` and `max_echoes_per_s`; requests and probes beyond stay without an
 // answer, so a flood of them makes no flood of answers. A reader that does not take its answers

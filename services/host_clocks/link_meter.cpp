@@ -81,7 +81,7 @@ std::uint64_t LinkMeter::sent_until(Instant time) const {
   return static_cast<std::uint64_t>(std::ranges::upper_bound(sent_, time) - sent_.begin());
 }
 
-LinkLoss LinkMeter::loss(const HeardProgram& program) const {
+LinkLoss LinkMeter::loss(const DiscoveredProgram& program) const {
   LinkLoss loss{.identity = program.identity};
   loss.answers_probes = program.contract_version >= first_contract_with_probes;
   if (!loss.answers_probes) {
@@ -99,10 +99,10 @@ LinkLoss LinkMeter::loss(const HeardProgram& program) const {
   return loss;
 }
 
-std::vector<LinkLoss> LinkMeter::losses(const std::vector<HeardProgram>& programs) const {
+std::vector<LinkLoss> LinkMeter::losses(const std::vector<DiscoveredProgram>& programs) const {
   std::vector<LinkLoss> losses;
   losses.reserve(programs.size());
-  for (const HeardProgram& program : programs) {
+  for (const DiscoveredProgram& program : programs) {
     losses.push_back(loss(program));
   }
   return losses;

@@ -62,7 +62,7 @@ public:
   [[nodiscard]] Instant next_probe() const { return next_probe_; }
 
   // One a program, in their order.
-  [[nodiscard]] std::vector<LinkLoss> losses(const std::vector<HeardProgram>& programs) const;
+  [[nodiscard]] std::vector<LinkLoss> losses(const std::vector<DiscoveredProgram>& programs) const;
   [[nodiscard]] std::uint64_t probes() const { return sent_.size(); }
 
 private:
@@ -77,7 +77,7 @@ private:
   void take(const wire::LinkEcho& echo);
   void send();
   [[nodiscard]] std::uint64_t sent_until(Instant time) const;
-  [[nodiscard]] LinkLoss loss(const HeardProgram& program) const;
+  [[nodiscard]] LinkLoss loss(const DiscoveredProgram& program) const;
 
   std::string name_;
   bus::Clock* clock_;

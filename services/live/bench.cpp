@@ -33,27 +33,29 @@ void worsen_by_run(const Run& run, bus::Clock::Instant now, Condition& condition
     const std::string who = run.plan && !run.plan->conductor.empty()
                                 ? "the conductor " + run.plan->conductor
                                 : "the program that conducts the run";
-    condition.worsen(Severity::stale, fmt::format("{} has not been heard for {} s", who,
-                                                  seconds_since(*run.conductor_heard, now)));
+    condition.raise_severity(Severity::stale,
+                             fmt::format("{} has not been heard for {} s", who,
+                                         seconds_since(*run.conductor_heard, now)));
   }
   if (run.state() == RunState::aborted) {
     const std::string& reason =
         run.message.empty() && run.analysis ? run.analysis->message : run.message;
-    condition.worsen(Severity::error, "run aborted" + (reason.empty() ? "" : ": " + reason));
+    condition.raise_severity(Severity::error,
+                             "run aborted" + (reason.empty() ? "" : ": " + reason));
   }
   if (!run.is_over() && run.analysis && run.analysis->health == Health::failed) {
-    condition.worsen(Severity::error, "the analysis has failed: " + run.analysis->message);
+    condition.raise_severity(Severity::error, "the analysis has failed: " + run.analysis->message);
   }
   if (run.is_paused()) {
     const std::string& reason =
         run.message.empty() && run.analysis ? run.analysis->message : run.message;
-    condition.worsen(Severity::warning, "paused: " + reason);
+    condition.raise_severity(Severity::warning, "paused: " + reason);
   }
   if (const std::size_t invalid = run.invalid_results(); invalid > 0) {
-    condition.worsen(Severity::warning, fmt::format("{} results without a value", invalid));
+    condition.raise_severity(Severity::warning, fmt::format("{} results without a value", invalid));
   }
   if (const std::size_t flagged = run.flagged_results(); flagged > 0) {
-    condition.worsen(Severity::note, fmt::format("{} results have flags", flagged));
+    condition.raise_severity(Severity::note, fmt::format("{} results have flags", flagged));
   }
 }
 
@@ -62,17 +64,17 @@ void worsen_by_recorder(const Service& recorder, bus::Clock::Instant now, Condit
     return; // it ended with its run: whether it should have is not known here
   }
   if (!recorder.message.empty()) {
-    condition.worsen(Severity::error, "recorder: " + recorder.message);
+    condition.raise_severity(Severity::error, "recorder: " + recorder.message);
   }
   if (recorder.messages_not_stored > 0) {
-    condition.worsen(Severity::warning, fmt::format("recorder: {} messages are not stored",
-                                                    recorder.messages_not_stored));
+    condition.raise_severity(Severity::warning, fmt::format("recorder: {} messages are not stored",
+                                                            recorder.messages_not_stored));
   }
 }
 
 void worsen_by_guard(const Service& guard, bus::Clock::Instant now, Condition& condition) {
   if (guard.health == Health::failed && now - guard.heard <= silence_limit) {
-    condition.worsen(Severity::error, "guard: " + guard.message);
+    condition.raise_severity(Severity::error, "guard: " + guard.message);
   }
 }
 
@@ -170,12 +172,12 @@ BenchState state_of(const Bench& bench, bus::Clock::Instant now) {
 Condition condition_of(const Bench& bench, bus::Clock::Instant now) {
   Condition condition;
   if (now - bench.heard > silence_limit) {
-    condition.worsen(Severity::stale,
-                     fmt::format("nothing heard for {} s", seconds_since(bench.heard, now)));
+    condition.raise_severity(
+        Severity::stale, fmt::format("nothing heard for {} s", seconds_since(bench.heard, now)));
   }
   for (const auto& [name, source] : bench.sources) {
     Condition of_source = condition_of(source, now);
-    condition.worsen(of_source.severity, std::move(of_source.what));
+    condition.raise_severity(of_source.severity, std::move(of_source.what));
   }
   if (const Run* run = bench.current_run()) {
     worsen_by_run(*run, now, condition);
@@ -188,8 +190,8 @@ Condition condition_of(const Bench& bench, bus::Clock::Instant now) {
       worsen_by_guard(service, now, condition);
     }
     if (bench.is_silent(service, now)) {
-      condition.worsen(Severity::stale, fmt::format("{} has not been heard for {} s", name,
-                                                    seconds_since(service.heard, now)));
+      condition.raise_severity(Severity::stale, fmt::format("{} has not been heard for {} s", name,
+                                                            seconds_since(service.heard, now)));
     }
   }
   return condition;

@@ -13,7 +13,7 @@ std::vector<Condition> changes_of(const Source& before, const Source& source) {
     changes.push_back({Severity::note, fmt::format("{} is heard again", source.name)});
   }
   if (before.state != SourceState::unknown && before.session != source.session) {
-    changes.push_back({Severity::note, fmt::format("{} has started anew", source.name)});
+    changes.push_back({Severity::note, fmt::format("{} has restarted", source.name)});
   }
   const bool is_bad = source.state == SourceState::failed || source.state == SourceState::silent;
   const bool is_news = before.state != source.state || before.message != source.message;

@@ -17,7 +17,7 @@ struct Condition {
   std::string what; // empty: nothing is wrong
 
   // Takes the other one if it is worse.
-  void worsen(Severity other, std::string reason) {
+  void raise_severity(Severity other, std::string reason) {
     if (other > severity) {
       severity = other;
       what = std::move(reason);

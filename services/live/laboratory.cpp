@@ -312,7 +312,8 @@ void Laboratory::take_service(Bench& bench, const wire::ServiceStatus& message) 
   }
 }
 
-void Laboratory::set_programs(std::vector<HeardProgram> programs, std::vector<HostClock> clocks) {
+void Laboratory::set_programs(std::vector<DiscoveredProgram> programs,
+                              std::vector<HostClock> clocks) {
   if (programs.size() != programs_.size() || clocks.size() != clocks_.size()) {
     ++number_;
   }

@@ -1,9 +1,9 @@
 // All benches of a laboratory as the bus shows them now, from the messages it is fed with.
 //
-// Whoever has the messages calls take(), and work() at least twice a second: it notices what has
+// Anyone who has the messages calls take(), and work() at least twice a second: it notices what has
 // gone silent. Time is that of `clock`; nothing is read or waited for here. number() grows with
-// every change, so that whoever shows it knows that there is something new; Bench::number is that
-// of the bench's last change. A late listener gets what the topics keep for him: descriptions,
+// every change, so that anyone who shows it knows that there is something new; Bench::number is
+// that of the bench's last change. A late listener gets what the topics keep for him: descriptions,
 // states and results; of a run whose conductor has ended, no plan.
 //
 // Bounded by Limits: a bench too many takes the place of the one that has been gone for longest;
@@ -41,7 +41,7 @@ public:
   void take(const wire::SampleClockReport& message);
   void take(const wire::ServiceStatus& message);
   // Those that answer now, and the clocks of their hosts.
-  void set_programs(std::vector<HeardProgram> programs, std::vector<HostClock> clocks);
+  void set_programs(std::vector<DiscoveredProgram> programs, std::vector<HostClock> clocks);
   // What time alone changes.
   void work();
 
@@ -49,7 +49,7 @@ public:
   [[nodiscard]] const std::map<std::string, Bench>& benches() const { return benches_; }
   // Null: not known.
   [[nodiscard]] const Bench* bench(const std::string& name) const;
-  [[nodiscard]] const std::vector<HeardProgram>& programs() const { return programs_; }
+  [[nodiscard]] const std::vector<DiscoveredProgram>& programs() const { return programs_; }
   // One a host that is not ours, in alphabetical order.
   [[nodiscard]] const std::vector<HostClock>& clocks() const { return clocks_; }
   // Nothing: it is this host, or not known.
@@ -80,7 +80,7 @@ private:
   bus::Clock& clock_;
   Limits limits_;
   std::map<std::string, Bench> benches_;
-  std::vector<HeardProgram> programs_;
+  std::vector<DiscoveredProgram> programs_;
   std::vector<HostClock> clocks_;
   LeftOut left_out_;
   std::uint64_t number_ = 0;

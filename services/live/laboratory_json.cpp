@@ -245,7 +245,7 @@ ProgramNews news_of(const Laboratory& laboratory, const ProgramIdentity& program
         Condition condition;
         if (service.health == Health::failed || !service.message.empty()) {
           const bool has_failed = service.health == Health::failed;
-          condition.worsen(has_failed ? Severity::error : Severity::note, service.message);
+          condition.raise_severity(has_failed ? Severity::error : Severity::note, service.message);
         }
         add_news(name, condition, !bench.is_silent(service, now), service.heard_utc_ns, news);
       }
@@ -254,7 +254,7 @@ ProgramNews news_of(const Laboratory& laboratory, const ProgramIdentity& program
   return news;
 }
 
-Json program_json(const Laboratory& laboratory, const HeardProgram& program, Instant now) {
+Json program_json(const Laboratory& laboratory, const DiscoveredProgram& program, Instant now) {
   const ProgramNews news = news_of(laboratory, program.identity, now);
   const std::string& name = program.identity.program;
   constexpr std::string_view prefix = "dyncal-";
@@ -349,7 +349,7 @@ Json laboratory_json(const Laboratory& laboratory) {
     json["benches"].push_back(bench_tile_json(laboratory, bench));
   }
   json["programs"] = Json::array();
-  for (const HeardProgram& program : laboratory.programs()) {
+  for (const DiscoveredProgram& program : laboratory.programs()) {
     json["programs"].push_back(program_json(laboratory, program, now));
   }
   json["events"] = Json::array();

@@ -98,35 +98,36 @@ Condition condition_of(const Source& source, bus::Clock::Instant now) {
   Condition condition;
   if (source.is_silent && source.state != SourceState::ended) {
     const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(now - source.heard);
-    condition.worsen(Severity::stale,
-                     fmt::format("{}: not heard for {} s", source.name, seconds.count()));
+    condition.raise_severity(Severity::stale,
+                             fmt::format("{}: not heard for {} s", source.name, seconds.count()));
   }
   const auto reason = [&](const char* otherwise) {
     return fmt::format("{}: {}", source.name, source.message.empty() ? otherwise : source.message);
   };
   if (source.state == SourceState::failed) {
-    condition.worsen(Severity::error, reason("failed"));
+    condition.raise_severity(Severity::error, reason("failed"));
   } else if (source.state == SourceState::silent) {
-    condition.worsen(Severity::error, reason("its instrument sends nothing"));
+    condition.raise_severity(Severity::error, reason("its instrument sends nothing"));
   } else if (!source.message.empty()) {
-    condition.worsen(Severity::warning, reason(""));
+    condition.raise_severity(Severity::warning, reason(""));
   }
   const auto samples = fmt::format("{}: {} samples lost", source.name, source.lost());
   if (source.lost_more && now - *source.lost_more < loss_limit) {
-    condition.worsen(Severity::warning, samples);
+    condition.raise_severity(Severity::warning, samples);
   }
   if (source.buffer_fill > 0.5) {
-    condition.worsen(Severity::warning,
-                     fmt::format("{}: its buffer is {:.0f} % full: the network does not take its "
-                                 "samples",
-                                 source.name, source.buffer_fill * 100.0));
+    condition.raise_severity(
+        Severity::warning,
+        fmt::format("{}: its buffer is {:.0f} % full: the network does not take its "
+                    "samples",
+                    source.name, source.buffer_fill * 100.0));
   }
   if (source.lost() > 0) {
-    condition.worsen(Severity::note, samples);
+    condition.raise_severity(Severity::note, samples);
   }
   if (source.counts.stamps_not_trusted > 0) {
-    condition.worsen(Severity::note, fmt::format("{}: {} stamps not trusted", source.name,
-                                                 source.counts.stamps_not_trusted));
+    condition.raise_severity(Severity::note, fmt::format("{}: {} stamps not trusted", source.name,
+                                                         source.counts.stamps_not_trusted));
   }
   return condition;
 }

@@ -110,7 +110,7 @@ std::vector<double> drawn_anew_magnitude_rel(const std::vector<RawValue>& raw) {
   return result;
 }
 
-// What a value has beyond what is drawn anew: of the reference, and of the rest. Squares.
+// What a value has beyond what is independent: of the reference, and of the rest. Squares.
 struct RepeatingMagnitude {
   double reference2 = 0.0;
   double other2 = 0.0;
@@ -170,7 +170,7 @@ void divide_uncertainties(std::vector<RawValue>& raw, MeasuredResponse& response
   }
   for (RawValue& one : raw) {
     analysis::ResponsePoint& point = one.value.point;
-    if (!(point.u_magnitude_rel > 0.0)) { // no budget, or nothing in it that is drawn anew
+    if (!(point.u_magnitude_rel > 0.0)) { // no budget, or nothing in it that is independent
       point.u_magnitude_rel = one.value.u_magnitude_rel;
     }
     if (!(point.u_phase_rad > 0.0)) {

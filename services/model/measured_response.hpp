@@ -2,11 +2,11 @@
 // model: what every value has by itself, and what all have in common.
 //
 // u of a value is U / 2, so that few repetitions count as little as they should. Its parts come
-// from the budgets of its points: what is drawn anew in every repetition, as the mean of the
-// repetitions states it, is the value's own; of what repeats, a delay is common to all frequencies,
-// the reference has a gain, a delay and a phase in common as far as all frequencies have them, and
-// the rest is each value's own (shared_phase_uncertainty.hpp). Files without budgets have
-// everything as their own.
+// from the budgets of its points: what is drawn independently in every repetition, as the mean of
+// the repetitions states it, is the value's own; of what repeats, a delay is common to all
+// frequencies, the reference has a gain, a delay and a phase in common as far as all frequencies
+// have them, and the rest is each value's own (shared_phase_uncertainty.hpp). Files without budgets
+// have everything as their own.
 //
 // Values are left out, each with its reason, when they are null, when their phase or magnitude is
 // hardly known, and when a flag says that they may be wrong beyond u; a flag that this version does

@@ -1,6 +1,6 @@
 // What a CLI::App describes, as plain data: for those who write it down for others than its parser
-// (completion.hpp, and whoever lists the commands). Hidden commands and options are left out. Any
-// thread.
+// (completion.hpp, and anyone who lists the commands). Hidden commands and options are left out.
+// Any thread.
 #pragma once
 
 #include <string>

@@ -1,7 +1,7 @@
 // The log of a program: lines of time, program, level and text on standard error.
 //
-// Written by a thread of its own, no thread that serves a device ever waits for whoever reads the
-// log. Bound: 8192 lines are held. Policy when full: the oldest is discarded; how many were is
+// Written by a thread of its own, no thread that serves a device ever waits for anyone who reads
+// the log. Bound: 8192 lines are held. Policy when full: the oldest is discarded; how many were is
 // logged with the next line.
 #pragma once
 

@@ -5,7 +5,7 @@
 // analysis has finished and what was missed has been given again, or `end_limit` after its end, or
 // until the next run; a run that went on when the recorder was started, too. Between runs another
 // file is written, unless only runs are wanted; one that is larger than `max_file_bytes` is
-// followed by the next. A recording that ended by itself (disk full) is not begun anew before the
+// followed by the next. A recording that ended by itself (disk full) is not started over before the
 // next run, or before its time is over: its status goes on saying why.
 //
 // work() begins and ends recordings and returns at once otherwise, but for the time that a file

@@ -162,10 +162,10 @@ private:
     losses.entries["recorder.not_stored"] = fmt::format("{}", status().not_stored);
     losses.entries["recorder.malformed"] = fmt::format("{}", status().malformed);
     file_.note_losses(std::move(losses));
-    if (const std::uint64_t dropped = dropped_; dropped > told_) {
+    if (const std::uint64_t dropped = dropped_; dropped > last_notice_) {
       spdlog::error("{}: the disk is too slow: {} messages could not be stored so far",
                     options_.path.string(), dropped);
-      told_ = dropped;
+      last_notice_ = dropped;
     }
   }
 
@@ -205,7 +205,7 @@ private:
   Instant chunk_began_{};
   bool urgent_ = false; // it holds a result
   Instant next_status_{};
-  std::uint64_t told_ = 0; // of those dropped
+  std::uint64_t last_notice_ = 0; // of those dropped
   std::atomic<std::uint64_t> dropped_{0};
   std::atomic<std::uint64_t> missing_{0};
   std::atomic<std::uint64_t> recovered_{0};

@@ -1,5 +1,5 @@
-// Writes chunks into a recording by a thread of its own: whoever receives messages never waits for
-// the disk.
+// Writes chunks into a recording by a thread of its own: anyone who receives messages never waits
+// for the disk.
 //
 // Queue: bound max_queue_bytes of chunks that are not written yet; the caller asks has_room() and
 // counts what it leaves out. Every chunk is in the file when it counts as stored; the file is

@@ -1,6 +1,6 @@
 // Messages of a recording by their places (recording_index.hpp), in any order.
 //
-// Holds the records of one chunk: whoever asks in about the order of the file reads each chunk
+// Holds the records of one chunk: anyone who asks in about the order of the file reads each chunk
 // once. Fails (bad_file) with what is wrong with the chunk. One thread.
 #pragma once
 

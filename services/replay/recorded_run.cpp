@@ -85,7 +85,7 @@ std::vector<std::string> warnings_of(const RecordedRunIndex& index, const Recipe
 } // namespace
 
 Expected<RecordedRunOutcome> evaluate_recording(recording::RecordingReader& reader,
-                                                const RecordedRunWish& wish,
+                                                const RecordedRunOptions& wish,
                                                 const std::stop_token& stop) {
   const auto index = index_recording(reader, wish.run, wish.count, stop);
   if (!index) {

@@ -25,7 +25,7 @@
 
 namespace dyncal::services {
 
-struct RecordedRunWish {
+struct RecordedRunOptions {
   std::string run;              // empty: the one that is there
   std::optional<Recipe> recipe; // another one than the recorded
   SharedWorkCount count{};      // of megabytes read, then of its steps and results
@@ -40,7 +40,7 @@ struct RecordedRunOutcome {
 };
 
 [[nodiscard]] Expected<RecordedRunOutcome> evaluate_recording(recording::RecordingReader& reader,
-                                                              const RecordedRunWish& wish,
+                                                              const RecordedRunOptions& wish,
                                                               const std::stop_token& stop);
 
 } // namespace dyncal::services

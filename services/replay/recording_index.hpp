@@ -4,7 +4,7 @@
 // A first walk through the file. Messages of a source are put in the order of their sessions and
 // numbers, wherever they stand: what a source gave again stands behind what came later. Sessions
 // are in the order in which the first message of each stands in the file, which no clock sets:
-// whoever was given a session again was given its beginning before that of the next one. Fails
+// anyone who was given a session again was given its beginning before that of the next one. Fails
 // (bad_file) when the file cannot be read, holds no run, or several and none is named; what is
 // damaged in it is listed. Plain data afterwards; any thread.
 #pragma once

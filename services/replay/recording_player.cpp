@@ -209,7 +209,7 @@ private:
 
 } // namespace
 
-Expected<RecordingPlayer> RecordingPlayer::open(bus::Participant& participant, ReplayWish wish,
+Expected<RecordingPlayer> RecordingPlayer::open(bus::Participant& participant, ReplayOptions wish,
                                                 const std::stop_token& stop) {
   auto reader = recording::RecordingReader::open(wish.recording);
   if (!reader) {

@@ -5,7 +5,7 @@
 // the domain is refused (no_source): nobody shall take recorded samples for live ones; give another
 // name of the bench, or another domain. Commands and requests are not put back, nor are the states
 // of guards, which a run would rely on; results and the states of analyses only with `results`:
-// without them an analysis service evaluates the run anew.
+// without them an analysis service evaluates the run again.
 //
 // Samples are written so that readers keep up: with speed 0 as fast as they take them. Fails
 // (bad_file) with what is wrong with the file, (network) as writers do. One thread.
@@ -23,7 +23,7 @@
 
 namespace dyncal::services {
 
-struct ReplayWish {
+struct ReplayOptions {
   std::filesystem::path recording;
   std::string bench;  // empty: as recorded
   double speed = 1.0; // multiple of real time; 0: as fast as possible
@@ -40,18 +40,19 @@ struct ReplayFigures {
 class RecordingPlayer {
 public:
   // Looks at the file, and listens whether the bench is live. `participant` outlives the object.
-  [[nodiscard]] static Expected<RecordingPlayer> open(bus::Participant& participant,
-                                                      ReplayWish wish, const std::stop_token& stop);
+  [[nodiscard]] static Expected<RecordingPlayer>
+  open(bus::Participant& participant, ReplayOptions wish, const std::stop_token& stop);
 
   [[nodiscard]] const std::string& bench() const { return wish_.bench; }
   [[nodiscard]] Expected<ReplayFigures> play(const std::stop_token& stop);
 
 private:
-  RecordingPlayer(bus::Participant& participant, ReplayWish wish, recording::RecordingReader reader)
+  RecordingPlayer(bus::Participant& participant, ReplayOptions wish,
+                  recording::RecordingReader reader)
       : participant_(&participant), wish_(std::move(wish)), reader_(std::move(reader)) {}
 
   bus::Participant* participant_;
-  ReplayWish wish_;
+  ReplayOptions wish_;
   recording::RecordingReader reader_;
 };
 

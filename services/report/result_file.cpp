@@ -18,8 +18,8 @@ double half_of_expanded(const nlohmann::json& point, const char* expanded, const
 } // namespace
 
 Expected<ResultPoints> read_result_file(const std::filesystem::path& path) {
-  ByteCount nobody;
-  return read_result_file(path, nobody);
+  ByteCount no_progress;
+  return read_result_file(path, no_progress);
 }
 
 Expected<ResultPoints> read_result_file(const std::filesystem::path& path, ByteCount& bytes) {

@@ -1,5 +1,5 @@
 // Keeps the result.json of a run up to date while it goes on: a thread of its own writes the newest
-// state whole (services/output), so that whoever conducts the run never waits for the disk.
+// state whole (services/output), so that anyone who conducts the run never waits for the disk.
 //
 // Bound: one state is held besides the one that is being written. Policy when another comes: it
 // takes its place, since it holds all of it. A state that could not be written is reported by

@@ -76,7 +76,7 @@ Expected<std::unique_ptr<CatchUpWriter>> CatchUpWriter::create(bus::Participant&
              : open(participant, bus::topics::catch_up_samples, source, asker);
 }
 
-CatchUpAnswer::CatchUpAnswer(CatchUpWish wish, std::shared_ptr<KeptBlocks> kept,
+CatchUpAnswer::CatchUpAnswer(CatchUpOptions wish, std::shared_ptr<RetransmissionBuffer> kept,
                              std::unique_ptr<CatchUpWriter> writer, Instant now)
     : wish_(std::move(wish)), kept_(std::move(kept)), writer_(std::move(writer)),
       pace_(window, 2 * progress_limit), session_(wish_.session), number_(wish_.after),

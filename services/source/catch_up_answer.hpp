@@ -14,14 +14,14 @@
 #include <string>
 
 #include "services/bus/bus.hpp"
-#include "services/source/kept_blocks.hpp"
+#include "services/source/retransmission_buffer.hpp"
 #include "services/source/source_publisher.hpp"
 #include "services/source/write_pace.hpp"
 
 namespace dyncal::services {
 
 // What somebody asks for; `after` is the number of the last block or shot they have.
-struct CatchUpWish {
+struct CatchUpOptions {
   std::string asker;
   std::string request;
   std::string run;
@@ -51,10 +51,10 @@ public:
   using Instant = std::chrono::steady_clock::time_point;
   enum class State { waiting, giving, closing, given, broken_off };
 
-  CatchUpAnswer(CatchUpWish wish, std::shared_ptr<KeptBlocks> kept,
+  CatchUpAnswer(CatchUpOptions wish, std::shared_ptr<RetransmissionBuffer> kept,
                 std::unique_ptr<CatchUpWriter> writer, Instant now);
 
-  [[nodiscard]] const CatchUpWish& wish() const { return wish_; }
+  [[nodiscard]] const CatchUpOptions& wish() const { return wish_; }
   [[nodiscard]] std::uint64_t messages_given() const { return messages_given_; }
 
   // Writes some of what is left. Afterwards `given` and `broken_off` are final.
@@ -66,13 +66,13 @@ private:
   [[nodiscard]] bool give_next(Instant now);
   [[nodiscard]] bool give_end(Instant now);
 
-  const CatchUpWish wish_;
-  const std::shared_ptr<KeptBlocks> kept_;
+  const CatchUpOptions wish_;
+  const std::shared_ptr<RetransmissionBuffer> kept_;
   const std::unique_ptr<CatchUpWriter> writer_;
   WritePace pace_;
   State state_ = State::waiting;
-  KeptBlocks::Place next_ = 0;
-  KeptBlocks::Place end_ = 0;
+  RetransmissionBuffer::Place next_ = 0;
+  RetransmissionBuffer::Place end_ = 0;
   bool end_is_final_ = false;
   std::uint64_t session_; // of the newest message given
   std::uint64_t number_;

@@ -16,7 +16,7 @@ constexpr auto answer_interval = std::chrono::milliseconds(5); // to look for ac
 constexpr std::size_t max_asked = 256;                         // requests remembered
 constexpr std::size_t max_request = 256;                       // bytes of a request's name
 
-CatchUpWish to_wish(const wire::CatchUpRequest& message) {
+CatchUpOptions to_wish(const wire::CatchUpRequest& message) {
   return {.asker = message.asker().c_str(),
           .request = message.request(),
           .run = message.run(),
@@ -29,7 +29,8 @@ CatchUpWish to_wish(const wire::CatchUpRequest& message) {
 CatchUpServer::CatchUpServer(bus::Participant& participant, bus::Clock& clock)
     : participant_(participant), clock_(clock), wake_up_(std::make_shared<bus::WakeUp>()) {}
 
-Expected<void> CatchUpServer::add(const SourceOptions& source, std::shared_ptr<KeptBlocks> kept) {
+Expected<void> CatchUpServer::add(const SourceOptions& source,
+                                  std::shared_ptr<RetransmissionBuffer> kept) {
   if (!requests_.contains(source.bench)) {
     auto reader = participant_.reader(bus::topics::catch_up_request, source.bench, wake_up_);
     if (!reader) {
@@ -41,7 +42,7 @@ Expected<void> CatchUpServer::add(const SourceOptions& source, std::shared_ptr<K
   return {};
 }
 
-CatchUpServer::Asked CatchUpServer::asked(const Source& source, const CatchUpWish& wish) {
+CatchUpServer::Asked CatchUpServer::asked(const Source& source, const CatchUpOptions& wish) {
   return {source.options.bench + '\n' + source.options.source, wish.asker, wish.request};
 }
 
@@ -68,7 +69,7 @@ void CatchUpServer::take_requests(const std::string& bench,
   });
 }
 
-void CatchUpServer::begin(Source& source, CatchUpWish wish) {
+void CatchUpServer::begin(Source& source, CatchUpOptions wish) {
   const Asked asked = this->asked(source, wish);
   if (std::ranges::count(asked_, asked) != 0) {
     return;

@@ -3,7 +3,7 @@
 // A request that is repeated is answered once; a new one of the same asker takes the place of the
 // one before. One that could not be answered to its end (its reader did not come, or went) may be
 // repeated. At most `max_answers` are given at once; who comes later is answered when its request
-// is repeated. Each round also moves what is kept to its file (KeptBlocks::tidy).
+// is repeated. Each round also moves what is kept to its file (RetransmissionBuffer::tidy).
 //
 // A round may block for the disk, or for milliseconds in DDS: it has a thread of its own, and
 // nothing live waits for it. Belongs to that thread; add() before it starts.
@@ -18,7 +18,7 @@
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
 #include "services/source/catch_up_answer.hpp"
-#include "services/source/kept_blocks.hpp"
+#include "services/source/retransmission_buffer.hpp"
 
 namespace dyncal::services {
 
@@ -30,7 +30,8 @@ public:
   explicit CatchUpServer(bus::Participant& participant, bus::Clock& clock = bus::system_clock());
 
   // Fails (network) when the bus refuses.
-  [[nodiscard]] Expected<void> add(const SourceOptions& source, std::shared_ptr<KeptBlocks> kept);
+  [[nodiscard]] Expected<void> add(const SourceOptions& source,
+                                   std::shared_ptr<RetransmissionBuffer> kept);
 
   // One round. Returns when the next one is due; it may be earlier, when wake_up() rings.
   bus::Clock::Instant step();
@@ -39,7 +40,7 @@ public:
 private:
   struct Source {
     SourceOptions options;
-    std::shared_ptr<KeptBlocks> kept;
+    std::shared_ptr<RetransmissionBuffer> kept;
     std::vector<std::unique_ptr<CatchUpAnswer>> answers; // one an asker
   };
   struct Asked {
@@ -50,10 +51,10 @@ private:
   };
 
   void take_requests(const std::string& bench, bus::Reader<wire::CatchUpRequest>& reader);
-  void begin(Source& source, CatchUpWish wish);
+  void begin(Source& source, CatchUpOptions wish);
   [[nodiscard]] bool step_answers(Source& source);
   [[nodiscard]] std::size_t answers() const;
-  [[nodiscard]] static Asked asked(const Source& source, const CatchUpWish& wish);
+  [[nodiscard]] static Asked asked(const Source& source, const CatchUpOptions& wish);
 
   bus::Participant& participant_;
   bus::Clock& clock_;

@@ -1,5 +1,5 @@
-// How much of a source fits into what it may keep for who was away (kept_blocks.hpp), told before
-// anything is dropped.
+// How much of a source fits into what it may keep for who was away (retransmission_buffer.hpp),
+// told before anything is dropped.
 //
 // Each sample takes 8 bytes a channel, and 13 for its stamp where samples have stamps of their own
 // (all but the ACS's); the few bytes of a block beside them are left out. Pure function, any
@@ -11,7 +11,7 @@
 
 #include "drivers/sample_block.hpp"
 #include "services/contract/source_kind.hpp"
-#include "services/source/kept_blocks.hpp"
+#include "services/source/retransmission_buffer.hpp"
 
 namespace dyncal::services {
 

@@ -1,4 +1,4 @@
-#include "services/source/kept_blocks.hpp"
+#include "services/source/retransmission_buffer.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -26,9 +26,10 @@ double minutes(std::chrono::nanoseconds time) {
 
 } // namespace
 
-KeptBlocks::KeptBlocks(KeptLimits limits) : limits_(with_folder(std::move(limits))) {}
+RetransmissionBuffer::RetransmissionBuffer(KeptLimits limits)
+    : limits_(with_folder(std::move(limits))) {}
 
-void KeptBlocks::note(const KeptMessage& message) {
+void RetransmissionBuffer::note(const KeptMessage& message) {
   if (sessions_.empty() || sessions_.back().session != message.session) {
     sessions_.push_back({message.session, next_place_});
     if (sessions_.size() > max_sessions) {
@@ -45,7 +46,7 @@ void KeptBlocks::note(const KeptMessage& message) {
   }
 }
 
-void KeptBlocks::keep(KeptMessage message, Instant now) {
+void RetransmissionBuffer::keep(KeptMessage message, Instant now) {
   const std::lock_guard lock(mutex_);
   note(message);
   const std::size_t size = message.payload.size();
@@ -64,17 +65,17 @@ void KeptBlocks::keep(KeptMessage message, Instant now) {
   }
 }
 
-void KeptBlocks::want(Instant now) {
+void RetransmissionBuffer::want(Instant now) {
   const std::lock_guard lock(mutex_);
   wanted_until_ = now + limits_.span;
 }
 
-bool KeptBlocks::tidy_due() const {
+bool RetransmissionBuffer::tidy_due() const {
   const std::lock_guard lock(mutex_);
   return memory_bytes_ > 2 * limits_.memory_bytes;
 }
 
-void KeptBlocks::drop_entry(std::size_t index) {
+void RetransmissionBuffer::drop_entry(std::size_t index) {
   if (index < in_file_) {
     --in_file_;
   } else {
@@ -83,12 +84,12 @@ void KeptBlocks::drop_entry(std::size_t index) {
   entries_.erase(entries_.begin() + static_cast<std::ptrdiff_t>(index));
 }
 
-bool KeptBlocks::is_of_newest_run(Place place, Instant now) const {
+bool RetransmissionBuffer::is_of_newest_run(Place place, Instant now) const {
   return wanted_until_ && now <= *wanted_until_ && !answers_.empty() &&
          place >= answers_.back().place;
 }
 
-void KeptBlocks::drop_old(Instant now) {
+void RetransmissionBuffer::drop_old(Instant now) {
   while (!entries_.empty()) {
     const Place oldest = entries_.front().place;
     const bool is_of_run = is_of_newest_run(oldest, now);
@@ -105,11 +106,11 @@ void KeptBlocks::drop_old(Instant now) {
   }
 }
 
-void KeptBlocks::drop_oldest() {
+void RetransmissionBuffer::drop_oldest() {
   drop_entry(0);
 }
 
-void KeptBlocks::run_short(Place place, Instant now, const std::string& reason) {
+void RetransmissionBuffer::run_short(Place place, Instant now, const std::string& reason) {
   short_since_ = now;
   short_place_ = place;
   const auto kept = entries_.empty() ? std::chrono::nanoseconds(0) : now - entries_.front().time;
@@ -123,7 +124,7 @@ void KeptBlocks::run_short(Place place, Instant now, const std::string& reason) 
   }
 }
 
-Expected<std::uint64_t> KeptBlocks::append(const std::string& payload) {
+Expected<std::uint64_t> RetransmissionBuffer::append(const std::string& payload) {
   if (!file_ && no_file_.empty()) {
     auto file = ByteLog::create(
         limits_.folder, {.bytes = limits_.file_bytes, .min_free_bytes = limits_.min_free_bytes});
@@ -140,7 +141,7 @@ Expected<std::uint64_t> KeptBlocks::append(const std::string& payload) {
 }
 
 // Returns false if there is nothing more to move.
-bool KeptBlocks::move_oldest_to_file(std::unique_lock<std::mutex>& lock, Instant now) {
+bool RetransmissionBuffer::move_oldest_to_file(std::unique_lock<std::mutex>& lock, Instant now) {
   if (memory_bytes_ <= limits_.memory_bytes || entries_.size() <= in_file_ + 1) {
     return false;
   }
@@ -174,7 +175,7 @@ bool KeptBlocks::move_oldest_to_file(std::unique_lock<std::mutex>& lock, Instant
   return true;
 }
 
-void KeptBlocks::tidy(Instant now) {
+void RetransmissionBuffer::tidy(Instant now) {
   std::unique_lock lock(mutex_);
   drop_old(now);
   while (move_oldest_to_file(lock, now)) {
@@ -188,18 +189,19 @@ void KeptBlocks::tidy(Instant now) {
   }
 }
 
-std::size_t KeptBlocks::index_of(Place place) const {
+std::size_t RetransmissionBuffer::index_of(Place place) const {
   const auto found = std::ranges::lower_bound(entries_, place, {}, &Entry::place);
   return static_cast<std::size_t>(found - entries_.begin());
 }
 
-KeptBlocks::Place KeptBlocks::end() const {
+RetransmissionBuffer::Place RetransmissionBuffer::end() const {
   const std::lock_guard lock(mutex_);
   return next_place_;
 }
 
-KeptBlocks::Place KeptBlocks::place_behind(std::uint64_t session, std::uint64_t after,
-                                           const std::string& run) const {
+RetransmissionBuffer::Place RetransmissionBuffer::place_behind(std::uint64_t session,
+                                                               std::uint64_t after,
+                                                               const std::string& run) const {
   const std::lock_guard lock(mutex_);
   const auto known = std::ranges::find(sessions_, session, &Session::session);
   if (session == 0 || known == sessions_.end()) {
@@ -220,7 +222,7 @@ KeptBlocks::Place KeptBlocks::place_behind(std::uint64_t session, std::uint64_t 
   return same ? *same + 1 : end;
 }
 
-std::optional<KeptBlocks::Found> KeptBlocks::at_or_behind(Place place) {
+std::optional<RetransmissionBuffer::Found> RetransmissionBuffer::at_or_behind(Place place) {
   std::unique_lock lock(mutex_);
   for (std::size_t i = index_of(place); i < entries_.size(); i = index_of(place)) {
     const Entry entry = entries_[i];
@@ -244,12 +246,12 @@ std::optional<KeptBlocks::Found> KeptBlocks::at_or_behind(Place place) {
   return std::nullopt;
 }
 
-std::uint64_t KeptBlocks::not_kept() const {
+std::uint64_t RetransmissionBuffer::not_kept() const {
   const std::lock_guard lock(mutex_);
   return not_kept_;
 }
 
-std::string KeptBlocks::problem() const {
+std::string RetransmissionBuffer::problem() const {
   const std::lock_guard lock(mutex_);
   return problem_;
 }

@@ -44,12 +44,12 @@ struct KeptMessage {
   std::string payload;          // the bytes that were written
 };
 
-class KeptBlocks {
+class RetransmissionBuffer {
 public:
   using Instant = std::chrono::steady_clock::time_point;
   using Place = std::uint64_t; // of a message among all that were ever kept
 
-  explicit KeptBlocks(KeptLimits limits);
+  explicit RetransmissionBuffer(KeptLimits limits);
 
   [[nodiscard]] const KeptLimits& limits() const { return limits_; }
 

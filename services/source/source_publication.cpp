@@ -1,4 +1,4 @@
-#include "services/source/source_channel.hpp"
+#include "services/source/source_publication.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -31,9 +31,9 @@ void add_cause(dyncal::wire::SourceStatus& message, const std::string& name, std
 
 } // namespace
 
-Expected<std::unique_ptr<SourceChannel>>
-SourceChannel::create(bus::Participant& participant, std::shared_ptr<SourcePublisher> publisher,
-                      std::shared_ptr<KeptBlocks> kept, std::string software) {
+Expected<std::unique_ptr<SourcePublication>>
+SourcePublication::create(bus::Participant& participant, std::shared_ptr<SourcePublisher> publisher,
+                          std::shared_ptr<RetransmissionBuffer> kept, std::string software) {
   const SourceOptions& options = publisher->options();
   auto description = participant.writer<dyncal::wire::SourceDescription>(
       bus::topics::source_description, bus::Profile::state, options.bench);
@@ -49,18 +49,18 @@ SourceChannel::create(bus::Participant& participant, std::shared_ptr<SourcePubli
   if (!samples) {
     return fail(samples.error());
   }
-  return std::make_unique<SourceChannel>(
+  return std::make_unique<SourcePublication>(
       std::move(publisher), std::move(kept), std::move(software),
       SourceWriters{std::move(*description), std::move(*status), std::move(*samples)});
 }
 
-SourceChannel::SourceChannel(std::shared_ptr<SourcePublisher> publisher,
-                             std::shared_ptr<KeptBlocks> kept, std::string software,
-                             SourceWriters writers)
+SourcePublication::SourcePublication(std::shared_ptr<SourcePublisher> publisher,
+                                     std::shared_ptr<RetransmissionBuffer> kept,
+                                     std::string software, SourceWriters writers)
     : publisher_(std::move(publisher)), kept_(std::move(kept)), software_(std::move(software)),
       writers_(std::move(writers)), pace_(window, patience), session_(publisher_->session()) {}
 
-void SourceChannel::answer(const std::string& run) {
+void SourcePublication::answer(const std::string& run) {
   if (std::ranges::count(runs_to_answer_, run) != 0) {
     return;
   }
@@ -70,13 +70,13 @@ void SourceChannel::answer(const std::string& run) {
   }
 }
 
-void SourceChannel::begin_session(std::uint64_t session) {
+void SourcePublication::begin_session(std::uint64_t session) {
   session_ = session;
   ended_ = false;
   description_due_ = description_.has_value();
 }
 
-bool SourceChannel::write_description(std::chrono::nanoseconds limit) {
+bool SourcePublication::write_description(std::chrono::nanoseconds limit) {
   if (auto changed = publisher_->take_changed_description()) {
     description_ = std::move(changed);
     description_due_ = true;
@@ -94,7 +94,7 @@ bool SourceChannel::write_description(std::chrono::nanoseconds limit) {
   return true;
 }
 
-void SourceChannel::say_what_can_be_kept() {
+void SourcePublication::say_what_can_be_kept() {
   const SourceOptions& options = publisher_->options();
   const auto span = kept_span(options.kind, *description_, kept_->limits());
   if (!span || span->sentence == said_of_kept_) {
@@ -108,19 +108,19 @@ void SourceChannel::say_what_can_be_kept() {
   }
 }
 
-void SourceChannel::hold(RingEntry entry, const std::string& answers_run) {
+void SourcePublication::hold(RingEntry entry, const std::string& answers_run) {
   pending_ = Pending{.size = size_of(entry), .end_of_stream = entry.end_of_stream};
   writers_.samples->prepare(std::move(entry), answers_run);
 }
 
 // Takes the next thing to be written into pending_. Returns false if there is none.
-bool SourceChannel::next_message() {
-  // Asked before the session, which begins anew when a play is over: the answer belongs to the
+bool SourcePublication::next_message() {
+  // Asked before the session, which starts over when a play is over: the answer belongs to the
   // next.
   const bool may_answer =
       !runs_to_answer_.empty() && publisher_->may_answer(runs_to_answer_.front());
   // Asked before the ring: if the ring is empty afterwards, nothing of an earlier session is left.
-  // The other way round a block could come between the two, and its session would begin anew.
+  // The other way round a block could come between the two, and its session would start over.
   const std::uint64_t newest = publisher_->session();
   if (auto entry = publisher_->ring().take()) {
     if (entry->session != session_) {
@@ -144,13 +144,13 @@ bool SourceChannel::next_message() {
 }
 
 // A writer that waits for its readers needs no pace.
-bool SourceChannel::may_write() {
+bool SourcePublication::may_write() {
   return waits(publisher_->options().when_full) || pace_.may_write(Clock::now(), [&] {
     return writers_.samples->wait_for_acknowledgments(std::chrono::nanoseconds(0));
   });
 }
 
-bool SourceChannel::write_next(std::chrono::nanoseconds limit) {
+bool SourcePublication::write_next(std::chrono::nanoseconds limit) {
   // The session of the block to be written decides what the description in front of it says.
   if (!pending_ && !next_message()) {
     return false;
@@ -179,7 +179,7 @@ bool SourceChannel::write_next(std::chrono::nanoseconds limit) {
   return true;
 }
 
-bool SourceChannel::step(std::chrono::nanoseconds write_limit) {
+bool SourcePublication::step(std::chrono::nanoseconds write_limit) {
   if (!write_description(write_limit)) {
     return false;
   }
@@ -198,8 +198,8 @@ bool SourceChannel::step(std::chrono::nanoseconds write_limit) {
   return true;
 }
 
-dyncal::wire::SourceState SourceChannel::state(const SourcePublisher::Snapshot& snapshot,
-                                               Clock::time_point now) const {
+dyncal::wire::SourceState SourcePublication::state(const SourcePublisher::Snapshot& snapshot,
+                                                   Clock::time_point now) const {
   if (snapshot.stage == SourceStage::failed) {
     return wire::SOURCE_FAILED;
   }
@@ -220,7 +220,7 @@ dyncal::wire::SourceState SourceChannel::state(const SourcePublisher::Snapshot& 
   return snapshot.stage == SourceStage::starting ? wire::SOURCE_STARTING : wire::SOURCE_RUNNING;
 }
 
-void SourceChannel::measure_rate(std::uint64_t offered_samples, Clock::time_point now) {
+void SourcePublication::measure_rate(std::uint64_t offered_samples, Clock::time_point now) {
   rate_points_.push_back({now, offered_samples});
   while (rate_points_.size() > 2 && now - rate_points_.front().time > rate_window) {
     rate_points_.pop_front();
@@ -231,7 +231,7 @@ void SourceChannel::measure_rate(std::uint64_t offered_samples, Clock::time_poin
                  : 0.0;
 }
 
-void SourceChannel::add_what_is_kept(dyncal::wire::SourceStatus& message) {
+void SourcePublication::add_what_is_kept(dyncal::wire::SourceStatus& message) {
   add_cause(message, "not kept for catching up", kept_->not_kept());
   const std::string problem = kept_->problem();
   if (problem.empty()) {
@@ -246,7 +246,7 @@ void SourceChannel::add_what_is_kept(dyncal::wire::SourceStatus& message) {
   }
 }
 
-void SourceChannel::write_status(Clock::time_point now, std::chrono::nanoseconds limit) {
+void SourcePublication::write_status(Clock::time_point now, std::chrono::nanoseconds limit) {
   const auto snapshot = publisher_->snapshot();
   measure_rate(snapshot.offered_samples, now);
   auto message = to_message(publisher_->options(), snapshot);
@@ -270,8 +270,9 @@ void SourceChannel::write_status(Clock::time_point now, std::chrono::nanoseconds
   }
 }
 
-SourceChannel::Clock::time_point SourceChannel::step_status(std::chrono::nanoseconds interval,
-                                                            std::chrono::nanoseconds write_limit) {
+SourcePublication::Clock::time_point
+SourcePublication::step_status(std::chrono::nanoseconds interval,
+                               std::chrono::nanoseconds write_limit) {
   const auto now = Clock::now();
   const bool changed = state(publisher_->snapshot(), now) != published_state_;
   if (!status_written_ || changed || now - *status_written_ >= interval) {

@@ -16,8 +16,8 @@
 
 #include "services/bus/bus.hpp"
 #include "services/error.hpp"
-#include "services/source/kept_blocks.hpp"
 #include "services/source/messages.hpp"
+#include "services/source/retransmission_buffer.hpp"
 #include "services/source/source_publisher.hpp"
 #include "services/source/stream_writer.hpp"
 #include "services/source/write_pace.hpp"
@@ -30,18 +30,19 @@ struct SourceWriters {
   std::unique_ptr<StreamWriter> samples;
 };
 
-class SourceChannel {
+class SourcePublication {
 public:
   using Clock = std::chrono::steady_clock;
 
-  [[nodiscard]] static Expected<std::unique_ptr<SourceChannel>>
+  [[nodiscard]] static Expected<std::unique_ptr<SourcePublication>>
   create(bus::Participant& participant, std::shared_ptr<SourcePublisher> publisher,
-         std::shared_ptr<KeptBlocks> kept, std::string software);
-  SourceChannel(std::shared_ptr<SourcePublisher> publisher, std::shared_ptr<KeptBlocks> kept,
-                std::string software, SourceWriters writers);
+         std::shared_ptr<RetransmissionBuffer> kept, std::string software);
+  SourcePublication(std::shared_ptr<SourcePublisher> publisher,
+                    std::shared_ptr<RetransmissionBuffer> kept, std::string software,
+                    SourceWriters writers);
 
   [[nodiscard]] SourcePublisher& publisher() { return *publisher_; }
-  [[nodiscard]] KeptBlocks& kept() { return *kept_; }
+  [[nodiscard]] RetransmissionBuffer& kept() { return *kept_; }
 
   // With every status that is published, and how many messages with samples were written.
   using Report = std::function<void(const dyncal::wire::SourceStatus&, std::uint64_t)>;
@@ -83,7 +84,7 @@ private:
   void measure_rate(std::uint64_t offered_samples, Clock::time_point now);
 
   const std::shared_ptr<SourcePublisher> publisher_;
-  const std::shared_ptr<KeptBlocks> kept_;
+  const std::shared_ptr<RetransmissionBuffer> kept_;
   const std::string software_;
   SourceWriters writers_;
   WritePace pace_;

@@ -9,7 +9,7 @@
 #include "services/bus/bus.hpp"
 #include "services/contract/topics.hpp"
 #include "services/source/catch_up_server.hpp"
-#include "services/source/source_channel.hpp"
+#include "services/source/source_publication.hpp"
 
 namespace dyncal::services {
 
@@ -62,7 +62,7 @@ private:
   const SourceServiceOptions options_;
   const std::shared_ptr<bus::WakeUp> wake_up_;
   std::map<std::string, BenchReaders> benches_;
-  std::vector<std::unique_ptr<SourceChannel>> channels_;
+  std::vector<std::unique_ptr<SourcePublication>> channels_;
   CatchUpServer catch_up_; // of its thread, once that has started
   std::jthread thread_;
   std::jthread catch_up_thread_;
@@ -107,8 +107,8 @@ SourceService::Implementation::add(SourceOptions source) {
     return fail(joined.error());
   }
   auto publisher = std::make_shared<SourcePublisher>(std::move(source), wake_up_);
-  auto kept = std::make_shared<KeptBlocks>(options_.kept);
-  auto channel = SourceChannel::create(participant_, publisher, kept, options_.software);
+  auto kept = std::make_shared<RetransmissionBuffer>(options_.kept);
+  auto channel = SourcePublication::create(participant_, publisher, kept, options_.software);
   if (!channel) {
     return fail(channel.error());
   }

@@ -4,7 +4,7 @@
 // Per source it writes its samples (DauSamples, AcsSamples, CanSamples) or records (DsoRecord,
 // TssRecord), SourceDescription when it is known or changes, and SourceStatus every 500 ms and at
 // once when the state changes. It answers COMMAND_ARM for a described source in its stream with an
-// empty message that names the run, behind everything written before: whoever reads that answer
+// empty message that names the run, behind everything written before: anyone who reads that answer
 // reads what follows. A write that times out is tried again until it succeeds or the service stops.
 // What was written is kept, and given again to who asks for it (catch_up_server.hpp), by a second
 // thread.
@@ -22,7 +22,7 @@
 #include <string>
 
 #include "services/error.hpp"
-#include "services/source/kept_blocks.hpp"
+#include "services/source/retransmission_buffer.hpp"
 #include "services/source/source_publisher.hpp"
 
 namespace dyncal::bus {

@@ -17,7 +17,7 @@ public:
   bus::WriteOutcome write(std::chrono::nanoseconds limit) override {
     return writer_.write(message_, limit);
   }
-  std::size_t keep_in(KeptBlocks& kept) const override {
+  std::size_t keep_in(RetransmissionBuffer& kept) const override {
     const bus::TypeSupport& type = bus::type_support<Message>();
     std::string payload(type.serialized_size(&message_), '\0');
     payload.resize(type.serialize(&message_, payload.data(), payload.size()));

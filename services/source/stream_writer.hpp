@@ -9,7 +9,7 @@
 
 #include "services/bus/bus.hpp"
 #include "services/error.hpp"
-#include "services/source/kept_blocks.hpp"
+#include "services/source/retransmission_buffer.hpp"
 #include "services/source/source_publisher.hpp"
 
 namespace dyncal::services {
@@ -25,7 +25,7 @@ public:
   virtual void prepare(RingEntry entry, const std::string& answers_run) = 0;
   [[nodiscard]] virtual bus::WriteOutcome write(std::chrono::nanoseconds limit) = 0;
   // Keeps the message, for who asks for it later. Returns its bytes.
-  virtual std::size_t keep_in(KeptBlocks& kept) const = 0;
+  virtual std::size_t keep_in(RetransmissionBuffer& kept) const = 0;
   // Returns whether everything has been acknowledged in time.
   virtual bool wait_for_acknowledgments(std::chrono::nanoseconds limit) = 0;
   [[nodiscard]] virtual int matched_readers() const = 0;

@@ -4,8 +4,8 @@
 // After each window of messages it looks whether all of them were acknowledged, and asks its caller
 // to wait until they are: so a source that is played faster than real time goes as fast as its
 // readers, and no more is on the wire at once than a receive buffer holds. When nothing was
-// acknowledged for `patience`, a reader hangs: then it lets everything pass, and whoever keeps up
-// loses nothing by that, until all is acknowledged again. One thread.
+// acknowledged for `patience`, a reader hangs: then it lets everything pass, and anyone who keeps
+// up loses nothing by that, until all is acknowledged again. One thread.
 #pragma once
 
 #include <chrono>

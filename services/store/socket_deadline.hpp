@@ -1,5 +1,5 @@
-// A limit for whoever waits at a socket in a library that has none of its own: when it has passed,
-// the socket is shut down, and the library finds that its peer has gone.
+// A limit for anyone who waits at a socket in a library that has none of its own: when it has
+// passed, the socket is shut down, and the library finds that its peer has gone.
 //
 // Make one before the call that may wait, and let it go out of scope after it, while the socket is
 // still open. Throws std::system_error where no thread can be made. One thread uses it.

@@ -5,7 +5,7 @@
 // not ended gives way to a later one of that run. The same run evaluated by another recipe stands
 // beside.
 //
-// The store is an index: the run folders are the truth, and from them it can be made anew. Fails
+// The store is an index: the run folders are the truth, and from them it can be rebuilt. Fails
 // (bad_file, bad_argument) as databases and result files do. Belongs to one thread.
 #pragma once
 

@@ -46,14 +46,10 @@ constexpr MetricFamily evaluation{"dyncal_analysis_evaluation_seconds_total",
                                   "Time that the main loop of the analysis has spent with runs.",
                                   counter};
 
-constexpr MetricFamily held{"dyncal_analysis_held",
-                            "What the analysis keeps of the network beside its runs, by what it "
-                            "is.",
+constexpr MetricFamily held{"dyncal_analysis_held", "Objects cached by the analysis, by type.",
                             gauge};
 constexpr MetricFamily left_out{"dyncal_analysis_left_out_total",
-                                "What had no room, or was dropped for something newer, by what "
-                                "it is.",
-                                counter};
+                                "Objects that had no room or made way, by type.", counter};
 
 constexpr MetricFamily stored{"dyncal_recorder_messages_stored_total",
                               "Messages that are in the recordings.", counter};
@@ -70,8 +66,7 @@ constexpr MetricFamily switched_off{"dyncal_guard_outputs_switched_off_total",
                                     "Times that the output of the generator was switched off.",
                                     counter};
 constexpr MetricFamily may_be_on{"dyncal_guard_output_may_be_on",
-                                 "1 while nobody attends an output that cannot be switched off.",
-                                 gauge};
+                                 "1 while an unattended output cannot be switched off.", gauge};
 
 constexpr MetricFamily visitors{"dyncal_web_visitors", "Visitors that listen to events.", gauge};
 constexpr MetricFamily requests{"dyncal_web_requests_total", "Requests that came.", counter};

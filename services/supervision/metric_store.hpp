@@ -1,5 +1,5 @@
-// Numbers that a daemon offers to whoever watches it, in prometheus-cpp's registry: families with a
-// name and a sentence, and in each one value for every set of labels. Names and units follow
+// Numbers that a daemon offers to anyone who watches it, in prometheus-cpp's registry: families
+// with a name and a sentence, and in each one value for every set of labels. Names and units follow
 // Prometheus' conventions: base units, counters end in _total.
 //
 // A daemon counts by itself and reports totals. A counter that is given a smaller one begins again,

@@ -2,10 +2,10 @@
 // than `max_wrong` times in `wrong_period` from one address.
 //
 // Wrong ones count by the visitor's address, of IPv6 by its network of 64 bits, which is what one
-// computer has: whoever guesses locks out nobody but himself. What stops an exciter is never locked
-// for the right token, from any address; there, guesses are counted and refused but the right one
-// shows, so that the secret's length is what protects it. Of `max_addresses` the one that was wrong
-// longest ago is forgotten.
+// computer has: anyone who guesses locks out nobody but himself. What stops an exciter is never
+// locked for the right token, from any address; there, guesses are counted and refused but the
+// right one shows, so that the secret's length is what protects it. Of `max_addresses` the one that
+// was wrong longest ago is forgotten.
 //
 // The file has one line of at least 16 characters. Fails (bad_file) if it cannot be read, is
 // shorter, or may be read by everybody on the machine. Any thread.

@@ -126,9 +126,9 @@ bool shows(const live::Run& run, const wire::Command& command, std::uint32_t att
 } // namespace
 
 Actions::Actions(ActionOptions options, bus::Participant& participant, bus::Clock& clock,
-                 Board& board, HttpDoor& door)
-    : options_(std::move(options)), participant_(participant), clock_(clock), board_(board),
-      door_(door) {
+                 StateCache& cache, RequestRouter& router)
+    : options_(std::move(options)), participant_(participant), clock_(clock), cache_(cache),
+      router_(router) {
   if (options_.token) {
     token_.emplace(*options_.token, clock);
   }
@@ -137,23 +137,24 @@ Actions::Actions(ActionOptions options, bus::Participant& participant, bus::Cloc
 bool Actions::is_permitted(const httplib::Request& request, httplib::Response& response,
                            TokenUse use) {
   if (!token_) {
-    door_.refuse(Refusal::not_permitted, 403,
-                 "this daemon takes no actions; it was started without --token-file", request,
-                 response);
+    router_.refuse(Refusal::not_permitted, 403,
+                   "this daemon takes no actions; it was started without --token-file", request,
+                   response);
     return false;
   }
   switch (token_->check(request.get_header_value("Authorization"), request.remote_addr, use)) {
   case TokenAnswer::right:
     return true;
   case TokenAnswer::wrong:
-    door_.refuse(Refusal::wrong_token, 401, "the token is wrong", request, response);
+    router_.refuse(Refusal::wrong_token, 401, "the token is wrong", request, response);
     response.set_header("WWW-Authenticate", "Bearer");
     return false;
   case TokenAnswer::too_many:
     break;
   }
-  door_.refuse(Refusal::too_many_tokens, 429,
-               "too many wrong tokens from this address; try again in a minute", request, response);
+  router_.refuse(Refusal::too_many_tokens, 429,
+                 "too many wrong tokens from this address; try again in a minute", request,
+                 response);
   response.set_header("Retry-After", "60");
   return false;
 }
@@ -199,10 +200,10 @@ void Actions::command(const std::string& bench, const Json& body, const httplib:
   const bool has_step = step.is_number_unsigned() && step.get<std::uint64_t>() > 0 &&
                         step.get<std::uint64_t>() < 1'000'000;
   if (!kind || !run.is_string() || (*kind == wire::COMMAND_REPEAT && !has_step)) {
-    door_.refuse(Refusal::malformed, 400,
-                 "the body must be {\"command\": \"repeat|abort|pause|continue\", \"run\": RUN, "
-                 "\"step\": N of repeat}",
-                 request, response);
+    router_.refuse(Refusal::malformed, 400,
+                   "the body must be {\"command\": \"repeat|abort|pause|continue\", \"run\": RUN, "
+                   "\"step\": N of repeat}",
+                   request, response);
     return;
   }
   wire::Command message;
@@ -217,11 +218,11 @@ void Actions::command(const std::string& bench, const Json& body, const httplib:
 
 void Actions::send(const wire::Command& command, const std::string& word,
                    httplib::Response& response) {
-  const auto run = board_.look([&](const live::Laboratory& laboratory) {
+  const auto run = cache_.look([&](const live::Laboratory& laboratory) {
     return conducted_run(laboratory, command, clock_.now());
   });
   if (!run) {
-    answer_action(false, "", "nobody conducts this run of the bench now", response);
+    answer_action(false, "", "no conductor is running this run", response);
     return;
   }
   const bool is_repeat = command.kind() == wire::COMMAND_REPEAT;
@@ -267,10 +268,10 @@ Actions::Effect Actions::repeat_until_effect(const wire::Command& command,
   while (clock_.now() < end) {
     const auto outcome = writer->write(command, std::chrono::milliseconds(100));
     was_heard = outcome == bus::WriteOutcome::written && writer->matched_readers() > 0;
-    if (!door_.wait_until(clock_.now() + command_interval)) {
+    if (!router_.wait_until(clock_.now() + command_interval)) {
       break;
     }
-    const bool is_shown = board_.look([&](const live::Laboratory& laboratory) {
+    const bool is_shown = cache_.look([&](const live::Laboratory& laboratory) {
       const live::Run* run = run_of(laboratory, command);
       return run != nullptr && shows(*run, command, attempt_before);
     });

@@ -22,8 +22,8 @@
 #include "services/program/child_process.hpp"
 #include "services/program/program.hpp"
 #include "services/web/access_token.hpp"
-#include "services/web/board.hpp"
-#include "services/web/http_door.hpp"
+#include "services/web/request_router.hpp"
+#include "services/web/state_cache.hpp"
 
 namespace dyncal::services::web {
 
@@ -41,8 +41,8 @@ public:
   static constexpr std::chrono::milliseconds command_interval{250};
 
   // All outlive the object.
-  Actions(ActionOptions options, bus::Participant& participant, bus::Clock& clock, Board& board,
-          HttpDoor& door);
+  Actions(ActionOptions options, bus::Participant& participant, bus::Clock& clock,
+          StateCache& cache, RequestRouter& router);
 
   [[nodiscard]] bool may_act() const { return token_.has_value(); }
   // False: the address is another's.
@@ -66,8 +66,8 @@ private:
   std::optional<AccessToken> token_;
   bus::Participant& participant_;
   bus::Clock& clock_;
-  Board& board_;
-  HttpDoor& door_;
+  StateCache& cache_;
+  RequestRouter& router_;
   std::mutex mutex_;
   std::map<std::string, ChildProcess> runs_; // by bench file
 };

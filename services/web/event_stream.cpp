@@ -30,8 +30,8 @@ bool EventStream::answer(const httplib::Request& request, httplib::Response& res
   if (++listeners_ > max_listeners) {
     --listeners_;
     response.set_header("Retry-After", "1");
-    door_.refuse(Refusal::too_many_listeners, 503, "too many listen already; poll once a second",
-                 request, response);
+    router_.refuse(Refusal::too_many_listeners, 503, "too many listen already; poll once a second",
+                   request, response);
     return true;
   }
   auto listener = std::make_shared<Listener>();
@@ -50,13 +50,13 @@ bool EventStream::answer(const httplib::Request& request, httplib::Response& res
 
 // False: the daemon ends.
 bool EventStream::wait_for_round(Listener& listener) const {
-  const bool goes_on = door_.wait_until(listener.next_round);
+  const bool goes_on = router_.wait_until(listener.next_round);
   listener.next_round = Clock::now() + (listener.wants_signal ? signal_round : state_round);
   return goes_on;
 }
 
 void EventStream::add_states(Listener& listener, std::string& events) const {
-  const std::uint64_t number = board_.number();
+  const std::uint64_t number = cache_.number();
   const auto now = Clock::now();
   const auto passed = now - listener.laboratory_sent;
   const bool is_due =
@@ -69,14 +69,14 @@ void EventStream::add_states(Listener& listener, std::string& events) const {
       events += fmt::format("event: {}\nid: {}\ndata: {}\n\n", event, number, *text);
     }
   };
-  add("laboratory", board_.laboratory());
+  add("laboratory", cache_.laboratory());
   listener.laboratory_sent = now;
   listener.number = number;
   if (listener.bench.empty()) {
     return;
   }
-  add("bench", board_.bench(listener.bench));
-  const std::uint64_t results_number = board_.results_number(listener.bench);
+  add("bench", cache_.bench(listener.bench));
+  const std::uint64_t results_number = cache_.results_number(listener.bench);
   if (results_number != listener.results_number || listener.is_first) {
     add("run", answers_.results(listener.bench, ""));
     listener.results_number = results_number;

@@ -13,9 +13,9 @@
 
 #include <httplib.h>
 
-#include "services/web/board.hpp"
-#include "services/web/http_door.hpp"
 #include "services/web/laboratory_answers.hpp"
+#include "services/web/request_router.hpp"
+#include "services/web/state_cache.hpp"
 
 namespace dyncal::services::web {
 
@@ -28,8 +28,9 @@ public:
   using Signal = std::function<Text(const std::string& bench, const httplib::Request&)>;
 
   // All outlive the object.
-  EventStream(Board& board, const LaboratoryAnswers& answers, HttpDoor& door, Signal signal)
-      : board_(board), answers_(answers), door_(door), signal_(std::move(signal)) {}
+  EventStream(StateCache& cache, const LaboratoryAnswers& answers, RequestRouter& router,
+              Signal signal)
+      : cache_(cache), answers_(answers), router_(router), signal_(std::move(signal)) {}
 
   // False: the address is another's.
   [[nodiscard]] bool answer(const httplib::Request& request, httplib::Response& response);
@@ -42,9 +43,9 @@ private:
   void add_states(Listener& listener, std::string& events) const;
   [[nodiscard]] bool wait_for_round(Listener& listener) const;
 
-  Board& board_;
+  StateCache& cache_;
   const LaboratoryAnswers& answers_;
-  HttpDoor& door_;
+  RequestRouter& router_;
   Signal signal_;
   std::atomic<int> listeners_ = 0;
 };

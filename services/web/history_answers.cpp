@@ -11,7 +11,7 @@
 #include "services/report/json_number.hpp"
 #include "services/store/history.hpp"
 #include "services/store/store.hpp"
-#include "services/web/http_door.hpp"
+#include "services/web/request_router.hpp"
 
 namespace dyncal::services::web {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "services/json_text.hpp"
 #include "services/live/run_json.hpp"
-#include "services/web/http_door.hpp"
+#include "services/web/request_router.hpp"
 
 namespace dyncal::services::web {
 namespace {
@@ -75,7 +75,7 @@ std::optional<BenchAddress> bench_address(std::string_view path) {
 }
 
 Text LaboratoryAnswers::results(const std::string& bench, const std::string& run) const {
-  return board_.results(bench, run, [&](const std::string& name, Json& json) {
+  return cache_.results(bench, run, [&](const std::string& name, Json& json) {
     json["files"] = Json::array();
     for (const RunFile& file : files_.files_of(bench, name)) {
       json["files"].push_back(
@@ -89,7 +89,7 @@ Text LaboratoryAnswers::results(const std::string& bench, const std::string& run
 
 bool LaboratoryAnswers::answer(const httplib::Request& request, httplib::Response& response) const {
   if (request.path == "/api/laboratory") {
-    answer_text(board_.laboratory(), "", response);
+    answer_text(cache_.laboratory(), "", response);
     return true;
   }
   if (answer_file(request, response)) {
@@ -100,7 +100,7 @@ bool LaboratoryAnswers::answer(const httplib::Request& request, httplib::Respons
     return false;
   }
   if (address->part.empty()) {
-    answer_text(board_.bench(address->bench), "no bench of this name was heard of", response);
+    answer_text(cache_.bench(address->bench), "no bench of this name was heard of", response);
   } else if (address->part == "run") {
     answer_text(results(address->bench, request.get_param_value("run")),
                 "no such run of this bench was heard of", response);
@@ -121,7 +121,7 @@ void LaboratoryAnswers::answer_figures(const std::string& bench, const httplib::
     answer_error(400, "malformed", "bars must be U, u or none", response);
     return;
   }
-  answer_text(board_.figures(bench, request.get_param_value("run"),
+  answer_text(cache_.figures(bench, request.get_param_value("run"),
                              request.get_param_value("channel"), *bars),
               "no such run with results of this channel was heard of", response);
 }
@@ -132,7 +132,7 @@ void LaboratoryAnswers::answer_budget(const std::string& name, const httplib::Re
   const live::Run::ResultKey key{number_of(request.get_param_value("step")),
                                  number_of(request.get_param_value("repetition")),
                                  request.get_param_value("channel")};
-  const auto json = board_.look([&](const live::Laboratory& laboratory) -> std::optional<Json> {
+  const auto json = cache_.look([&](const live::Laboratory& laboratory) -> std::optional<Json> {
     const live::Bench* bench = laboratory.bench(name);
     if (bench == nullptr) {
       return std::nullopt;

@@ -8,8 +8,8 @@
 
 #include <httplib.h>
 
-#include "services/web/board.hpp"
 #include "services/web/run_files.hpp"
+#include "services/web/state_cache.hpp"
 
 namespace dyncal::services::web {
 
@@ -24,7 +24,7 @@ struct BenchAddress {
 class LaboratoryAnswers {
 public:
   // Both outlive the object.
-  LaboratoryAnswers(Board& board, const RunFiles& files) : board_(board), files_(files) {}
+  LaboratoryAnswers(StateCache& cache, const RunFiles& files) : cache_(cache), files_(files) {}
 
   // False: the address is another's.
   [[nodiscard]] bool answer(const httplib::Request& request, httplib::Response& response) const;
@@ -39,7 +39,7 @@ private:
   [[nodiscard]] bool answer_file(const httplib::Request& request,
                                  httplib::Response& response) const;
 
-  Board& board_;
+  StateCache& cache_;
   const RunFiles& files_;
 };
 

@@ -14,8 +14,8 @@
 
 #include <fmt/core.h>
 
-#include "services/web/http_door.hpp"
 #include "services/web/limited_stream.hpp"
+#include "services/web/request_router.hpp"
 
 namespace dyncal::services::web {
 namespace {

@@ -12,9 +12,9 @@
 //   all have requests that are being answered, newcomers wait in the kernel's queue
 //
 // What is refused here is counted and told to `on_refused`. The library's own kernel queue holds
-// five: whoever came sixth in the same instant waited for seconds until his computer asked again.
-// It also shares its port with any other server that wants it; this one does not.
-// Threads: as httplib::Server.
+// five: anyone who came sixth in the same instant waited for seconds until his computer asked
+// again. It also shares its port with any other server that wants it; this one does not. Threads:
+// as httplib::Server.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "services/web/http_door.hpp"
+#include "services/web/request_router.hpp"
 
 #include <strings.h>
 
@@ -57,7 +57,7 @@ void answer_error(int status, const std::string& code, const std::string& messag
   response.set_content(json_text(json), "application/json");
 }
 
-HttpDoor::HttpDoor(DoorOptions options, bus::Clock& clock)
+RequestRouter::RequestRouter(DoorOptions options, bus::Clock& clock)
     : options_(std::move(options)), clock_(clock),
       server_(refusals_, [this](const HeadRefusal& refusal, const std::string& visitor) {
         log_refusal(refusal.reason, fmt::format("a request ({})", refusal.message), visitor);
@@ -65,11 +65,11 @@ HttpDoor::HttpDoor(DoorOptions options, bus::Clock& clock)
   set_up();
 }
 
-HttpDoor::~HttpDoor() {
+RequestRouter::~RequestRouter() {
   stop();
 }
 
-void HttpDoor::set_up() {
+void RequestRouter::set_up() {
   server_.set_default_headers({{"Content-Security-Policy", content_policy},
                                {"X-Content-Type-Options", "nosniff"},
                                {"X-Frame-Options", "DENY"},
@@ -105,7 +105,7 @@ void HttpDoor::set_up() {
   });
 }
 
-Expected<void> HttpDoor::start() {
+Expected<void> RequestRouter::start() {
   const drivers::Address& at = options_.listen;
   port_ = server_.bind(at.host, at.port);
   if (port_ < 0) {
@@ -118,12 +118,12 @@ Expected<void> HttpDoor::start() {
   return {};
 }
 
-bool HttpDoor::wait_until(std::chrono::steady_clock::time_point time) {
+bool RequestRouter::wait_until(std::chrono::steady_clock::time_point time) {
   std::unique_lock lock(end_mutex_);
   return !end_.wait_until(lock, time, [this] { return server_.is_ending(); });
 }
 
-void HttpDoor::stop() {
+void RequestRouter::stop() {
   {
     const std::lock_guard lock(end_mutex_);
     server_.end();
@@ -132,8 +132,8 @@ void HttpDoor::stop() {
   server_.join();
 }
 
-void HttpDoor::refuse(Refusal refusal, int status, const std::string& message,
-                      const httplib::Request& request, httplib::Response& response) {
+void RequestRouter::refuse(Refusal refusal, int status, const std::string& message,
+                           const httplib::Request& request, httplib::Response& response) {
   refusals_.count(refusal);
   answer_error(status, to_string(refusal), message, response);
   log_refusal(refusal,
@@ -141,7 +141,8 @@ void HttpDoor::refuse(Refusal refusal, int status, const std::string& message,
               request.remote_addr);
 }
 
-void HttpDoor::log_refusal(Refusal refusal, const std::string& what, const std::string& visitor) {
+void RequestRouter::log_refusal(Refusal refusal, const std::string& what,
+                                const std::string& visitor) {
   const std::lock_guard lock(log_mutex_);
   if (clock_.now() >= next_line_) {
     next_line_ = clock_.now() + std::chrono::seconds(1);
@@ -149,7 +150,7 @@ void HttpDoor::log_refusal(Refusal refusal, const std::string& what, const std::
   }
 }
 
-Outcome HttpDoor::check(const httplib::Request& request, httplib::Response& response) {
+Outcome RequestRouter::check(const httplib::Request& request, httplib::Response& response) {
   const auto refused = [&](Refusal refusal, int status, const char* message) {
     refuse(refusal, status, message, request, response);
     return Outcome::Handled;
@@ -171,7 +172,7 @@ Outcome HttpDoor::check(const httplib::Request& request, httplib::Response& resp
   return check_method(request, response);
 }
 
-Outcome HttpDoor::check_method(const httplib::Request& request, httplib::Response& response) {
+Outcome RequestRouter::check_method(const httplib::Request& request, httplib::Response& response) {
   const char* methods = methods_of(request.path);
   if (methods == nullptr) {
     refuse(Refusal::not_found, 404, "there is no such address", request, response);
@@ -191,7 +192,7 @@ Outcome HttpDoor::check_method(const httplib::Request& request, httplib::Respons
   return Outcome::Unhandled;
 }
 
-void HttpDoor::get(const httplib::Request& request, httplib::Response& response) {
+void RequestRouter::get(const httplib::Request& request, httplib::Response& response) {
   if (serve_page(request, response) ||
       serve_folder("/javascript/", options_.javascript_folder, request, response) ||
       serve_folder("/guide/", options_.guide_folder, request, response)) {
@@ -206,8 +207,9 @@ void HttpDoor::get(const httplib::Request& request, httplib::Response& response)
 }
 
 // Debian's libraries link to each other, within their folder.
-bool HttpDoor::serve_folder(const std::string& prefix, const std::string& folder,
-                            const httplib::Request& request, httplib::Response& response) const {
+bool RequestRouter::serve_folder(const std::string& prefix, const std::string& folder,
+                                 const httplib::Request& request,
+                                 httplib::Response& response) const {
   if (!request.path.starts_with(prefix) || folder.empty()) {
     return false;
   }
@@ -220,7 +222,7 @@ bool HttpDoor::serve_folder(const std::string& prefix, const std::string& folder
   return file.has_value();
 }
 
-bool HttpDoor::serve_page(const httplib::Request& request, httplib::Response& response) const {
+bool RequestRouter::serve_page(const httplib::Request& request, httplib::Response& response) const {
   static const std::vector<PageFile> files = page_files();
   constexpr std::string_view folder = "/page/";
   const bool is_page = request.path == "/";
@@ -237,7 +239,7 @@ bool HttpDoor::serve_page(const httplib::Request& request, httplib::Response& re
   return false;
 }
 
-void HttpDoor::post(const httplib::Request& request, httplib::Response& response) {
+void RequestRouter::post(const httplib::Request& request, httplib::Response& response) {
   if (!is_json(request.get_header_value("Content-Type"))) {
     refuse(Refusal::malformed, 415, "Content-Type must be application/json", request, response);
     return;
@@ -251,7 +253,7 @@ void HttpDoor::post(const httplib::Request& request, httplib::Response& response
 }
 
 // What the library has refused by itself.
-void HttpDoor::complete_error(const httplib::Request& request, httplib::Response& response) {
+void RequestRouter::complete_error(const httplib::Request& request, httplib::Response& response) {
   if (!response.body.empty()) {
     return;
   }

@@ -1,5 +1,5 @@
 // What the daemon answers to a request: the rules that every request has to keep, then the answer
-// of whoever knows (PROTOCOL.md has all addresses).
+// of anyone who knows (PROTOCOL.md has all addresses).
 //
 // Handlers are asked in their order; the first that answers has answered. They are called by the
 // server's threads, several at a time. An error is JSON with code and message; what is refused is
@@ -36,17 +36,17 @@ struct DoorOptions {
   std::string guide_folder; // empty: no guide
 };
 
-class HttpDoor {
+class RequestRouter {
 public:
   static constexpr std::size_t max_address_bytes = 1024;
   // Of a GET: false if the address is another's. Of a POST likewise, with its body.
   using Handler = std::function<bool(const httplib::Request&, httplib::Response&)>;
 
   // `clock` outlives the object.
-  HttpDoor(DoorOptions options, bus::Clock& clock);
-  ~HttpDoor();
-  HttpDoor(const HttpDoor&) = delete;
-  HttpDoor& operator=(const HttpDoor&) = delete;
+  RequestRouter(DoorOptions options, bus::Clock& clock);
+  ~RequestRouter();
+  RequestRouter(const RequestRouter&) = delete;
+  RequestRouter& operator=(const RequestRouter&) = delete;
 
   // Before start().
   void on_get(Handler handler) { get_handlers_.push_back(std::move(handler)); }
@@ -58,7 +58,7 @@ public:
   [[nodiscard]] int port() const { return port_; }
   [[nodiscard]] std::uint64_t requests() const { return server_.requests(); }
   [[nodiscard]] const Refusals& refusals() const { return refusals_; }
-  // Returns false if the door is being closed, at once.
+  // Returns false at once if the router is being closed.
   [[nodiscard]] bool wait_until(std::chrono::steady_clock::time_point time);
   // Counts, logs (a line a second) and answers.
   void refuse(Refusal refusal, int status, const std::string& message,

@@ -12,8 +12,8 @@
 
 #include <fmt/core.h>
 
-#include "services/web/http_door.hpp"
 #include "services/web/request_head.hpp"
+#include "services/web/request_router.hpp"
 
 namespace dyncal::services::web {
 namespace {
@@ -45,7 +45,8 @@ std::optional<ServedFile> open_beneath(const std::filesystem::path& folder, cons
                                        Links links) {
   const FileDescriptor root(::open(folder.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
   open_how how{};
-  how.flags = O_RDONLY | O_CLOEXEC | O_NONBLOCK; // whoever opens a pipe would wait for its writer
+  how.flags =
+      O_RDONLY | O_CLOEXEC | O_NONBLOCK; // anyone who opens a pipe would wait for its writer
   how.resolve = RESOLVE_BENEATH | RESOLVE_NO_MAGICLINKS |
                 (links == Links::none ? std::uint64_t{RESOLVE_NO_SYMLINKS} : 0U);
   auto opened = std::make_shared<FileDescriptor>(

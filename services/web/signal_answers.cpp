@@ -16,8 +16,8 @@
 #include "services/live_signals/spectrum.hpp"
 #include "services/live_signals/trace.hpp"
 #include "services/report/json_number.hpp"
-#include "services/web/http_door.hpp"
 #include "services/web/laboratory_answers.hpp"
+#include "services/web/request_router.hpp"
 
 namespace dyncal::services::web {
 namespace {
@@ -120,7 +120,7 @@ SignalAnswers::Question SignalAnswers::question_of(const std::string& bench,
 }
 
 std::optional<SignalAnswers::Found> SignalAnswers::find(const Question& question) const {
-  return board_.look([&](const live::Laboratory& laboratory) -> std::optional<Found> {
+  return cache_.look([&](const live::Laboratory& laboratory) -> std::optional<Found> {
     const live::Bench* bench = laboratory.bench(question.bench);
     const auto source = bench == nullptr ? std::map<std::string, live::Source>::const_iterator()
                                          : bench->sources.find(question.source);
@@ -235,7 +235,7 @@ struct SignalAnswers::ExcitedStep {
 // The one that is excited now, by what was announced last; nothing: no run is under way.
 std::optional<SignalAnswers::ExcitedStep>
 SignalAnswers::excited_step(const std::string& bench_name) const {
-  return board_.look([&](const live::Laboratory& laboratory) -> std::optional<ExcitedStep> {
+  return cache_.look([&](const live::Laboratory& laboratory) -> std::optional<ExcitedStep> {
     const live::Bench* bench = laboratory.bench(bench_name);
     const live::Run* run = bench == nullptr ? nullptr : bench->current_run();
     if (run == nullptr || !run->plan || !run->now || run->is_over()) {

@@ -1,6 +1,6 @@
 // Answers about samples: /api/bench/NAME/signal, spectrum and fit, and the signals of /events.
 //
-// A text of the same question is made at most once in 80 ms, whoever asks. Any thread.
+// A text of the same question is made at most once in 80 ms, regardless of who asks. Any thread.
 #pragma once
 
 #include <map>
@@ -11,15 +11,15 @@
 #include <httplib.h>
 
 #include "services/live_signals/signal_tap.hpp"
-#include "services/web/board.hpp"
+#include "services/web/state_cache.hpp"
 
 namespace dyncal::services::web {
 
 class SignalAnswers {
 public:
   // All outlive the object.
-  SignalAnswers(Board& board, SignalTap& tap, bus::Clock& clock)
-      : board_(board), tap_(tap), clock_(clock) {}
+  SignalAnswers(StateCache& cache, SignalTap& tap, bus::Clock& clock)
+      : cache_(cache), tap_(tap), clock_(clock) {}
 
   // False: the address is another's.
   [[nodiscard]] bool answer(const httplib::Request& request, httplib::Response& response);
@@ -59,7 +59,7 @@ private:
   static constexpr std::chrono::milliseconds text_age{80};
   static constexpr std::size_t max_texts = 64;
 
-  Board& board_;
+  StateCache& cache_;
   SignalTap& tap_;
   bus::Clock& clock_;
   std::mutex mutex_;

@@ -1,4 +1,4 @@
-#include "services/web/board.hpp"
+#include "services/web/state_cache.hpp"
 
 #include <algorithm>
 
@@ -43,7 +43,7 @@ Json runs_json(const live::Bench& bench) {
 
 } // namespace
 
-const Board::Made* Board::find(const TextKey& key) {
+const StateCache::Made* StateCache::find(const TextKey& key) {
   const auto found = texts_.find(key);
   if (found == texts_.end()) {
     return nullptr;
@@ -52,13 +52,13 @@ const Board::Made* Board::find(const TextKey& key) {
   return &found->second;
 }
 
-Text Board::young(const TextKey& key) {
+Text StateCache::young(const TextKey& key) {
   const Made* made = find(key);
   const bool is_young = made != nullptr && laboratory_.clock().now() - made->when < text_age;
   return is_young ? made->text : nullptr;
 }
 
-Text Board::keep(const TextKey& key, const Json& json, std::uint64_t number) {
+Text StateCache::keep(const TextKey& key, const Json& json, std::uint64_t number) {
   std::string whole = json_text(json);
   whole.shrink_to_fit(); // it has grown by doubling
   Text text = std::make_shared<const std::string>(std::move(whole));
@@ -69,7 +69,7 @@ Text Board::keep(const TextKey& key, const Json& json, std::uint64_t number) {
   return text;
 }
 
-void Board::make_room(std::size_t needed) {
+void StateCache::make_room(std::size_t needed) {
   while (!texts_.empty() && (texts_.size() >= max_texts || bytes() + needed > max_bytes)) {
     texts_.erase(std::min_element(texts_.begin(), texts_.end(), [](const auto& a, const auto& b) {
       return a.second.asked < b.second.asked;
@@ -77,7 +77,7 @@ void Board::make_room(std::size_t needed) {
   }
 }
 
-void Board::drop_what_is_not_shown() {
+void StateCache::drop_what_is_not_shown() {
   const bus::Clock::Instant now = laboratory_.clock().now();
   std::erase_if(texts_, [&](const auto& held) {
     const auto& [key, made] = held;
@@ -89,7 +89,7 @@ void Board::drop_what_is_not_shown() {
   });
 }
 
-std::size_t Board::bytes() const {
+std::size_t StateCache::bytes() const {
   std::size_t sum = 0;
   for (const auto& [key, made] : texts_) {
     sum += made.text->size();
@@ -97,12 +97,12 @@ std::size_t Board::bytes() const {
   return sum;
 }
 
-Board::Held Board::held() const {
+StateCache::Held StateCache::held() const {
   const std::lock_guard lock(mutex_);
   return {texts_.size(), bytes()};
 }
 
-Text Board::laboratory() {
+Text StateCache::laboratory() {
   const std::lock_guard lock(mutex_);
   const TextKey key{"laboratory", "", "", ""};
   if (Text text = young(key)) {
@@ -113,7 +113,7 @@ Text Board::laboratory() {
   return keep(key, json);
 }
 
-Text Board::bench(const std::string& name) {
+Text StateCache::bench(const std::string& name) {
   const std::lock_guard lock(mutex_);
   const live::Bench* bench = laboratory_.bench(name);
   if (bench == nullptr) {
@@ -126,8 +126,8 @@ Text Board::bench(const std::string& name) {
   return keep(key, live::bench_json(laboratory_, *bench));
 }
 
-Text Board::results(const std::string& name, const std::string& run_name,
-                    const AddFiles& add_files) {
+Text StateCache::results(const std::string& name, const std::string& run_name,
+                         const AddFiles& add_files) {
   const std::lock_guard lock(mutex_);
   const live::Bench* bench = laboratory_.bench(name);
   const live::Run* run = bench == nullptr ? nullptr : find_run(*bench, run_name);
@@ -150,8 +150,8 @@ Text Board::results(const std::string& name, const std::string& run_name,
   return keep(key, json, number);
 }
 
-Text Board::figures(const std::string& name, const std::string& run_name,
-                    const std::string& channel, services::figures::ErrorBars error_bars) {
+Text StateCache::figures(const std::string& name, const std::string& run_name,
+                         const std::string& channel, services::figures::ErrorBars error_bars) {
   const std::lock_guard lock(mutex_);
   const live::Bench* bench = laboratory_.bench(name);
   const live::Run* run = bench == nullptr ? nullptr : find_run(*bench, run_name);
@@ -183,12 +183,12 @@ Text Board::figures(const std::string& name, const std::string& run_name,
               number);
 }
 
-std::uint64_t Board::number() const {
+std::uint64_t StateCache::number() const {
   const std::lock_guard lock(mutex_);
   return laboratory_.number();
 }
 
-std::uint64_t Board::results_number(const std::string& name) const {
+std::uint64_t StateCache::results_number(const std::string& name) const {
   const std::lock_guard lock(mutex_);
   const live::Bench* bench = laboratory_.bench(name);
   const live::Run* run = bench == nullptr ? nullptr : bench->current_run();

@@ -1,7 +1,7 @@
 // The newest state of the laboratory between the thread that feeds it and those that show it.
 //
 // Texts of JSON are made when somebody asks, at most once in `text_age`, and shared by all who ask
-// meanwhile: visitors cost writing, not counting. Results and figures are made anew only when they
+// meanwhile: visitors cost writing, not counting. Results and figures are made again only when they
 // change.
 //
 // Memory follows what is shown: a run's texts go with the run, every text once nobody has asked for
@@ -28,7 +28,7 @@ namespace dyncal::services::web {
 
 using Text = std::shared_ptr<const std::string>;
 
-class Board {
+class StateCache {
 public:
   static constexpr std::chrono::milliseconds text_age{200};
   // A page asks for what it shows at least every second.
@@ -40,7 +40,7 @@ public:
   using AddDaemon = std::function<void(nlohmann::ordered_json&)>;
 
   // `clock` outlives the object.
-  Board(bus::Clock& clock, AddDaemon add_daemon)
+  StateCache(bus::Clock& clock, AddDaemon add_daemon)
       : laboratory_(clock), add_daemon_(std::move(add_daemon)) {}
 
   template <class Change>

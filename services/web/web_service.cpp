@@ -9,13 +9,13 @@
 #include "services/store/store.hpp"
 #include "services/web/access_token.hpp"
 #include "services/web/actions.hpp"
-#include "services/web/board.hpp"
 #include "services/web/event_stream.hpp"
 #include "services/web/history_answers.hpp"
-#include "services/web/http_door.hpp"
 #include "services/web/laboratory_answers.hpp"
+#include "services/web/request_router.hpp"
 #include "services/web/run_files.hpp"
 #include "services/web/signal_answers.hpp"
+#include "services/web/state_cache.hpp"
 
 namespace dyncal::services::web {
 namespace {
@@ -23,13 +23,13 @@ namespace {
 constexpr const char* all_benches = "*";
 constexpr std::chrono::milliseconds max_wait{100};
 
-DoorOptions door_options(const WebOptions& options) {
-  DoorOptions door{.listen = options.listen,
-                   .own_names = options.own_names,
-                   .javascript_folder = options.javascript_folder,
-                   .guide_folder = options.guide_folder};
-  door.own_names.push_back(bus::host_name());
-  return door;
+DoorOptions router_options(const WebOptions& options) {
+  DoorOptions router{.listen = options.listen,
+                     .own_names = options.own_names,
+                     .javascript_folder = options.javascript_folder,
+                     .guide_folder = options.guide_folder};
+  router.own_names.push_back(bus::host_name());
+  return router;
 }
 
 } // namespace
@@ -37,15 +37,15 @@ DoorOptions door_options(const WebOptions& options) {
 struct WebService::Parts {
   Parts(Daemon& own, const WebOptions& web, ActionOptions action_options)
       : daemon(own), options(web),
-        board(clock, [this](nlohmann::ordered_json& json) { add_daemon(json); }),
-        files(web.runs_folder), door(door_options(web), clock), answers(board, files),
-        tap(participant, clock), signals(board, tap, clock),
-        events(board, answers, door,
+        cache(clock, [this](nlohmann::ordered_json& json) { add_daemon(json); }),
+        files(web.runs_folder), router(router_options(web), clock), answers(cache, files),
+        tap(participant, clock), signals(cache, tap, clock),
+        events(cache, answers, router,
                [this](const std::string& bench, const httplib::Request& request) {
                  return signals.signal(bench, request);
                }),
         history(store_of(web)),
-        actions(std::move(action_options), participant, clock, board, door) {}
+        actions(std::move(action_options), participant, clock, cache, router) {}
 
   void add_daemon(nlohmann::ordered_json& json) const {
     json["daemon"] = {{"host", identity.host},
@@ -70,9 +70,9 @@ struct WebService::Parts {
   WebOptions options;
   std::shared_ptr<bus::WakeUp> wake_up = std::make_shared<bus::WakeUp>();
   std::optional<live::LaboratoryReaders> readers;
-  Board board;
+  StateCache cache;
   RunFiles files;
-  HttpDoor door;
+  RequestRouter router;
   LaboratoryAnswers answers;
   SignalTap tap;
   SignalAnswers signals;
@@ -88,28 +88,28 @@ void WebService::Parts::add_answers() {
       return answers_of.answer(request, response);
     };
   };
-  door.on_get(ask(answers));
-  door.on_get(ask(signals));
-  door.on_get(ask(events));
-  door.on_get(ask(history));
-  door.on_get(
+  router.on_get(ask(answers));
+  router.on_get(ask(signals));
+  router.on_get(ask(events));
+  router.on_get(ask(history));
+  router.on_get(
       [this](const auto& request, auto& response) { return actions.get(request, response); });
-  door.on_post(
+  router.on_post(
       [this](const auto& request, auto& response) { return actions.post(request, response); });
 }
 
 void WebService::Parts::report() {
   WebFigures figures{.visitors = events.listeners(),
-                     .requests = door.requests(),
+                     .requests = router.requests(),
                      .refused = {},
                      .benches = 0,
                      .left_out = 0,
                      .samples_missed = tap.missed()};
   for (std::size_t i = 0; i < refusal_count; ++i) {
     const auto reason = static_cast<Refusal>(i);
-    figures.refused.emplace_back(to_string(reason), door.refusals().of(reason));
+    figures.refused.emplace_back(to_string(reason), router.refusals().of(reason));
   }
-  board.look([&](const live::Laboratory& laboratory) {
+  cache.look([&](const live::Laboratory& laboratory) {
     const live::LeftOut& out = laboratory.left_out();
     figures.benches = laboratory.benches().size();
     figures.left_out = out.benches + out.sources + out.services + out.runs + out.results;
@@ -151,7 +151,7 @@ Expected<void> WebService::serve() {
   Parts& parts = *parts_;
   const std::stop_token stop = parts.daemon.stop();
   parts.add_answers();
-  if (const auto started = parts.door.start(); !started) {
+  if (const auto started = parts.router.start(); !started) {
     return fail(started.error());
   }
   if (!std::filesystem::exists(parts.options.javascript_folder + "/dygraphs/dygraph.min.js")) {
@@ -159,18 +159,18 @@ Expected<void> WebService::serve() {
                  parts.options.javascript_folder);
   }
   const std::string address =
-      drivers::Address{parts.options.listen.host, static_cast<std::uint16_t>(parts.door.port())}
+      drivers::Address{parts.options.listen.host, static_cast<std::uint16_t>(parts.router.port())}
           .text();
   parts.daemon.supervisor().describe("page at http://" + address + "/");
   parts.daemon.supervisor().serving();
   spdlog::info("web ready ({}), page at http://{}/", parts.identity.dds, address);
   while (!stop.stop_requested()) {
     parts.clock.wait(*parts.wake_up, parts.clock.now() + max_wait);
-    parts.board.change([&](live::Laboratory& laboratory) { parts.readers->work(laboratory); });
+    parts.cache.change([&](live::Laboratory& laboratory) { parts.readers->work(laboratory); });
     parts.report();
     parts.daemon.turned();
   }
-  parts.door.stop();
+  parts.router.stop();
   return {};
 }
 

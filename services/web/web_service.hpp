@@ -1,8 +1,8 @@
-// The daemon: feeds the board from the bus, and opens the door.
+// The daemon: feeds the cache from the bus, and serves its answers.
 //
 // The main loop (serve()) takes what has come and reports to the supervisor; requests are answered
-// by the threads of the door. Samples are read only while somebody looks at a signal. One thread,
-// but for what the door does.
+// by the threads of the router. Samples are read only while somebody looks at a signal. One thread,
+// but for what the router does.
 #pragma once
 
 #include <filesystem>

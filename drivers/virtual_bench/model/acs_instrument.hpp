@@ -51,7 +51,7 @@ public:
   // Appends the samples taken before `time_s`.
   void sample_until(double time_s, const Excitation& excitation, AcsSamples& samples);
 
-  // Whether what it has sampled reaches anybody; numbers it as whoever receives it will see it.
+  // Whether what it has sampled reaches anybody; numbers it as anyone who receives it will see it.
   [[nodiscard]] bool sends(AcsSamples& samples);
 
   [[nodiscard]] std::string description_line() const; // without the line end

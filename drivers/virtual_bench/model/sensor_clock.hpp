@@ -2,7 +2,7 @@
 // temperature.
 //
 // MPU-9250: intervals of 996.955 us
-//   + one of four levels (-39, -13, 13, 39) * 0.835 ns, chosen anew with p = 0.02 a sample, by the
+//   + one of four levels (-39, -13, 13, 39) * 0.835 ns, chosen again with p = 0.02 a sample, by the
 //     temperature
 //   + 1.5 ns/K (T - 28.2 degC)
 //   + white noise of 5 ns.

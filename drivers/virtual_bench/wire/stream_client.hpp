@@ -1,8 +1,8 @@
 // The one client of the ACS stream: frames wait here until the client takes them.
 //
 // drivers/acs/README.md defines the stream. The socket's own buffer is kept small, so that
-// backlog_bytes() soon shows when the client does not keep up; whoever produces frames stops then.
-// One thread.
+// backlog_bytes() soon shows when the client does not keep up; anyone who produces frames stops
+// then. One thread.
 #pragma once
 
 #include <string>

@@ -10,7 +10,7 @@ namespace dyncal::services {
 namespace {
 
 // Of a value; all of them are held while it is drawn, 16 bytes each.
-constexpr std::uint64_t most_monte_carlo_trials = 100'000'000;
+constexpr std::uint64_t max_monte_carlo_trials = 100'000'000;
 
 void add_once(std::vector<std::string>& names, const std::string& name) {
   if (std::find(names.begin(), names.end(), name) == names.end()) {
@@ -162,11 +162,11 @@ Expected<void> check_recipe(const Recipe& recipe) {
     return refuse("series time stamping has neither settling = \"from-data\" nor "
                   "monte_carlo_trials; leave them out of the bench file");
   }
-  if (recipe.monte_carlo_trials > most_monte_carlo_trials) {
+  if (recipe.monte_carlo_trials > max_monte_carlo_trials) {
     return refuse(
         fmt::format("the recipe asks for {} Monte Carlo trials of a value, and at most {} "
                     "can be drawn: lower uncertainty.monte_carlo_trials",
-                    recipe.monte_carlo_trials, most_monte_carlo_trials));
+                    recipe.monte_carlo_trials, max_monte_carlo_trials));
   }
   if (own_clocks && recipe.settling_from_data) {
     return refuse("sensors with stamps of their own are evaluated without settling = "

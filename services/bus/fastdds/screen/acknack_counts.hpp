@@ -1,8 +1,8 @@
-// Which ACKNACKs Fast DDS is to take for those of a reader that begins anew, and the counts of all
+// Which ACKNACKs Fast DDS is to take for those of a reader that starts over, and the counts of all
 // as it is given them: greater with each new one of a reader to a writer, also where the reader's
-// own count began anew.
+// own count started over.
 //
-//   passed = the reader's count + how often it has begun anew
+//   passed = the reader's count + how often it has started over
 //
 // A reader in Cyclone DDS that has forgotten a writer (its program was silent for a lease) and
 // finds it again says so by an ACKNACK for sample 1 with count 0. Fast DDS 2.9 expects sample 0,
@@ -14,15 +14,15 @@
 // A reader in Fast DDS goes on counting, and its first ACKNACK is for sample 0; but where a
 // heartbeat of the writer comes before that, it goes without, and asks for what it lacks. The
 // writer sends nothing that it holds for acknowledged. So a reader that asks for what it has
-// acknowledged before begins anew as well.
+// acknowledged before starts over as well.
 //
-// A copy of such an ACKNACK can come at any time. A reader begins anew after a silence, so it is
+// A copy of such an ACKNACK can come at any time. A reader starts over after a silence, so it is
 // believed where its pair has been silent for min_silence, and every min_interval: before that
 // Fast DDS may not know the reader. Otherwise it counts as an old one, which Fast DDS passes over.
 //
 // Bound: max_newcomers and max_known pairs, of which all are forgotten when there are more. A pair
 // is known when it has gone on; packets with a changed sender make newcomers only. Forgotten with a
-// pair is how often it has begun anew, and so many of its ACKNACKs are left out. One thread at a
+// pair is how often it has started over, and so many of its ACKNACKs are left out. One thread at a
 // time.
 #pragma once
 
@@ -60,7 +60,7 @@ public:
     bool begins_anew = false;
   };
   [[nodiscard]] Passed continued(const Pair& pair, const Acknack& acknack, Instant now);
-  // The count of one by which the reader begins anew; nothing where that is not believed.
+  // The count of one by which the reader starts over; nothing where that is not believed.
   [[nodiscard]] std::optional<std::uint32_t> begin_anew(const Pair& pair, Instant now);
 
 private:

@@ -9,10 +9,10 @@
 // gone max_repeats times.
 //
 // Destinations are addresses, and a participant that begins often has that of one that has ended:
-// a heartbeat that names another participant begins anew there.
+// a heartbeat that names another participant starts over there.
 //
 // A reader passes over heartbeats whose count is not greater than the one before, so all that pass
-// here are counted anew. What is due goes along with the next datagram that is sent anyhow: a
+// here are counted again. What is due goes along with the next datagram that is sent anyhow: a
 // participant that has just begun announces itself twenty times a second.
 //
 // Bound: max_destinations, each of one writer; beyond it the new ones have to wait for Fast DDS.
@@ -44,7 +44,7 @@ public:
   static constexpr std::size_t max_destinations = 1024;
 
   // What goes in place of `datagram`, to wherever: the same with its heartbeats of discovery
-  // counted anew. Nothing where it has no part in discovery.
+  // counted again. Nothing where it has no part in discovery.
   [[nodiscard]] std::optional<Datagram> counted(std::span<const unsigned char> datagram);
   // Of a datagram that was counted, for each destination to which it went.
   void sent(std::span<const unsigned char> datagram, Destination destination, Instant now);

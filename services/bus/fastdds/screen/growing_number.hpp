@@ -7,8 +7,8 @@
 // and none has gone on from the known ones: then the packets between were lost, for a link was down
 // or nobody here listened. Numbers that come again tell neither way.
 //
-// Who comes late does not know where the numbers are, and the first one may be wrong. So they are
-// only held against each other once two have agreed. Belongs to one thread.
+// A late joiner has no reference; its first number may be corrupt. So numbers are only held against
+// each other once two have agreed. Belongs to one thread.
 #pragma once
 
 #include <cstdint>

@@ -1,15 +1,15 @@
 // Whether a participant announces itself, and as it did before.
 //
-// A library believes an announcement (DDSI-RTPS 8.5.3) whoever sent it: one changed byte gives a
-// participant a lease of 0 s, with which it and all it writes are gone, or an address at which
-// nobody is. So the GUID in it is that of the message's sender, and where it can be reached, for
-// how long it is alive and what it consists of stay as they were. A change counts when it has come
-// `sure_after` times in a row without the old announcement between. The GUID of a writer or reader
-// that is announced (8.5.4) has the prefix of the message's sender, too.
+// A library believes an announcement (DDSI-RTPS 8.5.3) regardless of who sent it: one changed byte
+// gives a participant a lease of 0 s, with which it and all it writes are gone, or an address at
+// which nobody is. So the GUID in it is that of the message's sender, and where it can be reached,
+// for how long it is alive and what it consists of stay as they were. A change counts when it has
+// come `sure_after` times in a row without the old announcement between. The GUID of a writer or
+// reader that is announced (8.5.4) has the prefix of the message's sender, too.
 //
 // A participant leaves once, and says so (9.6.3.4): an announcement whose flags were changed is
-// none of that. Of copies of goodbyes only the first is let through; whoever is there again after
-// one that was wrong is missed at the end of the lease.
+// none of that. Of copies of goodbyes only the first is let through; anyone who is there again
+// after one that was wrong is missed at the end of the lease.
 //
 // An announcement without a GUID is refused: Fast DDS 2.9 ends on an assertion (PDP.cpp) when the
 // lease of a participant without one is over.
@@ -17,10 +17,10 @@
 // A writer or reader is announced once, and seldom changes. A copy of its announcement with another
 // number would take the place of the announcement that gets this number, and that writer or reader
 // would never be known. So a second number for one counts when it has come `sure_after` times in a
-// row, as whoever misses it asks for it.
+// row, as anyone who misses it asks for it.
 //
 // Fields that are not known here may change. What is no list of parameters is refused.
-// Bound: max_participants and max_endpoints; when there are more, all are forgotten. Whoever has
+// Bound: max_participants and max_endpoints; when there are more, all are forgotten. Anyone who has
 // not announced itself for silence_limit is gone, and forgotten with what it had. Any thread.
 #pragma once
 

@@ -1,8 +1,8 @@
 // Whether the sequence numbers and counts of a submessage go on from what its writer or reader has
 // sent so far (growing_number.hpp).
 //
-// Libraries believe them, whoever sent the packet. A HEARTBEAT, GAP or ACKNACK that names samples
-// far ahead makes a reader give up what it has not got yet, or a writer forget what was not
+// Libraries believe them, regardless of who sent the packet. A HEARTBEAT, GAP or ACKNACK that names
+// samples far ahead makes a reader give up what it has not got yet, or a writer forget what was not
 // received; a count far ahead makes them deaf to all that follow (DDSI-RTPS 8.4.15.7); DATA with a
 // number to come takes the place of the sample that will have it. One changed byte of a real packet
 // is enough.

@@ -12,7 +12,7 @@
 // So a fragment without a stamp gets that of its sample, and is left out while the first fragment
 // has not come: the writer sends both again.
 //
-// Where a reader begins anew, it may take no notice (acknack_counts.hpp). So
+// Where a reader starts over, it may take no notice (acknack_counts.hpp). So
 //   ACKNACK    of that kind becomes one for sample 0 with a new count
 //
 // What would crash it, make it allocate what a packet asks for or keep it busy is dropped: a

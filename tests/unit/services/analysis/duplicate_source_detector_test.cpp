@@ -1,4 +1,4 @@
-#include "services/analysis/twin_watch.hpp"
+#include "services/analysis/duplicate_source_detector.hpp"
 
 #include <gtest/gtest.h>
 #include <vector>
@@ -6,34 +6,34 @@
 namespace dyncal::services {
 namespace {
 
-TwinWatch watch(const std::vector<std::uint64_t>& sessions) {
-  TwinWatch twins;
+DuplicateSourceDetector watch(const std::vector<std::uint64_t>& sessions) {
+  DuplicateSourceDetector twins;
   for (const std::uint64_t session : sessions) {
     twins.add(session);
   }
   return twins;
 }
 
-TEST(TwinWatch, TakesNewSessionsForRestarts) {
+TEST(DuplicateSourceDetector, TakesNewSessionsForRestarts) {
   EXPECT_FALSE(watch({7, 7, 7}).twins());
   EXPECT_FALSE(watch({7, 7, 8, 8, 9, 10}).twins());
 }
 
-TEST(TwinWatch, LetsTheLastBlocksOfTheSessionBeforeComeLate) {
+TEST(DuplicateSourceDetector, LetsTheLastBlocksOfTheSessionBeforeComeLate) {
   EXPECT_FALSE(watch({7, 8, 7, 7}).twins());
 }
 
-TEST(TwinWatch, SeesSessionsThatTakeTurns) {
+TEST(DuplicateSourceDetector, SeesSessionsThatTakeTurns) {
   EXPECT_TRUE(watch({7, 8, 7, 8}).twins());
   EXPECT_TRUE(watch({7, 7, 8, 8, 8, 7, 8}).twins());
 }
 
-TEST(TwinWatch, SeesATwinOfASourceThatHasRestarted) {
+TEST(DuplicateSourceDetector, SeesATwinOfASourceThatHasRestarted) {
   EXPECT_TRUE(watch({7, 8, 7, 9, 7, 9, 7}).twins());
 }
 
-TEST(TwinWatch, ForgetsATwinWhenTheOtherHasComeAloneForLong) {
-  TwinWatch twins(4);
+TEST(DuplicateSourceDetector, ForgetsATwinWhenTheOtherHasComeAloneForLong) {
+  DuplicateSourceDetector twins(4);
   for (const std::uint64_t session : {7U, 8U, 7U, 8U, 8U, 8U}) {
     twins.add(session);
   }

@@ -40,7 +40,7 @@ protected:
     session_->announce(excitation);
   }
   // Another service takes the run over.
-  void begin_behind() {
+  void start_by_catching_up() {
     wire::Measurement running = synthetic_plan_;
     running.state(wire::MEASUREMENT_RUNNING);
     session_ = create(running, "analysis@test:2", SourceStreams::Begin::behind);
@@ -51,7 +51,7 @@ protected:
     acs_.send(endless(synthetic_.acs_blocks()));
     dau_.send(endless(synthetic_.dau_blocks()));
     session_.reset();
-    begin_behind();
+    start_by_catching_up();
     run_for(1s, {&acs_, &dau_});
     acs_.answer_requests();
     dau_.answer_requests();
@@ -391,7 +391,7 @@ TEST_F(RunSessionCatchUp, GivesTheSameResultOfARunThatBeganBeforeIt) {
   acs_.send(synthetic_.acs_blocks());
   dau_.send(synthetic_.dau_blocks());
   session_.reset(); // died
-  begin_behind();
+  start_by_catching_up();
   EXPECT_EQ(arm_state(), wire::ARM_ARMED);
   work();
   acs_.send_nothing();
@@ -407,7 +407,7 @@ TEST_F(RunSessionCatchUp, IsNotReadyBeforeTheResultsOfARunThatBeganBeforeIt) {
   acs_.send(synthetic_.acs_blocks());
   dau_.send(synthetic_.dau_blocks());
   session_.reset(); // died, and the conductor with it: nothing is announced
-  begin_behind();
+  start_by_catching_up();
   EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_WAITING);
   run_for(1500ms, {});
   acs_.answer_requests();
@@ -452,7 +452,7 @@ TEST_F(RunSessionCatchUp, SaysWhichSourceIsAwayWhileItTakesARunOver) {
   acs_.send(synthetic_.acs_blocks());
   dau_.send(synthetic_.dau_blocks());
   session_.reset();
-  begin_behind();
+  start_by_catching_up();
   run_for(1s, {&acs_});
   acs_.answer_requests();
   run_for(6s, {&acs_}); // and nothing of the other
@@ -473,7 +473,7 @@ TEST_F(RunSessionCatchUp, IsNotReadyWhileASourceIsMissingOrHasAnotherBenchFile) 
   dau_.send(endless(synthetic_.dau_blocks()));
   session_.reset(); // died, and the DAU with it
   sources_.erase(dau_.name());
-  begin_behind();
+  start_by_catching_up();
   for (int i = 0; i < 30; ++i) {
     run_for(100ms, {&acs_});
     acs_.answer_requests();
@@ -498,7 +498,7 @@ TEST_F(RunSessionCatchUp, RefusesARunOfWhichASourceHasTheBeginningNoMore) {
   acs_.send(synthetic_.acs_blocks());
   dau_.send(synthetic_.dau_blocks());
   session_.reset(); // died
-  begin_behind();
+  start_by_catching_up();
   work();
   acs_.answer_requests();
   dau_.answer_requests();

@@ -223,7 +223,7 @@ TEST_F(StreamFollowerTest, AsksForTheBeginningOfANewSession) {
 }
 
 TEST_F(StreamFollowerTest, BegunBehindItAsksForEverythingFromTheAnswerOn) {
-  follower_.begin_behind(now_);
+  follower_.start_by_catching_up(now_);
   live(9);
   live(10);
   const auto due = follower_.due(now_);
@@ -240,13 +240,13 @@ TEST_F(StreamFollowerTest, BegunBehindItAsksForEverythingFromTheAnswerOn) {
 }
 
 TEST_F(StreamFollowerTest, BegunBehindItNoticesThatTheBeginningIsGone) {
-  follower_.begin_behind(now_);
+  follower_.start_by_catching_up(now_);
   again(8); // the oldest that the source has
   EXPECT_TRUE(follower_.lacks_beginning());
 }
 
 TEST_F(StreamFollowerTest, BegunBehindASourceThatHasNothingItNoticesThatTheBeginningIsGone) {
-  follower_.begin_behind(now_);
+  follower_.start_by_catching_up(now_);
   end_of("asker 1");
   EXPECT_FALSE(follower_.lacks_beginning());
   live(9);

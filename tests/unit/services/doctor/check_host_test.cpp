@@ -73,7 +73,7 @@ TEST(CheckHost, CountsPacketsThatWereLostMeanwhile) {
   HostView host = sound_host();
   host.udp_before->without_room = 5;
   host.udp_after->without_room = 12;
-  EXPECT_THAT(warnings(check_host(host, 0)), ElementsAre(HasSubstr("7 UDP packets found no room")));
+  EXPECT_THAT(warnings(check_host(host, 0)), ElementsAre(HasSubstr("7 UDP packets were dropped")));
 }
 
 TEST(CheckHost, NamesAFullDisk) {

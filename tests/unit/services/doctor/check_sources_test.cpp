@@ -31,7 +31,7 @@ protected:
              .writers = {"lab-2:7"},
              .twins = false};
   }
-  SeenSource& dau() { return view_.sources[{"acc-1", "dau"}]; }
+  ObservedSource& dau() { return view_.sources[{"acc-1", "dau"}]; }
   [[nodiscard]] Findings check(const std::optional<BenchFile>& bench = std::nullopt) const {
     return check_sources(view_, bench);
   }

@@ -30,7 +30,7 @@ protected:
     statuses_.write(status);
     watch_->work();
   }
-  SeenSource dau() { return watch_->view().sources[{"acc-1", "dau"}]; }
+  ObservedSource dau() { return watch_->view().sources[{"acc-1", "dau"}]; }
 
   bus::SteppedClock clock_;
   bus::MemoryNetwork network_{clock_};

@@ -22,7 +22,7 @@ protected:
   }
   [[nodiscard]] std::string why() const { return why_no_analysis_is_heard(view_, host_); }
   void answer(const std::string& program) {
-    HeardProgram heard;
+    DiscoveredProgram heard;
     heard.identity.program = program;
     heard.identity.host = "lab-2";
     view_.programs.push_back(heard);

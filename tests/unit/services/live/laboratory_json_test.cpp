@@ -46,7 +46,7 @@ TEST(LaboratoryJson, NamesTheBenchOfAProgram) {
   bus::SteppedClock clock;
   Laboratory laboratory(clock);
   laboratory.take(analysis_of("acc-1", "r1", wire::ARM_ARMED, wire::HEALTH_FAILED));
-  HeardProgram program;
+  DiscoveredProgram program;
   program.identity = {"dyncal-analysis", "lab-1", 1, "dyncal 9", "cyclonedds"};
   program.clock = ClockOffset{0.25, 0.001};
   laboratory.set_programs({program}, {{"lab-1", *program.clock}});
@@ -65,7 +65,7 @@ TEST(LaboratoryJson, NamesTheBenchOfAProgram) {
 TEST(LaboratoryJson, TellsOfAnAnalysisThatDiedInARunButNotOfOneWhoseRunIsOver) {
   bus::SteppedClock clock;
   Laboratory laboratory(clock);
-  HeardProgram program;
+  DiscoveredProgram program;
   program.identity = {"dyncal-analysis", "lab-1", 1, "dyncal 9", "cyclonedds"};
   laboratory.set_programs({program}, {});
   const auto hear = [&](wire::MeasurementState state) {

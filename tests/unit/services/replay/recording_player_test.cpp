@@ -32,7 +32,7 @@ TEST(RecordingPlayer, PutsNoGuardBackThatIsNotThere) {
   bus::MemoryNetwork network;
   bus::Participant playing = network.join("replay");
   bus::Participant listening = network.join("watch");
-  ReplayWish wish;
+  ReplayOptions wish;
   wish.recording = file;
   wish.speed = 0.0;
   auto player = RecordingPlayer::open(playing, wish, {});

@@ -107,7 +107,8 @@ protected:
   bus::MemoryNetwork network_{clock_};
   bus::Participant sending_ = network_.join("source");
   bus::Participant asking_ = network_.join("analysis");
-  std::shared_ptr<KeptBlocks> kept_ = std::make_shared<KeptBlocks>(KeptLimits{});
+  std::shared_ptr<RetransmissionBuffer> kept_ =
+      std::make_shared<RetransmissionBuffer>(KeptLimits{});
   CatchUpServer catch_up_{sending_, clock_};
   bus::Writer<wire::CatchUpRequest> requests_ =
       asking_.writer(bus::topics::catch_up_request, bench).value();
@@ -275,7 +276,7 @@ TEST_F(CatchUpServerTest, LeavesRequestsForOthersAndNonsenseAlone) {
 }
 
 TEST_F(CatchUpServerTest, GivesRecordsOfATriggeredSource) {
-  auto kept = std::make_shared<KeptBlocks>(KeptLimits{});
+  auto kept = std::make_shared<RetransmissionBuffer>(KeptLimits{});
   ASSERT_TRUE(catch_up_.add({.bench = bench, .source = "dso", .kind = SourceKind::dso}, kept));
   wire::TriggeredRecord record;
   record.bench(bench);

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "services/bus/memory/memory_network.hpp"
-#include "services/source/source_channel.hpp"
+#include "services/source/source_publication.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -55,7 +55,8 @@ TEST(KeptSpan, IsInTheLogOfASourceOnceForEachRate) {
   const auto publisher = std::make_shared<SourcePublisher>(
       SourceOptions{.bench = "b", .source = "acs"}, std::make_shared<bus::WakeUp>());
   const auto channel =
-      SourceChannel::create(participant, publisher, std::make_shared<KeptBlocks>(KeptLimits{}), "")
+      SourcePublication::create(participant, publisher,
+                                std::make_shared<RetransmissionBuffer>(KeptLimits{}), "")
           .value();
   testing::internal::CaptureStdout(); // where the log goes
   for (const char* firmware : {"1", "2", "3"}) {

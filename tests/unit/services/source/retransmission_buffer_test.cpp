@@ -1,4 +1,4 @@
-#include "services/source/kept_blocks.hpp"
+#include "services/source/retransmission_buffer.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ using namespace std::chrono_literals;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-class KeptBlocksTest : public testing::Test {
+class RetransmissionBufferTest : public testing::Test {
 protected:
   static constexpr std::size_t message_bytes = 100'000;
   static constexpr std::uint64_t session = 7;
@@ -35,14 +35,14 @@ protected:
     return std::string(message_bytes, static_cast<char>('a' + number % 26)) +
            std::to_string(number);
   }
-  void keep(KeptBlocks& kept, std::uint64_t number, const std::string& run = "",
+  void keep(RetransmissionBuffer& kept, std::uint64_t number, const std::string& run = "",
             std::uint64_t of = session) {
     kept.keep(
         {.session = of, .number = number, .acknowledged_run = run, .payload = payload(number)},
         now_);
   }
   // One each second, from the numbers [first, end), while a run is under way.
-  void keep_run(KeptBlocks& kept, std::uint64_t first, std::uint64_t end) {
+  void keep_run(RetransmissionBuffer& kept, std::uint64_t first, std::uint64_t end) {
     for (std::uint64_t number = first; number < end; ++number) {
       kept.want(now_);
       keep(kept, number);
@@ -50,7 +50,8 @@ protected:
       now_ += 1s;
     }
   }
-  static std::vector<std::uint64_t> numbers(KeptBlocks& kept, KeptBlocks::Place from = 0) {
+  static std::vector<std::uint64_t> numbers(RetransmissionBuffer& kept,
+                                            RetransmissionBuffer::Place from = 0) {
     std::vector<std::uint64_t> all;
     while (auto found = kept.at_or_behind(from)) {
       EXPECT_EQ(found->payload, payload(found->number)) << found->number;
@@ -68,21 +69,21 @@ protected:
   }
 
   tests::TemporaryFolder folder_;
-  KeptBlocks::Instant now_{std::chrono::hours(1)};
+  RetransmissionBuffer::Instant now_{std::chrono::hours(1)};
 };
 
-TEST_F(KeptBlocksTest, KeepsTheMinutesOfARunPartlyInMemoryPartlyInAFile) {
-  KeptBlocks kept(limits());
+TEST_F(RetransmissionBufferTest, KeepsTheMinutesOfARunPartlyInMemoryPartlyInAFile) {
+  RetransmissionBuffer kept(limits());
   keep_run(kept, 0, 200);
   EXPECT_EQ(numbers(kept), range(0, 200));
   EXPECT_EQ(kept.not_kept(), 0U);
   EXPECT_EQ(kept.problem(), "");
 }
 
-TEST_F(KeptBlocksTest, DropsWhatIsOlderThanItsSpan) {
+TEST_F(RetransmissionBufferTest, DropsWhatIsOlderThanItsSpan) {
   KeptLimits minute = limits();
   minute.span = 60s;
-  KeptBlocks kept(minute);
+  RetransmissionBuffer kept(minute);
   keep_run(kept, 0, 200);
   kept.tidy(now_);
   EXPECT_EQ(numbers(kept), range(140, 200));
@@ -90,10 +91,10 @@ TEST_F(KeptBlocksTest, DropsWhatIsOlderThanItsSpan) {
 }
 
 // A run of half an hour can be taken over at its end.
-TEST_F(KeptBlocksTest, KeepsTheNewestRunFromItsBeginningHoweverOldThatIs) {
+TEST_F(RetransmissionBufferTest, KeepsTheNewestRunFromItsBeginningHoweverOldThatIs) {
   KeptLimits minute = limits();
   minute.span = 60s;
-  KeptBlocks kept(minute);
+  RetransmissionBuffer kept(minute);
   keep_run(kept, 0, 100);
   kept.want(now_);
   keep(kept, 100, "first");
@@ -112,8 +113,8 @@ TEST_F(KeptBlocksTest, KeepsTheNewestRunFromItsBeginningHoweverOldThatIs) {
   EXPECT_EQ(kept.not_kept(), 0U);
 }
 
-TEST_F(KeptBlocksTest, SaysThatTheBeginningOfARunIsGoneForWantOfRoom) {
-  KeptBlocks kept(with_little_room());
+TEST_F(RetransmissionBufferTest, SaysThatTheBeginningOfARunIsGoneForWantOfRoom) {
+  RetransmissionBuffer kept(with_little_room());
   keep(kept, 0, "long");
   keep_run(kept, 1, 200);
   EXPECT_GT(numbers(kept).front(), 140U);
@@ -121,8 +122,8 @@ TEST_F(KeptBlocksTest, SaysThatTheBeginningOfARunIsGoneForWantOfRoom) {
   EXPECT_THAT(kept.problem(), HasSubstr("4 MiB"));
 }
 
-TEST_F(KeptBlocksTest, SaysThatTheBeginningIsGoneAsLongAsTheRunLasts) {
-  KeptBlocks kept(with_little_room());
+TEST_F(RetransmissionBufferTest, SaysThatTheBeginningIsGoneAsLongAsTheRunLasts) {
+  RetransmissionBuffer kept(with_little_room());
   keep(kept, 0, "long");
   keep_run(kept, 1, 100);
   for (int second = 0; second < 60; ++second) { // nothing more comes, and room is enough
@@ -136,21 +137,21 @@ TEST_F(KeptBlocksTest, SaysThatTheBeginningIsGoneAsLongAsTheRunLasts) {
   EXPECT_EQ(kept.problem(), "");
 }
 
-TEST_F(KeptBlocksTest, SaysThatARunIsLongerThanRunsAreKept) {
+TEST_F(RetransmissionBufferTest, SaysThatARunIsLongerThanRunsAreKept) {
   KeptLimits hour = limits();
   hour.span = 20s;
   hour.run_span = 120s;
-  KeptBlocks kept(hour);
+  RetransmissionBuffer kept(hour);
   keep(kept, 0, "long");
   keep_run(kept, 1, 200);
   EXPECT_EQ(numbers(kept).size(), 121U);
   EXPECT_THAT(kept.problem(), HasSubstr("no more than 2 min of a run are kept"));
 }
 
-TEST_F(KeptBlocksTest, KeepsOnlyTheNewestInMemoryWhileNoRunNeedsThem) {
+TEST_F(RetransmissionBufferTest, KeepsOnlyTheNewestInMemoryWhileNoRunNeedsThem) {
   KeptLimits nowhere = limits();
   nowhere.folder = "/nowhere/at/all"; // would be noticed
-  KeptBlocks kept(nowhere);
+  RetransmissionBuffer kept(nowhere);
   for (std::uint64_t number = 0; number < 200; ++number) {
     keep(kept, number);
     kept.tidy(now_);
@@ -161,10 +162,10 @@ TEST_F(KeptBlocksTest, KeepsOnlyTheNewestInMemoryWhileNoRunNeedsThem) {
   EXPECT_EQ(kept.problem(), "");
 }
 
-TEST_F(KeptBlocksTest, KeepsFewerMinutesAndSaysSoWhenTheFileIsFull) {
+TEST_F(RetransmissionBufferTest, KeepsFewerMinutesAndSaysSoWhenTheFileIsFull) {
   KeptLimits small = limits();
   small.file_bytes = 4 << 20U;
-  KeptBlocks kept(small);
+  RetransmissionBuffer kept(small);
   keep_run(kept, 0, 200);
   const auto held = numbers(kept);
   EXPECT_EQ(held, range(held.front(), 200));
@@ -175,10 +176,10 @@ TEST_F(KeptBlocksTest, KeepsFewerMinutesAndSaysSoWhenTheFileIsFull) {
   EXPECT_THAT(kept.problem(), HasSubstr("4 MiB"));
 }
 
-TEST_F(KeptBlocksTest, KeepsWhatMemoryHoldsWhereThereCanBeNoFile) {
+TEST_F(RetransmissionBufferTest, KeepsWhatMemoryHoldsWhereThereCanBeNoFile) {
   KeptLimits nowhere = limits();
   nowhere.folder = "/nowhere/at/all";
-  KeptBlocks kept(nowhere);
+  RetransmissionBuffer kept(nowhere);
   keep_run(kept, 0, 200);
   EXPECT_EQ(numbers(kept), range(190, 200));
   EXPECT_THAT(kept.problem(), HasSubstr("/nowhere/at/all"));
@@ -187,8 +188,8 @@ TEST_F(KeptBlocksTest, KeepsWhatMemoryHoldsWhereThereCanBeNoFile) {
   EXPECT_EQ(kept.problem(), "");
 }
 
-TEST_F(KeptBlocksTest, NeverHoldsMoreMemoryThanItMayWhileTheDiskIsBehind) {
-  KeptBlocks kept(limits());
+TEST_F(RetransmissionBufferTest, NeverHoldsMoreMemoryThanItMayWhileTheDiskIsBehind) {
+  RetransmissionBuffer kept(limits());
   kept.want(now_);
   for (std::uint64_t number = 0; number < 200; ++number) {
     keep(kept, number); // nobody tidies
@@ -201,16 +202,16 @@ TEST_F(KeptBlocksTest, NeverHoldsMoreMemoryThanItMayWhileTheDiskIsBehind) {
   EXPECT_THAT(kept.problem(), HasSubstr("too slow"));
 }
 
-TEST_F(KeptBlocksTest, BeginsBehindTheMessageThatSomebodyHas) {
-  KeptBlocks kept(limits());
+TEST_F(RetransmissionBufferTest, BeginsBehindTheMessageThatSomebodyHas) {
+  RetransmissionBuffer kept(limits());
   keep_run(kept, 0, 30);
   EXPECT_EQ(numbers(kept, kept.place_behind(session, 12, "r")), range(13, 30));
   EXPECT_THAT(numbers(kept, kept.place_behind(session, 29, "r")), IsEmpty());
   EXPECT_THAT(numbers(kept, kept.place_behind(session, 100, "r")), IsEmpty());
 }
 
-TEST_F(KeptBlocksTest, GivesTheSessionsBehindTheOneThatEnded) {
-  KeptBlocks kept(limits());
+TEST_F(RetransmissionBufferTest, GivesTheSessionsBehindTheOneThatEnded) {
+  RetransmissionBuffer kept(limits());
   keep_run(kept, 0, 5);
   for (std::uint64_t number = 0; number < 3; ++number) {
     keep(kept, number, "", session + 1);
@@ -223,10 +224,10 @@ TEST_F(KeptBlocksTest, GivesTheSessionsBehindTheOneThatEnded) {
             (std::vector<std::uint64_t>{1, 2}));
 }
 
-TEST_F(KeptBlocksTest, GivesAllNewerSessionsBehindOneThatIsNotKeptAnyMore) {
+TEST_F(RetransmissionBufferTest, GivesAllNewerSessionsBehindOneThatIsNotKeptAnyMore) {
   KeptLimits minute = limits();
   minute.span = 60s;
-  KeptBlocks kept(minute);
+  RetransmissionBuffer kept(minute);
   keep_run(kept, 0, 5);
   now_ += 50s;
   keep(kept, 0, "", session + 1);
@@ -237,8 +238,8 @@ TEST_F(KeptBlocksTest, GivesAllNewerSessionsBehindOneThatIsNotKeptAnyMore) {
             (std::vector<std::uint64_t>{0, 1}));
 }
 
-TEST_F(KeptBlocksTest, BeginsAtTheAnswerToTheRunForWhoHasNothingOrAnUnknownSession) {
-  KeptBlocks kept(limits());
+TEST_F(RetransmissionBufferTest, BeginsAtTheAnswerToTheRunForWhoHasNothingOrAnUnknownSession) {
+  RetransmissionBuffer kept(limits());
   keep_run(kept, 0, 5);
   keep(kept, 5, "run-1");
   keep(kept, 6);
@@ -248,8 +249,8 @@ TEST_F(KeptBlocksTest, BeginsAtTheAnswerToTheRunForWhoHasNothingOrAnUnknownSessi
   EXPECT_EQ(numbers(kept, kept.place_behind(0, 0, "never")), range(0, 8));
 }
 
-TEST_F(KeptBlocksTest, FindsRecordsBetweenMarksWithoutNumber) {
-  KeptBlocks kept(limits());
+TEST_F(RetransmissionBufferTest, FindsRecordsBetweenMarksWithoutNumber) {
+  RetransmissionBuffer kept(limits());
   keep(kept, 0, "run-1");
   for (const std::uint64_t number : {1, 2, 0, 3, 0}) { // 0: answers, the end
     keep(kept, number);

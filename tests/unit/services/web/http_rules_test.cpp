@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "services/web/http_door.hpp"
 #include "services/web/laboratory_answers.hpp"
+#include "services/web/request_router.hpp"
 #include "tests/temporary_folder.hpp"
 #include "tests/unit/services/live/messages.hpp"
 #include "tests/unit/services/web/raw_visitor.hpp"
@@ -26,20 +26,20 @@ protected:
     std::ofstream(run / "empty.txt");
     std::ofstream(folder_.path() / "library.js") << "1";
     fs::create_symlink("/etc/passwd", folder_.path() / "link.js");
-    door_.on_get(
+    router_.on_get(
         [this](const auto& request, auto& response) { return answers_.answer(request, response); });
-    door_.on_post([](const httplib::Request& request, httplib::Response& response) {
+    router_.on_post([](const httplib::Request& request, httplib::Response& response) {
       response.set_content(request.body, "text/plain");
       return request.path == "/api/run";
     });
-    board_.change(
+    cache_.change(
         [](live::Laboratory& laboratory) { laboratory.take(live::status_of("acc-1", "dau")); });
-    ASSERT_TRUE(door_.start());
+    ASSERT_TRUE(router_.start());
   }
   // Head and body of the answer to these lines, after which the connection is closed.
   [[nodiscard]] std::string answer_to(const std::string& lines,
                                       const std::string& body = "") const {
-    const RawVisitor visitor(door_.port());
+    const RawVisitor visitor(router_.port());
     EXPECT_TRUE(visitor.write(lines + "Connection: close\r\n\r\n" + body));
     return visitor.read_all();
   }
@@ -66,14 +66,14 @@ protected:
 
   tests::TemporaryFolder folder_;
   bus::Clock& clock_ = bus::system_clock();
-  Board board_{clock_, [](nlohmann::ordered_json&) {}};
+  StateCache cache_{clock_, [](nlohmann::ordered_json&) {}};
   RunFiles files_{folder_.path()};
-  LaboratoryAnswers answers_{board_, files_};
-  HttpDoor door_{{.listen = {"127.0.0.1", 0},
-                  .own_names = {},
-                  .javascript_folder = folder_.path(),
-                  .guide_folder = ""},
-                 clock_};
+  LaboratoryAnswers answers_{cache_, files_};
+  RequestRouter router_{{.listen = {"127.0.0.1", 0},
+                         .own_names = {},
+                         .javascript_folder = folder_.path(),
+                         .guide_folder = ""},
+                        clock_};
 };
 
 TEST_F(HttpRules, AnswerEveryMethodAtEveryKindOfAddress) {
@@ -158,12 +158,12 @@ TEST_F(HttpRules, RefuseWhatIsNoRequestWithItsStatus) {
       EXPECT_TRUE(nlohmann::json::parse(body_of(answer))["error"]["message"].is_string());
     }
   }
-  EXPECT_GE(door_.refusals().of(Refusal::malformed), 6U);
-  EXPECT_GE(door_.refusals().of(Refusal::too_large), 3U);
+  EXPECT_GE(router_.refusals().of(Refusal::malformed), 6U);
+  EXPECT_GE(router_.refusals().of(Refusal::too_large), 3U);
 }
 
 TEST_F(HttpRules, TakeABodyThatWaitsForItsContinue) {
-  const RawVisitor visitor(door_.port());
+  const RawVisitor visitor(router_.port());
   ASSERT_TRUE(visitor.write("POST /api/run HTTP/1.1\r\nHost: localhost\r\nContent-Length: 5\r\n"
                             "Content-Type: application/json\r\nExpect: 100-continue\r\n\r\n"));
   EXPECT_EQ(visitor.read(), "HTTP/1.1 100 Continue\r\n\r\n");
@@ -174,7 +174,7 @@ TEST_F(HttpRules, TakeABodyThatWaitsForItsContinue) {
 }
 
 TEST_F(HttpRules, AnswerRequestsThatComeTogetherInTheirOrder) {
-  const RawVisitor visitor(door_.port());
+  const RawVisitor visitor(router_.port());
   const std::string fields = " HTTP/1.1\r\nHost: localhost\r\n";
   ASSERT_TRUE(visitor.write("HEAD /" + fields + "\r\nHEAD /nothing" + fields + "\r\nHEAD /api/run" +
                             fields + "Connection: close\r\n\r\n"));
@@ -190,7 +190,7 @@ TEST_F(HttpRules, AnswerRequestsThatComeTogetherInTheirOrder) {
 
 // What a body says is no request, even where the method has none.
 TEST_F(HttpRules, ReadNoRequestInTheBodyOfAnother) {
-  const RawVisitor visitor(door_.port());
+  const RawVisitor visitor(router_.port());
   const std::string inner = "GET /api/laboratory HTTP/1.1\r\nHost: localhost\r\n\r\n";
   ASSERT_TRUE(visitor.write("HEAD / HTTP/1.1\r\nHost: localhost\r\nContent-Length: " +
                             std::to_string(inner.size()) + "\r\n\r\n" + inner));

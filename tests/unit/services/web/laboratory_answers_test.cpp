@@ -27,7 +27,7 @@ TEST(BenchAddress, DividesNameAndPart) {
 class FigureAnswers : public testing::Test {
 protected:
   FigureAnswers() {
-    board_.change([](live::Laboratory& laboratory) {
+    cache_.change([](live::Laboratory& laboratory) {
       laboratory.take(live::measurement_of("acc-1", "r1", wire::MEASUREMENT_RUNNING));
       laboratory.take(live::result_of("acc-1", "r1", 1, 0.3));
     });
@@ -48,9 +48,9 @@ protected:
   }
 
   bus::SteppedClock clock_;
-  Board board_{clock_, [](nlohmann::ordered_json&) {}};
+  StateCache cache_{clock_, [](nlohmann::ordered_json&) {}};
   RunFiles files_{""};
-  LaboratoryAnswers answers_{board_, files_};
+  LaboratoryAnswers answers_{cache_, files_};
 };
 
 TEST_F(FigureAnswers, HaveTheBarsThatAreAskedForAndExpandedOnesOtherwise) {

@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "services/web/http_door.hpp"
 #include "services/web/limited_stream.hpp"
+#include "services/web/request_router.hpp"
 #include "tests/unit/services/web/raw_visitor.hpp"
 
 namespace dyncal::services::web {
@@ -23,7 +23,7 @@ const std::string get_page = "GET / HTTP/1.1\r\nHost: localhost\r\nConnection: c
 class LimitedServerTest : public testing::Test {
 protected:
   void SetUp() override {
-    door_.on_get([](const httplib::Request& request, httplib::Response& response) {
+    router_.on_get([](const httplib::Request& request, httplib::Response& response) {
       response.set_content_provider(big_bytes, "text/plain",
                                     [](std::size_t, std::size_t length, httplib::DataSink& sink) {
                                       static const std::string part(65536, 'a');
@@ -31,13 +31,13 @@ protected:
                                     });
       return request.path.starts_with("/files/");
     });
-    ASSERT_TRUE(door_.start());
+    ASSERT_TRUE(router_.start());
   }
   // Each writes this and then nothing, and reads nothing.
   [[nodiscard]] std::vector<RawVisitor> slow_visitors(std::size_t count, const std::string& bytes) {
     std::vector<RawVisitor> visitors;
     for (std::size_t i = 0; i < count; ++i) {
-      visitors.emplace_back(door_.port(), 4096);
+      visitors.emplace_back(router_.port(), 4096);
       EXPECT_TRUE(visitors.back().is_connected() && visitors.back().write(bytes)) << i;
     }
     return visitors;
@@ -45,14 +45,14 @@ protected:
   // How long somebody waits for the page who comes now.
   [[nodiscard]] Clock::duration page_takes() const {
     const auto began = Clock::now();
-    const RawVisitor visitor(door_.port());
+    const RawVisitor visitor(router_.port());
     EXPECT_TRUE(visitor.write(get_page));
     EXPECT_TRUE(visitor.read().starts_with("HTTP/1.1 200"));
     return Clock::now() - began;
   }
 
   bus::Clock& clock_ = bus::system_clock();
-  HttpDoor door_{
+  RequestRouter router_{
       {.listen = {"127.0.0.1", 0}, .own_names = {}, .javascript_folder = "", .guide_folder = ""},
       clock_};
 };
@@ -75,24 +75,24 @@ TEST_F(LimitedServerTest, LetsNobodyWaitForThoseWhoTakeSlowly) {
   for (int i = 0; i < 3; ++i) {
     EXPECT_LT(page_takes(), longest_wait);
   }
-  EXPECT_GT(door_.refusals().of(Refusal::slow), slow_count / 2);
+  EXPECT_GT(router_.refusals().of(Refusal::slow), slow_count / 2);
 }
 
 TEST_F(LimitedServerTest, ClosesTheOldestWhenMoreComeThanItHasRoomFor) {
   const auto visitors = slow_visitors(LimitedServer::max_connections + 100, "GET /");
   EXPECT_LT(page_takes(), longest_wait);
-  EXPECT_GE(door_.refusals().of(Refusal::slow), 100U);
+  EXPECT_GE(router_.refusals().of(Refusal::slow), 100U);
 }
 
 // The opposite: who is slow for a while, and keeps nobody out, is answered whole.
 TEST_F(LimitedServerTest, AnswersASlowVisitorWhole) {
-  const RawVisitor sender(door_.port());
+  const RawVisitor sender(router_.port());
   for (const char letter : get_page) {
     ASSERT_TRUE(sender.write(std::string(1, letter)));
   }
   EXPECT_TRUE(sender.read_all().ends_with("</html>\n"));
 
-  const RawVisitor taker(door_.port(), 4096);
+  const RawVisitor taker(router_.port(), 4096);
   ASSERT_TRUE(taker.write("GET /files/a/b/c HTTP/1.1\r\nHost: localhost\r\n"
                           "Connection: close\r\n\r\n"));
   std::string first = taker.read();
@@ -101,7 +101,7 @@ TEST_F(LimitedServerTest, AnswersASlowVisitorWhole) {
     EXPECT_LT(page_takes(), longest_wait);
   }
   EXPECT_GT(first.size() + taker.read_all().size(), big_bytes);
-  EXPECT_EQ(door_.refusals().of(Refusal::slow), 0U);
+  EXPECT_EQ(router_.refusals().of(Refusal::slow), 0U);
 }
 
 } // namespace

@@ -1,6 +1,6 @@
-// The door as it stands open: a real server on a free port of loopback, and visitors with bad
+// The router open to visitors: a real server on a free port of loopback, and visitors with bad
 // manners.
-#include "services/web/http_door.hpp"
+#include "services/web/request_router.hpp"
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -30,34 +30,34 @@ using namespace std::chrono_literals;
 
 constexpr const char* secret = "0123456789abcdef0123";
 
-class HttpDoorTest : public testing::Test {
+class RequestRouterTest : public testing::Test {
 protected:
   void SetUp() override {
-    door_.on_get(
+    router_.on_get(
         [this](const auto& request, auto& response) { return answers_.answer(request, response); });
-    door_.on_get(
+    router_.on_get(
         [this](const auto& request, auto& response) { return events_.answer(request, response); });
-    door_.on_post(
+    router_.on_post(
         [this](const auto& request, auto& response) { return actions_.post(request, response); });
-    board_.change([](live::Laboratory& laboratory) {
+    cache_.change([](live::Laboratory& laboratory) {
       laboratory.take(live::status_of("<b>acc-1</b>", "dau"));
     });
-    ASSERT_TRUE(door_.start());
+    ASSERT_TRUE(router_.start());
   }
   [[nodiscard]] httplib::Client visitor() const {
-    httplib::Client client("127.0.0.1", door_.port());
+    httplib::Client client("127.0.0.1", router_.port());
     client.set_read_timeout(20s);
     return client;
   }
   [[nodiscard]] std::uint64_t refused(Refusal refusal) const {
-    return door_.refusals().of(refusal);
+    return router_.refusals().of(refusal);
   }
   // What a visitor is answered who writes these bytes and then nothing.
   [[nodiscard]] std::string answer_to(const std::string& bytes) const {
     const int visitor = socket(AF_INET, SOCK_STREAM, 0);
     sockaddr_in address{};
     address.sin_family = AF_INET;
-    address.sin_port = htons(static_cast<std::uint16_t>(door_.port()));
+    address.sin_port = htons(static_cast<std::uint16_t>(router_.port()));
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     const timeval limit{.tv_sec = 20, .tv_usec = 0};
     setsockopt(visitor, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof(limit));
@@ -81,25 +81,25 @@ protected:
   bus::MemoryNetwork network_;
   bus::Participant participant_ = network_.join("web");
   bus::Clock& clock_ = bus::system_clock();
-  Board board_{clock_, [](Json&) {}};
+  StateCache cache_{clock_, [](Json&) {}};
   RunFiles files_{folder_.path()};
-  HttpDoor door_{{.listen = {"127.0.0.1", 0},
-                  .own_names = {"lab-1"},
-                  .javascript_folder = folder_.path(),
-                  .guide_folder = ""},
-                 clock_};
-  LaboratoryAnswers answers_{board_, files_};
-  EventStream events_{board_, answers_, door_,
+  RequestRouter router_{{.listen = {"127.0.0.1", 0},
+                         .own_names = {"lab-1"},
+                         .javascript_folder = folder_.path(),
+                         .guide_folder = ""},
+                        clock_};
+  LaboratoryAnswers answers_{cache_, files_};
+  EventStream events_{cache_, answers_, router_,
                       [](const std::string&, const httplib::Request&) { return Text(); }};
   Actions actions_{
       {.token = secret, .benches_folder = {}, .runs_folder = {}, .network = {}, .sender = "test"},
       participant_,
       clock_,
-      board_,
-      door_};
+      cache_,
+      router_};
 };
 
-TEST_F(HttpDoorTest, ServesThePageWithHeadersThatAllowNothingForeign) {
+TEST_F(RequestRouterTest, ServesThePageWithHeadersThatAllowNothingForeign) {
   const auto page = visitor().Get("/");
   ASSERT_TRUE(page);
   EXPECT_EQ(page->status, 200);
@@ -111,7 +111,7 @@ TEST_F(HttpDoorTest, ServesThePageWithHeadersThatAllowNothingForeign) {
   EXPECT_EQ(visitor().Get("/page/other.html")->status, 404);
 }
 
-TEST_F(HttpDoorTest, AnswersWithHostileNamesAsText) {
+TEST_F(RequestRouterTest, AnswersWithHostileNamesAsText) {
   const auto answer = visitor().Get("/api/bench/%3Cb%3Eacc-1%3C%2Fb%3E");
   ASSERT_TRUE(answer);
   EXPECT_EQ(answer->status, 200);
@@ -119,12 +119,12 @@ TEST_F(HttpDoorTest, AnswersWithHostileNamesAsText) {
   EXPECT_EQ(Json::parse(answer->body)["bench"], "<b>acc-1</b>");
 }
 
-TEST_F(HttpDoorTest, SharesItsPortWithNobody) {
-  HttpDoor second{{.listen = {"127.0.0.1", static_cast<std::uint16_t>(door_.port())},
-                   .own_names = {},
-                   .javascript_folder = folder_.path(),
-                   .guide_folder = ""},
-                  clock_};
+TEST_F(RequestRouterTest, SharesItsPortWithNobody) {
+  RequestRouter second{{.listen = {"127.0.0.1", static_cast<std::uint16_t>(router_.port())},
+                        .own_names = {},
+                        .javascript_folder = folder_.path(),
+                        .guide_folder = ""},
+                       clock_};
   const auto started = second.start();
   ASSERT_FALSE(started);
   EXPECT_EQ(started.error().code, ErrorCode::network);
@@ -132,20 +132,20 @@ TEST_F(HttpDoorTest, SharesItsPortWithNobody) {
       << started.error().message;
 }
 
-TEST_F(HttpDoorTest, ClosesAsSoonAsItHasOpened) {
+TEST_F(RequestRouterTest, ClosesAsSoonAsItHasOpened) {
   for (int i = 0; i < 200; ++i) {
-    HttpDoor other{{.listen = {"127.0.0.1", 0},
-                    .own_names = {},
-                    .javascript_folder = folder_.path(),
-                    .guide_folder = ""},
-                   clock_};
+    RequestRouter other{{.listen = {"127.0.0.1", 0},
+                         .own_names = {},
+                         .javascript_folder = folder_.path(),
+                         .guide_folder = ""},
+                        clock_};
     ASSERT_TRUE(other.start());
     ASSERT_GT(other.port(), 0);
     other.stop();
   }
 }
 
-TEST_F(HttpDoorTest, LeadsOutOfNoFolder) {
+TEST_F(RequestRouterTest, LeadsOutOfNoFolder) {
   std::ofstream(folder_.path() / "library.js") << "1";
   EXPECT_EQ(visitor().Get("/javascript/library.js")->status, 200);
   for (const char* path :
@@ -161,7 +161,7 @@ TEST_F(HttpDoorTest, LeadsOutOfNoFolder) {
   EXPECT_GE(refused(Refusal::not_found), 6U);
 }
 
-TEST_F(HttpDoorTest, AnswersNobodyWhoCallsItByAnotherName) {
+TEST_F(RequestRouterTest, AnswersNobodyWhoCallsItByAnotherName) {
   EXPECT_EQ(visitor().Get("/api/laboratory", {{"Host", "evil.example"}})->status, 421);
   EXPECT_EQ(visitor().Get("/api/laboratory", {{"Host", "lab-1:8080"}})->status, 200);
   EXPECT_EQ(refused(Refusal::foreign_host), 1U);
@@ -170,7 +170,7 @@ TEST_F(HttpDoorTest, AnswersNobodyWhoCallsItByAnotherName) {
   EXPECT_EQ(refused(Refusal::foreign_origin), 2U);
 }
 
-TEST_F(HttpDoorTest, RefusesWhatIsTooLargeOrNoRequest) {
+TEST_F(RequestRouterTest, RefusesWhatIsTooLargeOrNoRequest) {
   EXPECT_EQ(command(secret, {}, std::string(max_body_bytes + 1, ' '))->status, 413);
   EXPECT_EQ(visitor().Get("/" + std::string(2000, 'a'))->status, 414);
   EXPECT_GE(refused(Refusal::too_large), 2U);
@@ -179,7 +179,7 @@ TEST_F(HttpDoorTest, RefusesWhatIsTooLargeOrNoRequest) {
   EXPECT_EQ(visitor().Post("/api/run", "{}", "text/plain")->status, 415);
 }
 
-TEST_F(HttpDoorTest, EndsARequestThatDoesNotCome) {
+TEST_F(RequestRouterTest, EndsARequestThatDoesNotCome) {
   const auto began = Clock::now();
   std::vector<std::thread> visitors;
   for (int i = 0; i < 10; ++i) {
@@ -194,7 +194,7 @@ TEST_F(HttpDoorTest, EndsARequestThatDoesNotCome) {
   EXPECT_EQ(refused(Refusal::slow), 10U);
 }
 
-TEST_F(HttpDoorTest, TakesActionsWithTheTokenOnly) {
+TEST_F(RequestRouterTest, TakesActionsWithTheTokenOnly) {
   EXPECT_EQ(command("wrong")->status, 401);
   EXPECT_EQ(visitor().Post("/api/bench/acc-1/command", "{}", "application/json")->status, 401);
   EXPECT_EQ(command(secret)->status, 400) << "the body says nothing";
@@ -213,7 +213,7 @@ TEST_F(HttpDoorTest, TakesActionsWithTheTokenOnly) {
   EXPECT_EQ(refused(Refusal::wrong_token), 5U);
 }
 
-TEST_F(HttpDoorTest, LetsAsManyListenAsItHasRoomFor) {
+TEST_F(RequestRouterTest, LetsAsManyListenAsItHasRoomFor) {
   constexpr int count = 100;
   std::atomic<int> heard = 0;
   std::atomic<int> full = 0;

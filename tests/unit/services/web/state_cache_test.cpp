@@ -1,4 +1,4 @@
-#include "services/web/board.hpp"
+#include "services/web/state_cache.hpp"
 
 #include <algorithm>
 
@@ -14,35 +14,35 @@ namespace {
 using Json = nlohmann::ordered_json;
 using namespace std::chrono_literals;
 
-class BoardTest : public testing::Test {
+class StateCacheTest : public testing::Test {
 protected:
   template <class Message>
   void take(const Message& message) {
-    board_.change([&](live::Laboratory& laboratory) { laboratory.take(message); });
+    cache_.change([&](live::Laboratory& laboratory) { laboratory.take(message); });
   }
   Text results(const std::string& run = "") {
-    return board_.results("acc-1", run, [this](const std::string&, Json& json) {
+    return cache_.results("acc-1", run, [this](const std::string&, Json& json) {
       ++made_;
       json["files"] = Json::array();
     });
   }
   bus::SteppedClock clock_;
-  Board board_{clock_, [](Json& json) { json["daemon"] = "here"; }};
+  StateCache cache_{clock_, [](Json& json) { json["daemon"] = "here"; }};
   int made_ = 0;
 };
 
-TEST_F(BoardTest, MakesATextOnceForAllWhoAsk) {
+TEST_F(StateCacheTest, MakesATextOnceForAllWhoAsk) {
   take(live::status_of("acc-1", "dau"));
-  const Text first = board_.laboratory();
+  const Text first = cache_.laboratory();
   take(live::status_of("acc-2", "dau"));
-  EXPECT_EQ(board_.laboratory(), first);
-  clock_.advance(Board::text_age);
-  const Json json = Json::parse(*board_.laboratory());
+  EXPECT_EQ(cache_.laboratory(), first);
+  clock_.advance(StateCache::text_age);
+  const Json json = Json::parse(*cache_.laboratory());
   EXPECT_EQ(json["benches"].size(), 2U);
   EXPECT_EQ(json["daemon"], "here");
 }
 
-TEST_F(BoardTest, MakesResultsAnewWhenTheyChange) {
+TEST_F(StateCacheTest, MakesResultsAnewWhenTheyChange) {
   EXPECT_EQ(results(), nullptr);
   take(live::measurement_of("acc-1", "r1", wire::MEASUREMENT_RUNNING));
   take(live::result_of("acc-1", "r1", 1, 0.3));
@@ -51,9 +51,9 @@ TEST_F(BoardTest, MakesResultsAnewWhenTheyChange) {
   clock_.advance(10s);
   EXPECT_EQ(results(), first);
   EXPECT_EQ(made_, 1);
-  const std::uint64_t number = board_.results_number("acc-1");
+  const std::uint64_t number = cache_.results_number("acc-1");
   take(live::result_of("acc-1", "r1", 2, 0.4));
-  EXPECT_NE(board_.results_number("acc-1"), number);
+  EXPECT_NE(cache_.results_number("acc-1"), number);
   const Json json = Json::parse(*results());
   EXPECT_EQ(json["points"].size(), 2U);
   EXPECT_EQ(json["points"][1]["magnitude"], 0.4);
@@ -61,10 +61,10 @@ TEST_F(BoardTest, MakesResultsAnewWhenTheyChange) {
   EXPECT_EQ(results("r2"), nullptr);
 }
 
-TEST_F(BoardTest, MakesFiguresOnceForEachChannelAndChange) {
+TEST_F(StateCacheTest, MakesFiguresOnceForEachChannelAndChange) {
   using services::figures::ErrorBars;
   const auto figures = [this](ErrorBars bars, const std::string& channel = "dau/acceleration_z") {
-    return board_.figures("acc-1", "", channel, bars);
+    return cache_.figures("acc-1", "", channel, bars);
   };
   EXPECT_EQ(figures(ErrorBars::expanded), nullptr);
   take(live::measurement_of("acc-1", "r1", wire::MEASUREMENT_RUNNING));
@@ -76,7 +76,7 @@ TEST_F(BoardTest, MakesFiguresOnceForEachChannelAndChange) {
   EXPECT_EQ(figures(ErrorBars::expanded), first);
   EXPECT_NE(*figures(ErrorBars::standard), *first);
   EXPECT_EQ(figures(ErrorBars::expanded, "dau/other"), nullptr);
-  EXPECT_EQ(board_.figures("acc-1", "r2", "dau/acceleration_z", ErrorBars::none), nullptr);
+  EXPECT_EQ(cache_.figures("acc-1", "r2", "dau/acceleration_z", ErrorBars::none), nullptr);
 
   const Json json = Json::parse(*first);
   EXPECT_EQ(json["run"], "r1");
@@ -98,9 +98,9 @@ TEST_F(BoardTest, MakesFiguresOnceForEachChannelAndChange) {
 }
 
 // As many results as before do not make them the same: the texts that were kept are of another run.
-TEST_F(BoardTest, ShowsARunThatWasDroppedAndIsHeardOfAgainAsItIsNow) {
+TEST_F(StateCacheTest, ShowsARunThatWasDroppedAndIsHeardOfAgainAsItIsNow) {
   const auto figures = [this] {
-    return board_.figures("acc-1", "r1", "dau/acceleration_z",
+    return cache_.figures("acc-1", "r1", "dau/acceleration_z",
                           services::figures::ErrorBars::expanded);
   };
   const auto drop = [this](const std::string& others) {
@@ -119,7 +119,7 @@ TEST_F(BoardTest, ShowsARunThatWasDroppedAndIsHeardOfAgainAsItIsNow) {
   EXPECT_EQ(first["points"][0]["magnitude"], 0.3);
   EXPECT_GT(first["number"], planned["number"]);
   const Text picture = figures();
-  const std::uint64_t number = board_.results_number("acc-1");
+  const std::uint64_t number = cache_.results_number("acc-1");
   drop("b");
   take(live::result_of("acc-1", "r1", 1, 0.9));
   const Json second = Json::parse(*results("r1"));
@@ -128,11 +128,11 @@ TEST_F(BoardTest, ShowsARunThatWasDroppedAndIsHeardOfAgainAsItIsNow) {
   ASSERT_NE(figures(), nullptr);
   EXPECT_NE(*figures(), *picture);
   EXPECT_EQ(Json::parse(*figures())["pictures"][0]["panels"][0]["series"][1]["points"][0][1], 0.9);
-  EXPECT_NE(board_.results_number("acc-1"), number);
+  EXPECT_NE(cache_.results_number("acc-1"), number);
 }
 
 // Nothing has come of either: what is known of them is the plan.
-TEST_F(BoardTest, ShowsThePlanOfARunThatIsHeardOfAgain) {
+TEST_F(StateCacheTest, ShowsThePlanOfARunThatIsHeardOfAgain) {
   wire::Measurement first = live::measurement_of("acc-1", "r1", wire::MEASUREMENT_ABORTED);
   first.message("the first");
   take(first);
@@ -148,9 +148,9 @@ TEST_F(BoardTest, ShowsThePlanOfARunThatIsHeardOfAgain) {
 }
 
 // A run's texts go with it, whoever has asked for them: what stays does not grow with the runs.
-TEST_F(BoardTest, HoldsTextsOfTheRunsItHoldsOnly) {
-  Board::Held most;
-  Board::Held after_300; // then the list of events is full
+TEST_F(StateCacheTest, HoldsTextsOfTheRunsItHoldsOnly) {
+  StateCache::Held most;
+  StateCache::Held after_300; // then the list of events is full
   for (int i = 0; i < 1000; ++i) {
     const std::string run = "r" + std::to_string(i);
     take(live::measurement_of("acc-1", run, wire::MEASUREMENT_DONE));
@@ -160,12 +160,12 @@ TEST_F(BoardTest, HoldsTextsOfTheRunsItHoldsOnly) {
     clock_.advance(1s);
     ASSERT_NE(results(run), nullptr);
     ASSERT_NE(
-        board_.figures("acc-1", run, "dau/acceleration_z", services::figures::ErrorBars::none),
+        cache_.figures("acc-1", run, "dau/acceleration_z", services::figures::ErrorBars::none),
         nullptr);
-    ASSERT_NE(board_.laboratory(), nullptr);
-    most.texts = std::max(most.texts, board_.held().texts);
-    most.bytes = std::max(most.bytes, board_.held().bytes);
-    after_300 = i == 299 ? board_.held() : after_300;
+    ASSERT_NE(cache_.laboratory(), nullptr);
+    most.texts = std::max(most.texts, cache_.held().texts);
+    most.bytes = std::max(most.bytes, cache_.held().bytes);
+    after_300 = i == 299 ? cache_.held() : after_300;
   }
   EXPECT_LE(most.texts, 2 * live::Limits{}.runs + 1);
   EXPECT_GE(most.texts, 2 * live::Limits{}.runs) << "what is shown is held";
@@ -173,28 +173,28 @@ TEST_F(BoardTest, HoldsTextsOfTheRunsItHoldsOnly) {
   EXPECT_LT(most.bytes, after_300.bytes + after_300.bytes / 10);
 }
 
-TEST_F(BoardTest, ForgetsWhatNobodyAsksFor) {
+TEST_F(StateCacheTest, ForgetsWhatNobodyAsksFor) {
   take(live::measurement_of("acc-1", "r1", wire::MEASUREMENT_RUNNING));
   take(live::result_of("acc-1", "r1", 1, 0.3));
   const Text first = results();
   for (int i = 0; i < 10; ++i) { // somebody looks: it is made once
-    clock_.advance(Board::forgotten_after / 2);
+    clock_.advance(StateCache::forgotten_after / 2);
     take(live::status_of("acc-1", "dau"));
     EXPECT_EQ(results(), first);
   }
   EXPECT_EQ(made_, 1);
-  clock_.advance(Board::forgotten_after);
+  clock_.advance(StateCache::forgotten_after);
   take(live::status_of("acc-1", "dau"));
-  EXPECT_EQ(board_.held().texts, 0U);
-  EXPECT_EQ(board_.held().bytes, 0U);
+  EXPECT_EQ(cache_.held().texts, 0U);
+  EXPECT_EQ(cache_.held().bytes, 0U);
   ASSERT_NE(results(), nullptr);
-  EXPECT_EQ(board_.held().texts, 1U);
+  EXPECT_EQ(cache_.held().texts, 1U);
 }
 
-TEST_F(BoardTest, HasNoTextOfABenchThatIsNotKnown) {
-  EXPECT_EQ(board_.bench("acc-1"), nullptr);
+TEST_F(StateCacheTest, HasNoTextOfABenchThatIsNotKnown) {
+  EXPECT_EQ(cache_.bench("acc-1"), nullptr);
   take(live::status_of("acc-1", "dau"));
-  EXPECT_EQ(Json::parse(*board_.bench("acc-1"))["sources"].size(), 1U);
+  EXPECT_EQ(Json::parse(*cache_.bench("acc-1"))["sources"].size(), 1U);
 }
 
 } // namespace
