@@ -45,24 +45,6 @@ std::vector<Flag> flags_of(const Run& run, const TransferFunction& function,
   return flags_once(flags);
 }
 
-Json mean_json(const FrequencyPoint& point) {
-  const ExpandedUncertainty magnitude = magnitude_uncertainty(point.mean);
-  const ExpandedUncertainty phase = phase_uncertainty(point.mean);
-  Json json{{"frequency_text_hz", point.frequency_text_hz},
-            {"frequency_hz", json_number(point.frequency_hz)},
-            {"level_m_s2", json_number(point.level_m_s2)},
-            {"magnitude", json_number(point.mean.magnitude)},
-            {"u_magnitude", json_number(magnitude.u)},
-            {"phase_rad", json_number(point.mean.phase_rad)},
-            {"u_phase_rad", json_number(phase.u)},
-            {"unwrapped_phase_rad", json_number(point.unwrapped_phase_rad)},
-            {"scatter_magnitude", json_number(point.mean.scatter_magnitude)},
-            {"scatter_phase_rad", json_number(point.mean.scatter_phase_rad)},
-            {"repetitions", point.mean.repetitions}};
-  add_expanded(magnitude, phase, json);
-  return json;
-}
-
 Json transfer_json(const Run& run, const TransferFunction& function) {
   Json points = Json::array();
   double largest_k = 0.0;
@@ -155,28 +137,16 @@ Json point_json(const StepResult& result) {
   for (const analysis::ChannelFit& fit : result.fits) {
     fits.push_back(fit_json(fit));
   }
-  Json json{{"channel", result.channel},
-            {"step", result.step},
-            {"repetition", result.repetition},
-            {"attempt", result.attempt},
-            {"frequency_text_hz", result.frequency_text_hz},
-            {"frequency_hz", json_number(result.frequency_hz)},
-            {"level_m_s2", json_number(result.level_m_s2)},
-            {"valid", result.valid},
-            {"problem", result.problem},
-            {"magnitude", json_number(result.magnitude)},
-            {"u_magnitude", json_number(result.u_magnitude)},
-            {"phase_rad", json_number(result.phase_rad)},
-            {"u_phase_rad", json_number(result.u_phase_rad)},
-            {"unit", result.unit},
-            {"lost", result.lost},
-            {"flags", flags_json(result.flags)},
-            {"provisional", result.provisional},
-            {"temperature_degc", nullptr},
-            {"sample_rate_hz", nullptr},
-            {"u_sample_rate_hz", nullptr},
-            {"fits", std::move(fits)},
-            {"signals", signals_json(result)}};
+  Json json = value_json(result);
+  json.update({{"attempt", result.attempt},
+               {"problem", result.problem},
+               {"flags", flags_json(result.flags)},
+               {"provisional", result.provisional},
+               {"temperature_degc", nullptr},
+               {"sample_rate_hz", nullptr},
+               {"u_sample_rate_hz", nullptr},
+               {"fits", std::move(fits)},
+               {"signals", signals_json(result)}});
   if (result.temperature_degc) {
     json["temperature_degc"] = json_number(*result.temperature_degc);
   }
@@ -188,21 +158,6 @@ Json point_json(const StepResult& result) {
     json["u_sample_rate_hz"] = json_number(result.series->u_sample_rate_hz);
   }
   return json;
-}
-
-Json budget_json(const StepResult& result) {
-  Json rows = Json::array();
-  for (const analysis::Contribution& row : result.budget) {
-    rows.push_back({{"kind", to_string(row.kind)},
-                    {"subject", row.subject},
-                    {"name", row.name()},
-                    {"distribution", to_string(row.distribution)},
-                    {"repeats", to_string(row.repeats)},
-                    {"degrees_of_freedom", json_number(row.degrees_of_freedom)},
-                    {"u_magnitude_rel", json_number(row.u_magnitude_rel)},
-                    {"u_phase_rad", json_number(row.u_phase_rad)}});
-  }
-  return rows;
 }
 
 Json run_json(const Run& run) {

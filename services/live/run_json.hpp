@@ -12,8 +12,6 @@ namespace dyncal::services::live {
 // Points, transfer functions and sample clocks.
 [[nodiscard]] nlohmann::ordered_json run_json(const Run& run);
 [[nodiscard]] nlohmann::ordered_json point_json(const StepResult& result);
-// The rows behind one result.
-[[nodiscard]] nlohmann::ordered_json budget_json(const StepResult& result);
 [[nodiscard]] nlohmann::ordered_json flags_json(const std::vector<Flag>& flags);
 
 } // namespace dyncal::services::live

@@ -38,22 +38,6 @@ Json utc_text(std::int64_t utc_ns) {
   return fmt::format("{}.{:09}Z", text.data(), fraction_ns);
 }
 
-Json budget_json(const StepResult& result) {
-  Json lines = Json::array();
-  for (const analysis::Contribution& row : result.budget) {
-    lines.push_back({{"name", row.name()},
-                     {"kind", to_string(row.kind)},
-                     {"subject", row.subject},
-                     {"distribution", to_string(row.distribution)},
-                     {"repeats", to_string(row.repeats)},
-                     {"degrees_of_freedom", json_number(row.degrees_of_freedom)}, // null: infinite
-                     {"u_magnitude_rel", json_number(row.u_magnitude_rel)},
-                     {"u_lasting_magnitude_rel", json_number(row.u_lasting_magnitude_rel)},
-                     {"u_phase_rad", json_number(row.u_phase_rad)}});
-  }
-  return lines;
-}
-
 Json monte_carlo_json(const analysis::TransferCheck& drawn) {
   const auto interval = [](const analysis::MonteCarloResult& result) -> Json {
     return {json_number(result.low), json_number(result.high)};
@@ -120,21 +104,9 @@ Json point_head(const StepResult& result) {
   for (const SourceSamples& source : result.samples) {
     samples[source.source] = source.used;
   }
-  return {{"channel", result.channel},
-          {"step", result.step},
-          {"frequency_text_hz", result.frequency_text_hz},
-          {"frequency_hz", result.frequency_hz},
-          {"level_m_s2", result.level_m_s2},
-          {"repetition", result.repetition},
-          {"valid", result.valid},
-          {"magnitude", json_number(result.magnitude)},
-          {"u_magnitude", json_number(result.u_magnitude)},
-          {"phase_rad", json_number(result.phase_rad)},
-          {"phase_deg", degrees(result.phase_rad)},
-          {"u_phase_rad", json_number(result.u_phase_rad)},
-          {"unit", result.unit},
-          {"samples", samples},
-          {"lost", result.lost}};
+  Json point = value_json(result);
+  point["samples"] = samples;
+  return point;
 }
 
 Json point_json(const RunOutcome& outcome, const StepResult& result) {
@@ -168,24 +140,8 @@ Json point_json(const RunOutcome& outcome, const StepResult& result) {
 
 Json transfer_json(const RunOutcome& outcome, const TransferFunction& function,
                    const FrequencyPoint& point) {
-  const ExpandedUncertainty magnitude = magnitude_uncertainty(point.mean);
-  const ExpandedUncertainty phase = phase_uncertainty(point.mean);
-  Json json{{"channel", function.channel},
-            {"frequency_text_hz", point.frequency_text_hz},
-            {"frequency_hz", point.frequency_hz},
-            {"level_m_s2", point.level_m_s2},
-            {"magnitude", json_number(point.mean.magnitude)},
-            {"u_magnitude", json_number(magnitude.u)},
-            {"phase_rad", json_number(point.mean.phase_rad)},
-            {"phase_deg", degrees(point.mean.phase_rad)},
-            {"u_phase_rad", json_number(phase.u)},
-            {"unwrapped_phase_rad", json_number(point.unwrapped_phase_rad)},
-            {"unwrapped_phase_deg", degrees(point.unwrapped_phase_rad)},
-            {"scatter_magnitude", json_number(point.mean.scatter_magnitude)},
-            {"scatter_phase_rad", json_number(point.mean.scatter_phase_rad)},
-            {"unit", function.unit},
-            {"repetitions", point.mean.repetitions}};
-  add_expanded(magnitude, phase, json);
+  Json json{{"channel", function.channel}, {"unit", function.unit}};
+  json.update(mean_json(point));
   json["u_independent_phase_rad"] = json_number(point.mean.u_independent_phase_rad);
   std::vector<Flag> flags = flags_of(outcome, function.channel, point);
   flags.insert(flags.end(), function.flags.begin(), function.flags.end());

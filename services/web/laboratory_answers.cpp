@@ -8,6 +8,7 @@
 
 #include "services/json_text.hpp"
 #include "services/live/run_json.hpp"
+#include "services/report/step_json.hpp"
 #include "services/web/request_router.hpp"
 
 namespace dyncal::services::web {
@@ -150,7 +151,7 @@ void LaboratoryAnswers::answer_budget(const std::string& name, const httplib::Re
                 {"channel", result.channel},
                 {"step", result.step},
                 {"repetition", result.repetition},
-                {"contributions", live::budget_json(result)}};
+                {"contributions", budget_json(result)}};
   });
   answer_text(json ? std::make_shared<const std::string>(json_text(*json)) : nullptr,
               "no such result was heard of", response);
