@@ -7,6 +7,8 @@
 #include <libxml/parser.h>
 #include <libxml/tree.h>
 
+#include "services/report/figures/markup.hpp"
+
 namespace dyncal::services {
 namespace {
 
@@ -21,20 +23,6 @@ const xmlChar* xml_text(const char* text) {
 std::string from_xml(const xmlChar* text) {
   // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): how libxml2 spells UTF-8
   return text == nullptr ? std::string() : std::string(reinterpret_cast<const char*>(text));
-}
-
-// XML 1.0 knows no control characters but tab and line ends, not even escaped.
-std::string allowed(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x20 && c != '\n' && c != '\t') {
-      result += "\xef\xbf\xbd";
-    } else {
-      result += c;
-    }
-  }
-  return result;
 }
 
 xmlNs* namespace_of(xmlNode* node, std::string_view prefix) {
@@ -102,13 +90,13 @@ XmlElement XmlElement::add(std::string_view qualified_name) {
 
 XmlElement XmlElement::add(std::string_view qualified_name, std::string_view text) {
   XmlElement child = add(qualified_name);
-  xmlNode* content = xmlNewText(xml_text(allowed(text).c_str()));
+  xmlNode* content = xmlNewText(xml_text(document_text(text).c_str()));
   xmlAddChild(child.node_, content);
   return child;
 }
 
 XmlElement& XmlElement::attribute(const char* name, std::string_view value) {
-  xmlNewProp(node_, xml_text(name), xml_text(allowed(value).c_str()));
+  xmlNewProp(node_, xml_text(name), xml_text(document_text(value).c_str()));
   return *this;
 }
 

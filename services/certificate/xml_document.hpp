@@ -2,8 +2,7 @@
 //
 // Reading takes UTF-8 only and refuses a DOCTYPE, so that no entity is ever declared, expanded or
 // fetched; nothing outside the document is read, neither file nor network, and more than 64 MiB is
-// refused. Text that is written is escaped by libxml2; characters that XML does not allow become
-// U+FFFD.
+// refused. Text that is written is document_text() (figures/markup.hpp), escaped by libxml2.
 //
 // Fails (bad_file) with FILE:LINE and the reason. One thread at a time.
 #pragma once

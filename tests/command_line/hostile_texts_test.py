@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Texts of files that others wrote reach a terminal as short lines without control characters, or
-are refused in one line: results, recorded series, certificates, recordings. Arguments: programs'
+are refused in one line: results, recorded series, certificates, recordings, laboratory and sensor
+files. Reports and certificates hold them as text, without control characters. Arguments: programs'
 folder, source, seed."""
 
 import copy
@@ -8,13 +9,16 @@ import json
 import math
 import pathlib
 import random
+import re
 import sys
 import tempfile
+import xml.etree.ElementTree
 
-from programs import expect, run
+from programs import SOURCE, expect, run
 
 SEED = int(sys.argv[3]) if len(sys.argv) > 3 else 32
 DRAWS = 12
+SCRIPT = "<script>alert(1)</script>"
 MAX_LINE = 2000
 HOSTILE = (
     "\x1b[2J\x1b]0;forged\x07",
@@ -26,6 +30,7 @@ HOSTILE = (
     "\x00\x01\x7f",
     "%s%n{}{0}",
     "../../../etc/passwd",
+    f"{SCRIPT}\"'>&amp;<!-- ]]>",
 )
 BENCH = """bench = "hostile"
 [excitation]
@@ -129,6 +134,61 @@ def hostile_results(folder, draw):
     return well
 
 
+def as_toml(text):
+    return '"' + "".join(f"\\u{ord(one):04x}" for one in text) + '"'
+
+
+def with_hostile_values(toml, draw, most):
+    """Some of its quoted values are other ones, a picture's path too."""
+    values = list(re.finditer(r'"[^"\n]*"', toml))
+    for value in sorted(draw.sample(values, draw.randint(0, most)), key=re.Match.start,
+                        reverse=True):
+        toml = toml[: value.start()] + as_toml(draw.choice(HOSTILE)) + toml[value.end() :]
+    return toml
+
+
+def expect_harmless_document(file):
+    text = file.read_text("utf-8")
+    what = f"{file.name} (seed {SEED})"
+    bad = {one for one in text if is_control(one) and one != "\t"}
+    expect(not bad, f"{what}: has the control characters {bad}")
+    expect("<script>alert" not in text, f"{what}: has the script")
+    expect("root:x:" not in text, f"{what}: holds another file")
+    if file.suffix == ".xml":
+        xml.etree.ElementTree.fromstring(text)
+
+
+def hostile_documents(folder, draw):
+    result = json.loads((folder / "result.json").read_text("utf-8"))
+    places = sorted(places_of(result), key=str)
+    documents = SOURCE / "deploy/example-lab/documents"
+    (folder / "laboratory-logo.svg").write_bytes((documents / "laboratory-logo.svg").read_bytes())
+    files = ("--lab", "laboratory.toml", "--sensor", "sensor.toml")
+    written = []
+    for number in range(2 * DRAWS):
+        changed = result
+        for place in draw.sample(places, draw.randint(0, 3)):
+            changed = with_hostile_text(changed, place, draw)
+        (folder / "hostile.json").write_text(json.dumps(changed), "utf-8")
+        for name, most in (("laboratory.toml", 3), ("sensor.toml", 2)):
+            toml = (documents / name).read_text("utf-8")
+            (folder / name).write_text(with_hostile_values(toml, draw, most), "utf-8")
+        report, certificate = f"report{number}", f"certificate{number}.xml"
+        pdf = () if number == 0 else ("--no-pdf",)
+        try_commands(folder, (
+            ("report", "hostile.json", *files, *pdf, "--output", report),
+            ("certify", "hostile.json", *files, "--force", "--performed", "2026-11-26",
+             "--output", certificate),
+        ))
+        written += [folder / f"{report}.html", folder / certificate]
+    written = [file for file in written if file.exists()]
+    for kind in (".html", ".xml"):
+        expect(any(file.suffix == kind for file in written), f"no {kind} was written")
+    for file in written:
+        expect_harmless_document(file)
+    return len(written)
+
+
 def hostile_files(folder, draw):
     for text in HOSTILE:
         names = f"t_ns,{text.replace(',', ' ')},dut"
@@ -162,8 +222,9 @@ def main():
         (folder / "bench.toml").write_text(BENCH, "utf-8")
         (folder / "record.csv").write_text(record(), "utf-8")
         well = hostile_results(folder, draw)
+        written = hostile_documents(folder, draw)
         hostile_files(folder, draw)
-    print(f"harmless; {well} commands went well with hostile results")
+    print(f"harmless; {well} commands went well with hostile results, {written} documents written")
 
 
 if __name__ == "__main__":

@@ -1,5 +1,7 @@
 #include "services/report/figures/markup.hpp"
 
+#include <algorithm>
+
 #include "services/printable_text.hpp"
 
 namespace dyncal::services {
@@ -7,17 +9,30 @@ namespace {
 
 constexpr std::string_view replacement = "\xef\xbf\xbd"; // U+FFFD
 
-bool is_control(char c) {
-  const auto byte = static_cast<unsigned char>(c);
-  return (byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7f;
+bool is_control(std::string_view letter) {
+  const auto first = static_cast<unsigned char>(letter.front());
+  return (first < 0x20 && first != '\n' && first != '\t') || first == 0x7f ||
+         (first == 0xc2 && static_cast<unsigned char>(letter[1]) < 0xa0);
 }
 
 } // namespace
 
+std::string document_text(std::string_view text) {
+  std::string result;
+  result.reserve(text.size());
+  while (!text.empty()) {
+    const std::size_t bytes = first_letter_bytes(text);
+    const std::string_view letter = text.substr(0, bytes);
+    result += bytes == 0 || is_control(letter) || turns_or_breaks(letter) ? replacement : letter;
+    text.remove_prefix(std::max<std::size_t>(bytes, 1));
+  }
+  return result;
+}
+
 std::string escaped(std::string_view text) {
   std::string result;
   result.reserve(text.size());
-  for (const char c : valid_utf8(text)) {
+  for (const char c : document_text(text)) {
     switch (c) {
     case '&':
       result += "&amp;";
@@ -35,11 +50,7 @@ std::string escaped(std::string_view text) {
       result += "&#39;";
       break;
     default:
-      if (is_control(c)) {
-        result += replacement;
-      } else {
-        result += c;
-      }
+      result += c;
     }
   }
   return result;

@@ -1,6 +1,4 @@
-// Text as it stands in the elements and quoted attributes of SVG and HTML, so that no name in a
-// file becomes markup. Characters that XML does not allow, and bytes that are not UTF-8, become
-// U+FFFD. Any thread.
+// Text of others as it stands in documents. Any thread.
 #pragma once
 
 #include <string>
@@ -8,6 +6,13 @@
 
 namespace dyncal::services {
 
+// U+FFFD in place of bytes that are not UTF-8, of control characters but tab and line feed, which
+// XML does not allow or a terminal obeys, and of letters that turn the order of a line, which would
+// show another text than the one that was signed.
+[[nodiscard]] std::string document_text(std::string_view text);
+
+// The same, in the elements and quoted attributes of SVG and HTML, so that no name in a file
+// becomes markup.
 [[nodiscard]] std::string escaped(std::string_view text);
 
 } // namespace dyncal::services

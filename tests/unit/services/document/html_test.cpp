@@ -13,6 +13,12 @@ TEST(Html, EscapesText) {
   EXPECT_EQ(escaped(std::string("\x01\x7f\n\t", 4)), "\xef\xbf\xbd\xef\xbf\xbd\n\t");
   EXPECT_EQ(escaped("m/s\xc2\xb2"), "m/s\xc2\xb2");
   EXPECT_EQ(escaped("m/s\xb2"), "m/s\xef\xbf\xbd"); // Latin-1
+  EXPECT_EQ(escaped("a\xc2\x9b"
+                    "31m\xc2\xa0\xe2\x80\xae"
+                    "b\xe2\x81\xa6\xe2\x80\xa8"),
+            "a\xef\xbf\xbd"
+            "31m\xc2\xa0\xef\xbf\xbd"
+            "b\xef\xbf\xbd\xef\xbf\xbd");
   EXPECT_EQ(element("p", "<b>", "warning"), "<p class=\"warning\">&lt;b&gt;</p>\n");
 }
 
