@@ -15,6 +15,7 @@ constexpr double max_drift_rel = 1e-4; // of the period in what is missing
 constexpr double named_tick_part = 1.0 / 16.0;
 constexpr double one_tick = 1.01;
 constexpr double period_margin_ticks = 1.0 / 8.0; // of a period learned from alike intervals
+constexpr double tick_about_period = 0.75;        // of it: a loss looks like a tick
 constexpr double always_counted = 1000.0;         // periods in a gap
 constexpr double period_drift_rel = 5e-6;         // of an oscillator within a record
 constexpr double known_to_periods = 1.0 / 8.0;
@@ -254,10 +255,25 @@ bool PeriodCount::turn_to_ticks(std::int64_t distance_ns) {
   return true;
 }
 
+// Whether the ticks went further than the samples, where one of the other looks the same.
+void PeriodCount::watch_slip(const TickedSample& sample) {
+  if (static_cast<double>(tick_ns_) < tick_about_period * period_ns_) {
+    return;
+  }
+  const auto numbered = static_cast<std::int64_t>(sample.number - last_.number);
+  const std::int64_t further_ns = sample.stamp_ns - last_.stamp_ns - numbered * tick_ns_;
+  if (sample.missing > 0 || further_ns > 0) {
+    slips_.add(sample.number, sample.missing);
+  } else if (further_ns < 0) {
+    slips_.take_back();
+  }
+}
+
 void PeriodCount::count_ticked(std::span<const TickedSample> samples) {
   for (const TickedSample& one : samples) {
     const TimedSample sample{one.number, one.stamp_ns, false};
     const std::uint64_t numbered = one.number - last_.number;
+    watch_slip(one);
     switch (one.step) {
     case TickedStep::missing:
       add_missing(last_.stamp_ns, one.stamp_ns, one.missing);
@@ -363,8 +379,8 @@ double PeriodCount::mean_ns() const {
 double PeriodCount::u_ends_ns() const {
   const bool is_coarse = coarse_tick_ns_ > 0.0 || moves_ > 0 || ticked_;
   const double tick_ns = is_coarse ? static_cast<double>(tick_ns_) : 0.0;
-  const std::uint64_t unsure =
-      unsure_ticks_ + (ticks_on_line_ < ticks_that_convince ? unsure_as_ticks_ : 0);
+  const std::uint64_t unsure = unsure_ticks_ + slips_.unsure_losses() +
+                               (ticks_on_line_ < ticks_that_convince ? unsure_as_ticks_ : 0);
   const double unsure_ns = static_cast<double>(unsure) * static_cast<double>(tick_ns_);
   double variance_ns2 = tick_ns * tick_ns / 6.0 + unsure_ns * unsure_ns;
   if (moves_ > 0 && moves_as_made() && std::abs(largest_ns_) > one_tick * tick_ns) {

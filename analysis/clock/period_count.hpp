@@ -26,6 +26,7 @@
 #include <vector>
 
 #include "analysis/clock/first_stamps.hpp"
+#include "analysis/clock/slip_spacing.hpp"
 #include "analysis/clock/tick_gaps.hpp"
 #include "analysis/clock/ticked_samples.hpp"
 
@@ -78,6 +79,7 @@ private:
   void accept_move(const TimedSample& sample);
   void count_move(std::int64_t across_ns, std::uint64_t numbered);
   void count_ticked(std::span<const TickedSample> samples);
+  void watch_slip(const TickedSample& sample);
   void count_in_order(const TimedSample& sample);
   void explain_gaps();
   [[nodiscard]] bool turn_to_ticks(std::int64_t distance_ns);
@@ -112,6 +114,7 @@ private:
   std::uint64_t unsure_ticks_ = 0;    // that were taken for losses
   std::uint64_t unsure_as_ticks_ = 0; // that may be losses, until more ticks follow on their line
   std::uint64_t ticks_on_line_ = 0;
+  SlipSpacing slips_; // of ticks of about a period
   std::uint64_t moves_ = 0;
   std::int64_t span_across_moves_ns_ = 0;
   std::uint64_t periods_across_moves_ = 0;
