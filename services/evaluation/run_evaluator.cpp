@@ -342,27 +342,27 @@ EvaluationOutput RunEvaluator::take_output() {
 
 Evaluation RunEvaluator::settlement() {
   std::vector<StepResult> concerned = std::exchange(results_, {});
-  if (!method_->settle(concerned)) {
-    std::erase_if(concerned, [&](const StepResult& one) {
-      return is_given_up() || !is_changed(one, channel_faults_.settled(line_bounds_.settled(one)));
-    });
+  const bool by_method = method_->settle(concerned);
+  std::vector<StepResult> settled;
+  for (const StepResult& one : concerned) {
+    StepResult now = is_given_up() ? one : channel_faults_.settled(line_bounds_.settled(one));
+    if (by_method || is_changed(one, now)) {
+      settled.push_back(std::move(now));
+    }
   }
   if (count_) {
-    count_->begin("settling", "results", concerned.size());
+    count_->begin("settling", "results", settled.size());
   }
-  return [bounds = line_bounds_, faults = channel_faults_, trials = recipe_->monte_carlo_trials,
-          concerned = std::move(concerned), count = count_,
-          given_up = given_up_.get_token()](const std::stop_token& stop) {
-    std::vector<StepResult> settled;
-    for (const StepResult& one : concerned) {
+  return [trials = recipe_->monte_carlo_trials, settled = std::move(settled), count = count_,
+          given_up = given_up_.get_token()](const std::stop_token& stop) mutable {
+    for (StepResult& one : settled) {
       if (given_up.stop_requested()) {
         break;
       }
-      settled.push_back(faults.settled(bounds.settled(one)));
-      redo_monte_carlo_check(trials, stop, settled.back());
+      redo_monte_carlo_check(trials, stop, one);
       add_done(count);
     }
-    return settled;
+    return std::move(settled);
   };
 }
 
