@@ -42,6 +42,7 @@ std::optional<sockaddr_in> place_of(const std::string& address, int port) {
 // Those under way that the other kernel has answered leave the list.
 void take_answers(std::vector<Trial>& trials, std::chrono::milliseconds wait) {
   std::vector<pollfd> waiting;
+  waiting.reserve(trials.size());
   for (const Trial& trial : trials) {
     waiting.push_back({trial.connection.number(), POLLOUT, 0});
   }
