@@ -4,6 +4,11 @@
 #include <limits>
 
 namespace dyncal::services {
+namespace {
+
+constexpr double max_distrusted_part = 0.2; // as where it is the cause that a step has no result
+
+} // namespace
 
 ClockReportBuilder::ClockReportBuilder(std::string source,
                                        const std::optional<ChannelName>& temperature)
@@ -51,6 +56,9 @@ void ClockReportBuilder::add(const SourceBlock& block) {
   if (temperature_column_) {
     temperature = block.values.subspan(*temperature_column_ * block.samples, block.samples);
   }
+  samples_ += block.samples;
+  not_trusted_ += static_cast<std::uint64_t>(std::count_if(
+      block.flags.begin(), block.flags.end(), [](std::uint8_t flag) { return flag != 0; }));
   clock_->push(block.first_sample, stamps, block.flags, temperature);
 }
 
@@ -69,6 +77,9 @@ std::vector<ClockReport> ClockReportBuilder::reports(std::uint64_t lost) const {
   }
   if (report.clock.left_out_jumps > 0) {
     report.flags.push_back(make_flag(ResultFlag::clock_stepped));
+  }
+  if (static_cast<double>(not_trusted_) > max_distrusted_part * static_cast<double>(samples_)) {
+    report.flags.push_back(make_flag(ResultFlag::stamps_not_trusted));
   }
   if (lost > 0) {
     report.flags.push_back(make_flag(ResultFlag::samples_lost));

@@ -4,8 +4,9 @@
 //
 // Relates intervals to the temperature channel of the source if it has one. Without a stated
 // uncertainty of its stamps the report is flagged; of a source with a clock of its own, whose rate
-// nobody states, the uncertainty of the mean interval is not known (NaN). What was lost is counted
-// by the source's record alone. Belongs to one thread.
+// nobody states, the uncertainty of the mean interval is not known (NaN). Where many of its stamps
+// are not trusted, the report is of few intervals, and flagged. What was lost is counted by the
+// source's record alone. Belongs to one thread.
 #pragma once
 
 #include <cstdint>
@@ -45,6 +46,8 @@ private:
   bool has_own_clock_ = false;      // its stamps are not UTC
   bool states_uncertainty_ = false; // of its stamps
   std::optional<BlockPosition> last_block_;
+  std::uint64_t samples_ = 0;
+  std::uint64_t not_trusted_ = 0;    // of them, by their stamps
   std::vector<std::int64_t> stamps_; // of a block whose stamps follow from a clock
 };
 

@@ -7,16 +7,6 @@
 #include <fmt/core.h>
 
 namespace dyncal::services {
-namespace {
-
-bool shows_any_step(const RunSchedule& schedule) {
-  return std::any_of(schedule.records.begin(), schedule.records.end(), [](const auto& record) {
-    return std::any_of(record.begin(), record.end(),
-                       [](const auto& step) { return step.has_value(); });
-  });
-}
-
-} // namespace
 
 RunRecords::RunRecords(const Recipe& recipe, const std::vector<SearchedChannel>& searched,
                        std::size_t capacity, bool behind,
@@ -140,14 +130,11 @@ bool RunRecords::end_session(const std::string& source, std::size_t next_step) {
 
 void RunRecords::search(std::size_t end_step) {
   follow_restarts();
-  // Whether anything was excited, only the other channels tell, once all of it has come.
-  const bool has_come =
-      excitation_.is_cut_short() ||
-      std::all_of(records_.begin(), records_.end(), [](auto& one) { return one.second->ended(); });
-  if (schedule_ && !shows_any_step(*schedule_) && !has_come) {
-    return;
-  }
-  const std::size_t expected = std::min(steps_searched(), end_step);
+  // Whether anything was excited at all, other channels tell once all of them have come.
+  const bool waits =
+      schedule_ && !schedule_->shows_any_step() && !excitation_.is_cut_short() &&
+      !std::all_of(records_.begin(), records_.end(), [](auto& one) { return one.second->ended(); });
+  const std::size_t expected = waits ? 0 : std::min(steps_searched(), end_step);
   if (expected == 0) {
     return;
   }
@@ -353,24 +340,10 @@ std::string RunRecords::when_missing(std::size_t step, const std::string& channe
 }
 
 TimeInterval RunRecords::where_missing(const std::string& source, std::size_t step) const {
-  TimeInterval where{std::numeric_limits<std::int64_t>::min(),
-                     std::numeric_limits<std::int64_t>::max()};
   const auto search = search_of(source);
-  if (search == searches_.end()) {
-    return where;
-  }
-  for (std::size_t other = 0; other < excitation_.order().size(); ++other) {
-    const FoundExcitation* found = search->steps.excitation(other);
-    if (found == nullptr || search->steps.session(other) != of(source).restarts()) {
-      continue;
-    }
-    if (other < step) {
-      where.begin_ns = std::max(where.begin_ns, found->end_ns());
-    } else if (other > step) {
-      where.end_ns = std::min(where.end_ns, found->begin_ns());
-    }
-  }
-  return where;
+  return search == searches_.end() ? TimeInterval{std::numeric_limits<std::int64_t>::min(),
+                                                  std::numeric_limits<std::int64_t>::max()}
+                                   : search->steps.where_missing(step);
 }
 
 bool RunRecords::began_after(const std::string& source, std::size_t step) const {
@@ -399,15 +372,12 @@ std::shared_ptr<const SourceRecord> RunRecords::part_of(const SourceRecord& whol
 SourceInterval RunRecords::samples(const std::string& source, const TimeInterval& interval) const {
   const SourceRecord& whole = of(source);
   SourceInterval samples{part_of(whole, interval), interval};
-  for (const Search& search : searches_) {
-    if (std::find(search.sources.begin(), search.sources.end(), source) == search.sources.end()) {
-      continue;
-    }
-    if (const auto quiet = search.steps.quiet_before(interval)) {
+  if (const auto search = search_of(source); search != searches_.end()) {
+    if (const auto quiet = search->steps.quiet_before(interval)) {
       samples.quiet = *quiet;
       samples.quiet_record = part_of(whole, *quiet);
     }
-    if (const auto rise = search.steps.rise_before(interval)) {
+    if (const auto rise = search->steps.rise_before(interval)) {
       samples.rise = *rise;
       samples.rise_record = part_of(whole, *rise);
     }

@@ -2,6 +2,7 @@
 // the evaluation begins (step_alignment.hpp). Plain data; any thread.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -25,6 +26,13 @@ struct RunSchedule {
   std::vector<OfRecord> records;     // in the order of the method's searches
   std::vector<std::string> problems; // by step: why it has no value; empty where it has one
   std::vector<bool> uncertain;       // by step: what is there, may as well be another step
+
+  [[nodiscard]] bool shows_any_step() const {
+    return std::any_of(records.begin(), records.end(), [](const OfRecord& record) {
+      return std::any_of(record.begin(), record.end(),
+                         [](const auto& step) { return step.has_value(); });
+    });
+  }
 };
 
 } // namespace dyncal::services

@@ -257,6 +257,21 @@ const FoundExcitation* StepSearch::excitation(std::size_t step) const {
   return found == found_.end() ? nullptr : &found->second.excitation;
 }
 
+TimeInterval StepSearch::where_missing(std::size_t step) const {
+  TimeInterval where{beginning_of_time, std::numeric_limits<std::int64_t>::max()};
+  for (const auto& [other, found] : found_) {
+    if (found.session != restarts_ || other == step) {
+      continue;
+    }
+    if (other < step) {
+      where.begin_ns = std::max(where.begin_ns, found.excitation.end_ns());
+    } else {
+      where.end_ns = std::min(where.end_ns, found.excitation.begin_ns());
+    }
+  }
+  return where;
+}
+
 std::optional<std::uint32_t> StepSearch::session(std::size_t step) const {
   const auto found = found_.find(step);
   return found == found_.end() ? std::nullopt : std::optional(found->second.session);

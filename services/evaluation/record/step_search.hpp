@@ -61,6 +61,8 @@ public:
   [[nodiscard]] std::optional<std::int64_t> needed_for(std::size_t step) const;
   // Where the step was found; nothing for one that was not.
   [[nodiscard]] const FoundExcitation* excitation(std::size_t step) const;
+  // Where the present session may show a step that was not found: between those that were.
+  [[nodiscard]] TimeInterval where_missing(std::size_t step) const;
   // Of the source, that it was found in: in one session its clock goes on.
   [[nodiscard]] std::optional<std::uint32_t> session(std::size_t step) const;
   // What was found of the step is of a later one: this one, the record lacks. Those behind it are
