@@ -133,13 +133,13 @@ void add_ratio_rows(Budget& budget, const std::optional<RatioInBlocks>& ratio,
   if (!ratio) {
     return;
   }
-  const double freedom = ratio->degrees_of_freedom;
+  const auto beyond = [](double u, double expected) {
+    return std::sqrt(std::max(0.0, u * u - expected * expected));
+  };
   budget.add({.kind = ContributionKind::structure,
               .subject = "the ratio of the signals",
-              .degrees_of_freedom = freedom,
-              .u_magnitude_rel =
-                  significant_excess(ratio->u_magnitude_rel, expected_magnitude_rel, freedom),
-              .u_phase_rad = significant_excess(ratio->u_phase_rad, expected_phase_rad, freedom)});
+              .u_magnitude_rel = beyond(ratio->u_magnitude_rel, expected_magnitude_rel),
+              .u_phase_rad = beyond(ratio->u_phase_rad, expected_phase_rad)});
   budget.add({.kind = ContributionKind::structure,
               .subject = "the exciter, where the clocks see other parts of it",
               .u_magnitude_rel = ratio->u_correction_magnitude_rel,

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/base/chi_squared_limit.hpp"
 #include "analysis/base/phasor.hpp"
+#include "analysis/uncertainty/narrow_band_noise.hpp"
 
 namespace dyncal::analysis {
 namespace {
@@ -12,7 +12,6 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr std::size_t min_blocks = min_blocks_of_series;
-constexpr std::size_t max_groups = 16;
 // Gain of a split, chi-squared with two degrees of freedom, that one of 256 splits of white noise
 // exceeds once in 10^4: 2 ln(256 / 10^-4).
 constexpr double significant_gain = 29.5;
@@ -114,13 +113,17 @@ public:
     return all;
   }
 
-  // Scatter of `blocks` blocks that both records have says what whole records do by this factor,
-  // for noise that stays the same along them.
-  [[nodiscard]] double of_records_magnitude(double blocks) const {
-    return of_records(numerator_.variance_magnitude, denominator_.variance_magnitude, blocks);
-  }
-  [[nodiscard]] double of_records_phase(double blocks) const {
-    return of_records(numerator_.variance_phase, denominator_.variance_phase, blocks);
+  // Of the mean, where noise is more than white.
+  void add_scatter(const Difference& difference, RatioInBlocks& result) const {
+    const MeanFactor factor =
+        factor_of_narrow_band_noise(difference.values, variance_magnitude_, variance_phase_);
+    const auto u_of = [](double times, double variance) {
+      return times > 1.0 ? times * std::sqrt(variance) : 0.0;
+    };
+    result.u_magnitude_rel = u_of(factor.magnitude, of_records(numerator_.variance_magnitude,
+                                                               denominator_.variance_magnitude));
+    result.u_phase_rad =
+        u_of(factor.phase, of_records(numerator_.variance_phase, denominator_.variance_phase));
   }
 
   [[nodiscard]] std::optional<RatioChange> change_in(const Difference& difference) const {
@@ -152,10 +155,11 @@ public:
   }
 
 private:
-  [[nodiscard]] double of_records(double numerator, double denominator, double blocks) const {
-    const double whole = numerator / static_cast<double>(numerator_.time_s.size()) +
-                         denominator / static_cast<double>(denominator_.time_s.size());
-    return std::sqrt(whole / ((numerator + denominator) / blocks));
+  // What white noise gives the ratio of the whole records: noise stays the same along them,
+  // whatever part of them both have.
+  [[nodiscard]] double of_records(double numerator, double denominator) const {
+    return numerator / static_cast<double>(numerator_.time_s.size()) +
+           denominator / static_cast<double>(denominator_.time_s.size());
   }
 
   // By the blocks that all candidates have: what others have says nothing of the offset.
@@ -200,41 +204,6 @@ private:
   const BlockSeries& denominator_;
   double variance_magnitude_, variance_phase_;
 };
-
-// s / sqrt(m), larger where neighbours resemble each other: of blocks that follow a trend only m (1
-// - r) / (1 + r) are independent, r being their correlation.
-double scatter_of_mean(const std::vector<double>& values) {
-  const double n = static_cast<double>(values.size());
-  double mean = 0.0;
-  for (double value : values) {
-    mean += value / n;
-  }
-  double squares = 0.0, products = 0.0, before = 0.0;
-  for (double value : values) {
-    squares += (value - mean) * (value - mean);
-    products += (value - mean) * before;
-    before = value - mean;
-  }
-  const double correlation = squares > 0.0 ? std::min(products / squares, 0.9) : 0.0;
-  const bool resembling = correlation > 2.0 / std::sqrt(n);
-  return std::sqrt(squares / (n - 1.0) / n *
-                   (resembling ? (1.0 + correlation) / (1.0 - correlation) : 1.0));
-}
-
-void add_scatter(const Comparison& comparison, const Difference& difference,
-                 RatioInBlocks& result) {
-  const std::size_t group = (difference.values.size() + max_groups - 1) / max_groups;
-  std::vector<double> magnitudes, phases;
-  for (std::size_t i = 0; i + group <= difference.values.size(); i += group) {
-    const Complex mean = mean_of(std::span(difference.values).subspan(i, group));
-    magnitudes.push_back(mean.real());
-    phases.push_back(mean.imag());
-  }
-  const double blocks = static_cast<double>(difference.values.size());
-  result.u_magnitude_rel = comparison.of_records_magnitude(blocks) * scatter_of_mean(magnitudes);
-  result.u_phase_rad = comparison.of_records_phase(blocks) * scatter_of_mean(phases);
-  result.degrees_of_freedom = static_cast<double>(magnitudes.size()) - 1.0;
-}
 
 void add_correction(const std::vector<Difference>& all, double shortening, RatioInBlocks& result) {
   double weights = 0.0;
@@ -285,7 +254,7 @@ std::optional<RatioInBlocks> compare_in_blocks(BlockSeries numerator, BlockSerie
     return std::nullopt;
   }
   RatioInBlocks result;
-  add_scatter(comparison, *best, result);
+  comparison.add_scatter(*best, result);
   if (wanders) {
     add_correction(all, numerator.shortening - denominator.shortening, result);
     result.change = comparison.change_in(*best);
@@ -297,12 +266,6 @@ std::optional<RatioInBlocks> compare_in_blocks(BlockSeries numerator, BlockSerie
     }
   }
   return result;
-}
-
-double significant_excess(double observed, double expected, double degrees_of_freedom) {
-  const double limit = chi_squared_limit(degrees_of_freedom, once_in_a_thousand);
-  const double ratio = observed * observed - limit * expected * expected;
-  return ratio > 0.0 ? std::sqrt(observed * observed - expected * expected) : 0.0;
 }
 
 } // namespace dyncal::analysis

@@ -13,7 +13,8 @@
 //    records do not cover the same part of what both share. `correction` is the weighted mean of
 //    d_k, ln(ratio in blocks / ratio of the records), with what is lost within blocks, 1/24 of the
 //    square of the phase's advance in one; else it is 0, so that clean records keep their value.
-// 3. Scatter of d_k in up to 16 groups, s / sqrt(m), larger where neighbours resemble each other.
+// 3. Where d_k show more than white noise, by how much their mean may be off
+//    (narrow_band_noise.hpp).
 // 4. The best split of d_k into two levels is a change where chance gives it once in 10^4, against
 //    noise as white as stated or as large as what the split leaves, for every likely offset.
 //
@@ -49,9 +50,8 @@ struct RatioChange { // after less before
 
 struct RatioInBlocks {
   std::complex<double> correction{};
-  double u_magnitude_rel = 0.0; // of the mean, from the scatter
+  double u_magnitude_rel = 0.0; // of the mean, U / 2; 0 where white noise explains the scatter
   double u_phase_rad = 0.0;
-  double degrees_of_freedom = 0.0;
   double u_correction_magnitude_rel = 0.0; // from the offset, and from the loss within blocks
   double u_correction_phase_rad = 0.0;
   std::optional<RatioChange> change{};
@@ -60,12 +60,5 @@ struct RatioInBlocks {
 // Empty where fewer than four blocks overlap.
 [[nodiscard]] std::optional<RatioInBlocks>
 compare_in_blocks(BlockSeries numerator, BlockSeries denominator, const BlockAlignment& alignment);
-
-// What `observed` shows beyond `expected`, both standard uncertainties: sqrt(observed^2 -
-// expected^2) where the ratio of the variances is larger than white noise gives once in a thousand
-// (chi-squared, `degrees_of_freedom`), 0 otherwise. So white records keep the uncertainty, and with
-// it the coverage, that theory gives them.
-[[nodiscard]] double significant_excess(double observed, double expected,
-                                        double degrees_of_freedom);
 
 } // namespace dyncal::analysis

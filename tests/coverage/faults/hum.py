@@ -95,11 +95,17 @@ class Hum(Fault):
 class NarrowBandNoise(Fault):
     """Noise about one frequency, whose standard deviation is a part of the amplitude."""
 
-    def __init__(self, calibration, rng, part=0.01, centre_hz=63.0, width_hz=2.0):
+    def __init__(self, calibration, rng, part=0.01, centre_hz=63.0, width_hz=2.0, of="sensor"):
         super().__init__(calibration, rng)
-        self.part, self.centre_hz, self.width_hz = part, centre_hz, width_hz
+        self.part, self.centre_hz, self.width_hz, self.of = part, centre_hz, width_hz, of
 
     def sensor(self, times_s, values):
+        return self._beside(times_s, values) if self.of == "sensor" else values
+
+    def reference(self, times_s, values):
+        return self._beside(times_s, values) if self.of == "reference" else values
+
+    def _beside(self, times_s, values):
         # Two slow normal processes of this bandwidth, drawn ten times as densely.
         interval_s = 0.1 / self.width_hz
         grid_s = np.arange(-10.0 / self.width_hz, times_s[-1] + 10.0 / self.width_hz, interval_s)
@@ -119,11 +125,21 @@ def hum(**more):
     return functools.partial(Hum, **more)
 
 
+def narrow_band_noise(part, duration_s=1.5, **more):
+    return bench(
+        LITTLE_NOISE,
+        frequencies=("31.5", "63", "80", "125"),
+        duration_s=duration_s,
+        fault=functools.partial(NarrowBandNoise, part=part, **more),
+    )
+
+
 AT_MAINS = ("31.5", "50", "80", "100", "150", "200")
 ISO_266 = ("10", "12.5", "16", "20", "25", "31.5", "40", "50", "63", "80",
            "100", "125", "150", "160", "200")
 RAILWAY = ("10", "12.5", "16.7", "25", "31.5", "40")
 STRENGTHS = {"just visible": 0.0007, "clear": 0.005, "gross": 0.05}
+NOISES = {"just visible": 0.001, "clear": 0.01, "gross": 0.05}
 
 CLASSES = {
     **{
@@ -186,13 +202,23 @@ CLASSES = {
         for name, part in STRENGTHS.items()
     },
     **{
-        f"noise {width_hz} Hz wide, {name}": bench(
-            LITTLE_NOISE,
-            frequencies=("31.5", "63", "80", "125"),
-            fault=functools.partial(NarrowBandNoise, part=part, width_hz=width_hz),
+        f"noise {width_hz} Hz wide, {name}": narrow_band_noise(part, width_hz=width_hz)
+        for width_hz in (0.2, 1.0, 2.0, 5.0)
+        for name, part in NOISES.items()
+    },
+    **{
+        f"noise 2.0 Hz wide in the reference, {name}": narrow_band_noise(part, of="reference")
+        for name, part in NOISES.items()
+    },
+    **{
+        f"noise 2.0 Hz wide, {away_hz} Hz beside the step": narrow_band_noise(
+            0.01, centre_hz=63.0 + away_hz
         )
-        for width_hz in (0.2, 2.0)
-        for name, part in (("just visible", 0.001), ("clear", 0.01), ("gross", 0.05))
+        for away_hz in (1, 3)
+    },
+    **{
+        f"noise 2.0 Hz wide, steps of {duration_s} s": narrow_band_noise(0.01, duration_s)
+        for duration_s in (0.5, 5.0)
     },
 }
 

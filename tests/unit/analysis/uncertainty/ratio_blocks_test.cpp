@@ -49,21 +49,19 @@ double steady(double) {
   return 1.0;
 }
 
-TEST(RatioBlocks, OfWhiteNoiseKeepTheValueAndScatterAsTheorySays) {
-  int changes = 0;
-  double squares = 0.0;
+TEST(RatioBlocks, OfWhiteNoiseKeepTheValueAndAddNothing) {
+  int changes = 0, added = 0;
   constexpr int draws = 50;
   for (unsigned seed = 1; seed <= draws; ++seed) {
     const auto ratio = compare_in_blocks(series_of(record_of(0.0, 0.01, seed, steady)),
                                          series_of(record_of(0.0, 0.01, seed + 1000, steady)), {});
     ASSERT_TRUE(ratio.has_value());
     EXPECT_EQ(ratio->correction, std::complex<double>());
-    EXPECT_GE(ratio->degrees_of_freedom, 12.0);
     changes += ratio->change ? 1 : 0;
-    squares += ratio->u_magnitude_rel * ratio->u_magnitude_rel / draws;
+    added += ratio->u_magnitude_rel > 1.3 * 0.01 * std::sqrt(2.0 * 2.0 / 3000.0) ? 1 : 0;
   }
   EXPECT_EQ(changes, 0);
-  EXPECT_NEAR(std::sqrt(squares), 0.01 * std::sqrt(2.0 * 2.0 / 3000.0), 4e-5);
+  EXPECT_LE(added, 1);
 }
 
 TEST(RatioBlocks, WhatBothShareCancels) {
@@ -174,16 +172,6 @@ TEST(RatioBlocks, TooFewPeriodsOrNoSignalSayNothing) {
   const FittedValues values[] = {{noise.values, noise.fit}};
   const auto blocks = phasors_in_blocks(*Frequency::parse("80"), 0, noise.stamps_ns, values);
   EXPECT_FALSE(block_series(blocks.front(), noise.fit).has_value());
-}
-
-TEST(SignificantExcess, StaysSilentWithinWhatNoiseDoes) {
-  EXPECT_EQ(significant_excess(1.2e-3, 1e-3, 15.0), 0.0);
-  EXPECT_EQ(significant_excess(0.5e-3, 1e-3, 15.0), 0.0);
-  EXPECT_NEAR(significant_excess(5e-3, 3e-3, 15.0), 4e-3, 1e-15);
-  // chi-squared with 15 degrees of freedom exceeds 37.70 once in a thousand.
-  const double limit = std::sqrt(37.70 / 15.0);
-  EXPECT_EQ(significant_excess(0.98 * limit, 1.0, 15.0), 0.0);
-  EXPECT_GT(significant_excess(1.02 * limit, 1.0, 15.0), 0.0);
 }
 
 } // namespace
