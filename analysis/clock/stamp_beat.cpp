@@ -63,7 +63,21 @@ bool is_one_of(std::vector<IntervalValue>& values, std::int64_t interval_ns) {
   return values.size() <= most_values;
 }
 
+// The usual case, which is looked at quickly.
+bool are_all_alike(std::span<const std::int64_t> stamps_ns) {
+  std::int64_t min_ns = stamps_ns[1] - stamps_ns[0], max_ns = min_ns;
+  for (std::size_t i = 1; i < stamps_ns.size(); ++i) {
+    const std::int64_t interval_ns = stamps_ns[i] - stamps_ns[i - 1];
+    min_ns = std::min(min_ns, interval_ns);
+    max_ns = std::max(max_ns, interval_ns);
+  }
+  return max_ns - min_ns <= rounded_ns;
+}
+
 Ticks ticks_of(std::span<const std::int64_t> stamps_ns, double usual_ns) {
+  if (are_all_alike(stamps_ns)) {
+    return {0.0, true};
+  }
   std::vector<IntervalValue> values;
   for (std::size_t i = 1; i < stamps_ns.size(); ++i) {
     const std::int64_t interval_ns = stamps_ns[i] - stamps_ns[i - 1];
