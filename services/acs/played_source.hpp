@@ -13,8 +13,8 @@
 #include <stop_token>
 
 #include "drivers/sample_source.hpp"
+#include "services/base/error.hpp"
 #include "services/bench/bench_file.hpp"
-#include "services/error.hpp"
 #include "services/source/source_publisher.hpp"
 
 namespace dyncal::services::acs {

@@ -4,8 +4,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include "services/base/version.hpp"
 #include "services/contract/topics.hpp"
-#include "services/version.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -2,11 +2,11 @@
 
 #include <spdlog/spdlog.h>
 
+#include "services/base/version.hpp"
 #include "services/contract/topics.hpp"
 #include "services/evaluation/result/clock_report_message.hpp"
 #include "services/evaluation/result/result_message.hpp"
 #include "services/evaluation/result/transfer_function_message.hpp"
-#include "services/version.hpp"
 
 namespace dyncal::services {
 namespace {

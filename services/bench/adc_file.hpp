@@ -19,8 +19,8 @@
 #include <vector>
 
 #include "analysis/instrument/adc_calibration.hpp"
+#include "services/base/error.hpp"
 #include "services/bench/bench_file.hpp"
-#include "services/error.hpp"
 
 namespace dyncal::services {
 

@@ -3,8 +3,8 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "services/json_text.hpp"
-#include "services/output/output_file.hpp"
+#include "services/base/json_text.hpp"
+#include "services/base/output_file.hpp"
 
 namespace dyncal::services {
 

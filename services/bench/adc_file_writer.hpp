@@ -17,7 +17,7 @@
 #include <string>
 
 #include "analysis/instrument/adc_calibration.hpp"
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 
 namespace dyncal::services {
 

@@ -17,12 +17,12 @@
 #include <vector>
 
 #include "analysis/instrument/reference_calibration.hpp"
+#include "services/base/error.hpp"
 #include "services/bench/bench_problem.hpp"
 #include "services/bench/named_files.hpp"
 #include "services/bench/source_settings.hpp"
 #include "services/contract/channel_name.hpp"
 #include "services/contract/evaluation_method.hpp"
-#include "services/error.hpp"
 
 namespace dyncal::services {
 

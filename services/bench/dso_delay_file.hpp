@@ -6,7 +6,7 @@
 
 #include <filesystem>
 
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 
 namespace dyncal::services {
 

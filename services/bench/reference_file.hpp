@@ -22,7 +22,7 @@
 #include <vector>
 
 #include "analysis/instrument/reference_calibration.hpp"
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 
 namespace dyncal::services {
 

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
-#include "services/nearest_name.hpp"
+#include "services/base/nearest_name.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -4,11 +4,11 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include "services/base/nearest_name.hpp"
 #include "services/bench_check/checks.hpp"
 #include "services/contract/quantity.hpp"
 #include "services/contract/role_quantities.hpp"
 #include "services/contract/unit.hpp"
-#include "services/nearest_name.hpp"
 
 namespace dyncal::services::bench_check {
 namespace {

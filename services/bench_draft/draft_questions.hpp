@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
+#include "services/base/error.hpp"
 #include "services/bench_draft/bench_draft.hpp"
-#include "services/error.hpp"
 
 namespace dyncal::services::bench_draft {
 

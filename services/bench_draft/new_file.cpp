@@ -9,7 +9,7 @@
 
 #include <fmt/core.h>
 
-#include "services/output/output_file.hpp"
+#include "services/base/output_file.hpp"
 
 namespace dyncal::services::bench_draft {
 

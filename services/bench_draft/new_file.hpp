@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 
 namespace dyncal::services::bench_draft {
 

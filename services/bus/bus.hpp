@@ -33,6 +33,7 @@
 #include <string>
 #include <vector>
 
+#include "services/base/error.hpp"
 #include "services/bus/discovery.hpp"
 #include "services/bus/names.hpp"
 #include "services/bus/own_addresses.hpp"
@@ -40,7 +41,6 @@
 #include "services/bus/type_support.hpp"
 #include "services/bus/wake_up.hpp"
 #include "services/contract/topics.hpp"
-#include "services/error.hpp"
 
 namespace dyncal::bus {
 

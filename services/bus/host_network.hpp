@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 
 namespace dyncal::bus {
 

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <string>
 
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 
 namespace dyncal::bus {
 

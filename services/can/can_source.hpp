@@ -16,9 +16,9 @@
 
 #include "drivers/can/bus/frame_source.hpp"
 #include "drivers/can/sensor_stream.hpp"
+#include "services/base/error.hpp"
 #include "services/bench/source_settings.hpp"
 #include "services/can/stream_settings.hpp"
-#include "services/error.hpp"
 #include "services/source/source_publisher.hpp"
 
 namespace dyncal::services::can {

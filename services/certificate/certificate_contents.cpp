@@ -9,11 +9,11 @@
 #include <fmt/ranges.h>
 #include <openssl/rand.h>
 
+#include "services/base/version.hpp"
 #include "services/certificate/objections.hpp"
 #include "services/certificate/ratio_unit.hpp"
 #include "services/contract/digest.hpp"
 #include "services/report/stated_value.hpp"
-#include "services/version.hpp"
 
 namespace dyncal::services {
 namespace {

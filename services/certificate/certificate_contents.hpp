@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 #include "services/laboratory/laboratory_file.hpp"
 #include "services/laboratory/sensor_file.hpp"
 #include "services/report/stored_result.hpp"

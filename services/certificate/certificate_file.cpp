@@ -2,9 +2,9 @@
 
 #include <fmt/core.h>
 
+#include "services/base/output_file.hpp"
 #include "services/certificate/dcc.hpp"
 #include "services/certificate/schema.hpp"
-#include "services/output/output_file.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -8,9 +8,9 @@
 #include <filesystem>
 #include <optional>
 
+#include "services/base/error.hpp"
 #include "services/certificate/certificate_contents.hpp"
 #include "services/certificate/signature.hpp"
-#include "services/error.hpp"
 
 namespace dyncal::services {
 

@@ -10,8 +10,8 @@
 #include <memory>
 #include <string>
 
+#include "services/base/error.hpp"
 #include "services/certificate/xml_document.hpp"
-#include "services/error.hpp"
 
 struct _xmlSchema; // NOLINT(readability-identifier-naming): of libxml2
 

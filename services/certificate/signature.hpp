@@ -14,8 +14,8 @@
 #include <filesystem>
 #include <string>
 
+#include "services/base/error.hpp"
 #include "services/certificate/xml_document.hpp"
-#include "services/error.hpp"
 
 namespace dyncal::services {
 

@@ -9,8 +9,8 @@
 #include <openssl/evp.h>
 #include <openssl/x509.h>
 
+#include "services/base/error.hpp"
 #include "services/certificate/xml_document.hpp"
-#include "services/error.hpp"
 
 namespace dyncal::services {
 

@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 
 // Of libxml2.
 struct _xmlDoc;  // NOLINT(readability-identifier-naming)

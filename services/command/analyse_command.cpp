@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "services/acs/played_source.hpp"
+#include "services/base/version.hpp"
 #include "services/command/analyse_recording.hpp"
 #include "services/command/run_command.hpp"
 #include "services/command/work_progress.hpp"
@@ -17,7 +18,6 @@
 #include "services/replay/shot_files.hpp"
 #include "services/report/show_outcome.hpp"
 #include "services/run/run_plan.hpp"
-#include "services/version.hpp"
 
 namespace dyncal::services {
 namespace {

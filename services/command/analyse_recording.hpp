@@ -4,10 +4,10 @@
 
 #include <stop_token>
 
+#include "services/base/error.hpp"
+#include "services/base/work_count.hpp"
 #include "services/command/analyse_command.hpp"
-#include "services/error.hpp"
 #include "services/evaluation/result/run_outcome.hpp"
-#include "services/work_count.hpp"
 
 namespace dyncal::services {
 

@@ -7,9 +7,9 @@
 
 #include "analysis/instrument/pulse_edges.hpp"
 #include "analysis/instrument/stamp_deviation.hpp"
+#include "services/base/json_text.hpp"
+#include "services/base/output_file.hpp"
 #include "services/command/pulse_file.hpp"
-#include "services/json_text.hpp"
-#include "services/output/output_file.hpp"
 #include "services/program/program.hpp"
 #include "services/report/figures/stamp_deviation.hpp"
 

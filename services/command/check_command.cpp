@@ -6,10 +6,10 @@
 #include "drivers/generator/generator_identity.hpp"
 #include "drivers/generator/left_over_state.hpp"
 #include "drivers/link/scpi_answer.hpp"
+#include "services/base/json_text.hpp"
 #include "services/bench_check/checks.hpp"
 #include "services/bench_check/report.hpp"
 #include "services/command/work_progress.hpp"
-#include "services/json_text.hpp"
 
 namespace dyncal::services {
 

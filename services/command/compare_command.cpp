@@ -9,10 +9,10 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/response/comparison.hpp"
+#include "services/base/error.hpp"
+#include "services/base/json_text.hpp"
+#include "services/base/printable_text.hpp"
 #include "services/command/work_progress.hpp"
-#include "services/error.hpp"
-#include "services/json_text.hpp"
-#include "services/printable_text.hpp"
 #include "services/program/program.hpp"
 #include "services/report/result_file.hpp"
 

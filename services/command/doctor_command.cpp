@@ -6,11 +6,11 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "services/base/json_text.hpp"
 #include "services/command/laboratory_look.hpp"
 #include "services/doctor/checks.hpp"
 #include "services/doctor/report.hpp"
 #include "services/doctor/unheard_analysis.hpp"
-#include "services/json_text.hpp"
 #include "services/program/bench_program.hpp"
 
 namespace dyncal::services {

@@ -5,10 +5,10 @@
 #include <fmt/core.h>
 #include <spdlog/spdlog.h>
 
+#include "services/base/printable_text.hpp"
 #include "services/command/share_line.hpp"
 #include "services/command/work_progress.hpp"
 #include "services/exchange/export_recording.hpp"
-#include "services/printable_text.hpp"
 #include "services/program/program.hpp"
 
 namespace dyncal::services {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "services/printable_text.hpp"
+#include "services/base/printable_text.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -7,11 +7,11 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "services/base/json_text.hpp"
+#include "services/base/output_file.hpp"
+#include "services/base/printable_text.hpp"
 #include "services/command/work_progress.hpp"
 #include "services/contract/unit.hpp"
-#include "services/json_text.hpp"
-#include "services/output/output_file.hpp"
-#include "services/printable_text.hpp"
 #include "services/program/program.hpp"
 #include "services/report/figures/drift.hpp"
 #include "services/report/rounding.hpp"

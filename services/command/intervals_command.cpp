@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/clock/sample_clock.hpp"
+#include "services/base/json_text.hpp"
 #include "services/command/work_progress.hpp"
-#include "services/json_text.hpp"
 #include "services/program/program.hpp"
 #include "services/replay/series_file.hpp"
 

@@ -6,10 +6,10 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "services/base/json_text.hpp"
 #include "services/command/harmless_text.hpp"
 #include "services/command/watched_laboratory.hpp"
 #include "services/contract/run_identity.hpp"
-#include "services/json_text.hpp"
 #include "services/live/laboratory_json.hpp"
 
 namespace dyncal::services {

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "services/base/version.hpp"
 #include "services/command/analyse_command.hpp"
 #include "services/command/bench_file_options.hpp"
 #include "services/command/calibrate_options.hpp"
@@ -22,7 +23,6 @@
 #include "services/command/triaxial_command.hpp"
 #include "services/program/command_line.hpp"
 #include "services/run/output_guard.hpp"
-#include "services/version.hpp"
 
 namespace {
 

@@ -5,8 +5,8 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "services/base/error.hpp"
 #include "services/command/work_progress.hpp"
-#include "services/error.hpp"
 #include "services/model/channel_model.hpp"
 #include "services/model/model_figure.hpp"
 #include "services/model/model_json.hpp"

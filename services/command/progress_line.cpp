@@ -6,7 +6,7 @@
 
 #include <fmt/core.h>
 
-#include "services/printable_text.hpp"
+#include "services/base/printable_text.hpp"
 
 namespace dyncal::services {
 

@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "analysis/instrument/pulse_edges.hpp"
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 
 namespace dyncal::services {
 

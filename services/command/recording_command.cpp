@@ -6,13 +6,13 @@
 #include <fmt/chrono.h>
 #include <fmt/core.h>
 
-#include "services/byte_count.hpp"
+#include "services/base/byte_count.hpp"
+#include "services/base/printable_text.hpp"
+#include "services/base/version.hpp"
 #include "services/command/work_progress.hpp"
-#include "services/printable_text.hpp"
 #include "services/program/program.hpp"
 #include "services/recording/recording_reader.hpp"
 #include "services/recording/repair.hpp"
-#include "services/version.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <fmt/core.h>
 
-#include "services/printable_text.hpp"
+#include "services/base/printable_text.hpp"
 #include "services/program/watched_network.hpp"
 
 namespace dyncal::services {

@@ -2,10 +2,10 @@
 
 #include <fmt/core.h>
 
+#include "services/base/output_file.hpp"
 #include "services/command/work_progress.hpp"
 #include "services/document/pdf.hpp"
 #include "services/document/report_document.hpp"
-#include "services/output/output_file.hpp"
 #include "services/program/program.hpp"
 
 namespace dyncal::services {

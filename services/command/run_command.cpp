@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "drivers/utc_clock.hpp"
+#include "services/base/printable_text.hpp"
 #include "services/bench/adc_file.hpp"
 #include "services/bench_check/checks.hpp"
 #include "services/command/laboratory_look.hpp"
@@ -16,7 +17,6 @@
 #include "services/contract/time_name.hpp"
 #include "services/contract/topics.hpp"
 #include "services/doctor/unheard_analysis.hpp"
-#include "services/printable_text.hpp"
 #include "services/program/bench_program.hpp"
 #include "services/program/watched_network.hpp"
 #include "services/report/show_outcome.hpp"

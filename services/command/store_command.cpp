@@ -3,10 +3,10 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "services/base/json_text.hpp"
+#include "services/base/printable_text.hpp"
 #include "services/command/work_progress.hpp"
 #include "services/contract/run_identity.hpp"
-#include "services/json_text.hpp"
-#include "services/printable_text.hpp"
 #include "services/program/program.hpp"
 
 namespace dyncal::services {

@@ -11,9 +11,9 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/response/triaxial.hpp"
+#include "services/base/error.hpp"
+#include "services/base/json_text.hpp"
 #include "services/command/work_progress.hpp"
-#include "services/error.hpp"
-#include "services/json_text.hpp"
 #include "services/program/program.hpp"
 #include "services/report/result_file.hpp"
 

@@ -4,9 +4,9 @@
 
 #include <fmt/core.h>
 
+#include "services/base/printable_text.hpp"
 #include "services/certificate/verification.hpp"
 #include "services/command/work_progress.hpp"
-#include "services/printable_text.hpp"
 #include "services/program/program.hpp"
 
 namespace dyncal::services {

@@ -10,10 +10,10 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "services/base/json_text.hpp"
 #include "services/command/laboratory_lines.hpp"
 #include "services/command/laboratory_table.hpp"
 #include "services/command/watched_laboratory.hpp"
-#include "services/json_text.hpp"
 #include "services/live/laboratory_json.hpp"
 
 namespace dyncal::services {

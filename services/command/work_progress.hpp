@@ -17,7 +17,7 @@
 #include <string>
 #include <thread>
 
-#include "services/work_count.hpp"
+#include "services/base/work_count.hpp"
 
 namespace dyncal::services {
 

@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <string>
 
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 
 namespace dyncal::services {
 

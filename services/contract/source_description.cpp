@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 
 #include "idl/dyncal.h"
-#include "services/printable_text.hpp"
+#include "services/base/printable_text.hpp"
 
 namespace dyncal::services {
 namespace {

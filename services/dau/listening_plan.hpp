@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "drivers/smartup/sensor.hpp"
+#include "services/base/error.hpp"
 #include "services/bench/bench_file.hpp"
-#include "services/error.hpp"
 
 namespace dyncal::services::dau {
 

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <string>
 
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 #include "services/evaluation/result/run_outcome.hpp"
 
 namespace dyncal::services {

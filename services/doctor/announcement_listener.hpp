@@ -9,7 +9,7 @@
 #include <set>
 #include <string>
 
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 
 namespace dyncal::services::doctor {
 

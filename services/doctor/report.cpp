@@ -5,7 +5,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "services/printable_text.hpp"
+#include "services/base/printable_text.hpp"
 
 namespace dyncal::services::doctor {
 namespace {

@@ -10,7 +10,7 @@
 
 #include <fmt/core.h>
 
-#include "services/output/output_file.hpp"
+#include "services/base/output_file.hpp"
 #include "services/program/child_process.hpp"
 #include "services/report/stored_result.hpp"
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 
 namespace dyncal::services {
 

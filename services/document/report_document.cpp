@@ -7,12 +7,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "services/base/version.hpp"
 #include "services/document/html.hpp"
 #include "services/document/report_front.hpp"
 #include "services/document/report_results.hpp"
 #include "services/document/report_setup.hpp"
 #include "services/document/report_style.hpp"
-#include "services/version.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -15,8 +15,8 @@
 #include <string>
 #include <vector>
 
+#include "services/base/error.hpp"
 #include "services/document/report_contents.hpp"
-#include "services/error.hpp"
 
 namespace dyncal::services {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "drivers/tss/series.hpp"
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 
 namespace dyncal::services::dso {
 

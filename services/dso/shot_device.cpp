@@ -4,7 +4,7 @@
 
 #include <fmt/core.h>
 
-#include "services/device_error.hpp"
+#include "services/base/device_error.hpp"
 
 namespace dyncal::services::dso {
 namespace {

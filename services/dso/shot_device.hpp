@@ -18,9 +18,9 @@
 #include "drivers/dso/oscilloscope.hpp"
 #include "drivers/link/stop_signal.hpp"
 #include "drivers/tss/series_source.hpp"
+#include "services/base/error.hpp"
 #include "services/bench/source_settings.hpp"
 #include "services/dso/trigger_count.hpp"
-#include "services/error.hpp"
 
 namespace dyncal::services::dso {
 

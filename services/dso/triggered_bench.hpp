@@ -26,10 +26,10 @@
 #include <vector>
 
 #include "drivers/link/stop_signal.hpp"
+#include "services/base/error.hpp"
 #include "services/bench/bench_file.hpp"
 #include "services/bus/bus.hpp"
 #include "services/dso/shot_device.hpp"
-#include "services/error.hpp"
 #include "services/source/source_service.hpp"
 
 #include "idl/dyncal.h"

@@ -33,7 +33,8 @@
 #include <string>
 #include <vector>
 
-#include "services/error.hpp"
+#include "services/base/error.hpp"
+#include "services/base/work_count.hpp"
 #include "services/evaluation/channel_faults.hpp"
 #include "services/evaluation/clock_report_builder.hpp"
 #include "services/evaluation/evaluation_queue.hpp"
@@ -45,7 +46,6 @@
 #include "services/evaluation/record/run_records.hpp"
 #include "services/evaluation/record/step_snapshot.hpp"
 #include "services/evaluation/transfer_summary.hpp"
-#include "services/work_count.hpp"
 
 namespace dyncal::services {
 

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "services/base/output_stream.hpp"
 #include "services/exchange/row_formats.hpp"
-#include "services/output/output_stream.hpp"
 
 namespace dyncal::services {
 namespace {

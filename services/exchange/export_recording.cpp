@@ -2,11 +2,11 @@
 
 #include <fmt/core.h>
 
+#include "services/base/output_stream.hpp"
 #include "services/exchange/exported_runs.hpp"
 #include "services/exchange/hdf5_export.hpp"
 #include "services/exchange/opened_recording.hpp"
 #include "services/exchange/row_formats.hpp"
-#include "services/output/output_stream.hpp"
 
 namespace dyncal::services {
 namespace {

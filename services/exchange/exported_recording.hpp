@@ -17,7 +17,7 @@
 
 #include "drivers/sample_block.hpp"
 #include "idl/dyncal.h"
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 #include "services/replay/recording_index.hpp"
 
 namespace dyncal::services {

@@ -7,10 +7,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "services/base/json_text.hpp"
+#include "services/base/version.hpp"
 #include "services/contract/topics.hpp"
-#include "services/json_text.hpp"
 #include "services/recording/recorded_topics.hpp"
-#include "services/version.hpp"
 
 namespace dyncal::services {
 namespace {

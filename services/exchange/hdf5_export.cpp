@@ -6,9 +6,9 @@
 
 #include <fmt/core.h>
 
+#include "services/base/output_stream.hpp"
+#include "services/base/version.hpp"
 #include "services/exchange/hdf5_samples.hpp"
-#include "services/output/output_stream.hpp"
-#include "services/version.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -8,8 +8,8 @@
 #include <numeric>
 #include <set>
 
+#include "services/base/version.hpp"
 #include "services/contract/source_block.hpp"
-#include "services/version.hpp"
 
 namespace dyncal::services {
 namespace {

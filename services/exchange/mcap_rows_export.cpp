@@ -8,11 +8,11 @@
 
 #include <fmt/core.h>
 
+#include "services/base/output_stream.hpp"
+#include "services/base/version.hpp"
 #include "services/exchange/row_formats.hpp"
-#include "services/output/output_stream.hpp"
 #include "services/recording/recording_writer.hpp"
 #include "services/recording/text_crc.hpp"
-#include "services/version.hpp"
 
 namespace dyncal::services {
 namespace {

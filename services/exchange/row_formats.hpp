@@ -8,7 +8,7 @@
 // "ros2msg", which PlotJuggler, Foxglove and Lichtblick plot; its time is the sample's. A source
 // with a time base of its own is shifted as a whole to when its first samples were received.
 //
-// All of it or nothing takes the name (services/output). Fails (bad_file) with the file and the
+// All of it or nothing takes the name (services/base). Fails (bad_file) with the file and the
 // reason, (interrupted) when `progress` says so. One thread.
 #pragma once
 

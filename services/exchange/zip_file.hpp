@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "services/output/output_stream.hpp"
+#include "services/base/output_stream.hpp"
 
 namespace dyncal::services {
 

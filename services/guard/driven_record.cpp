@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "services/json_text.hpp"
-#include "services/output/output_file.hpp"
+#include "services/base/json_text.hpp"
+#include "services/base/output_file.hpp"
 
 namespace dyncal::services {
 namespace {

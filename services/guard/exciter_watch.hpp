@@ -32,8 +32,8 @@
 #include <vector>
 
 #include "drivers/generator/generator_output.hpp"
+#include "services/base/error.hpp"
 #include "services/bus/clock.hpp"
-#include "services/error.hpp"
 
 namespace dyncal::services {
 

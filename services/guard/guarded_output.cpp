@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "services/device_error.hpp"
+#include "services/base/device_error.hpp"
 
 namespace dyncal::services {
 

@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "drivers/generator/generator_output.hpp"
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 
 namespace dyncal::services {
 

@@ -11,9 +11,9 @@
 #include <memory>
 #include <thread>
 
+#include "services/base/error.hpp"
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
-#include "services/error.hpp"
 #include "services/host_clocks/clock_messages.hpp"
 
 namespace dyncal::services {

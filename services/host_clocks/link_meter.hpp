@@ -21,9 +21,9 @@
 #include <string>
 #include <vector>
 
+#include "services/base/error.hpp"
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
-#include "services/error.hpp"
 #include "services/host_clocks/clock_asker.hpp"
 
 namespace dyncal::services {

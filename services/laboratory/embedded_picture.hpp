@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 
 namespace dyncal::services {
 

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 #include "services/laboratory/contact_table.hpp"
 #include "services/laboratory/embedded_picture.hpp"
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 #include "services/laboratory/contact_table.hpp"
 
 namespace dyncal::services {

@@ -1,5 +1,5 @@
 #include "services/live/bounded_results.hpp"
-#include "services/printable_text.hpp"
+#include "services/base/printable_text.hpp"
 
 namespace dyncal::services::live {
 namespace {

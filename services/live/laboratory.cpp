@@ -5,13 +5,13 @@
 
 #include <fmt/core.h>
 
+#include "services/base/printable_text.hpp"
 #include "services/bus/names.hpp"
 #include "services/evaluation/result/clock_report_message.hpp"
 #include "services/evaluation/result/result_message.hpp"
 #include "services/evaluation/result/transfer_function_message.hpp"
 #include "services/live/bounded_results.hpp"
 #include "services/live/changes.hpp"
-#include "services/printable_text.hpp"
 
 namespace dyncal::services::live {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "services/base/printable_text.hpp"
+#include "services/base/version.hpp"
 #include "services/live/run_json.hpp"
-#include "services/printable_text.hpp"
 #include "services/report/json_number.hpp"
-#include "services/version.hpp"
 
 namespace dyncal::services::live {
 namespace {

@@ -2,7 +2,7 @@
 // each member): SI units, null for what is not known, counters as texts where doubles do not hold
 // them, instants as milliseconds since 1970 UTC.
 //
-// Texts are as the network brought them: write them with json_text() (services/json_text.hpp),
+// Texts are as the network brought them: write them with json_text() (services/base/json_text.hpp),
 // which replaces what is not UTF-8. Plain functions; the thread of the laboratory.
 #pragma once
 

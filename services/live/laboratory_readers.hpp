@@ -7,10 +7,10 @@
 #include <memory>
 #include <string>
 
+#include "services/base/error.hpp"
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
 #include "services/contract/program_identity.hpp"
-#include "services/error.hpp"
 #include "services/host_clocks/clock_asker.hpp"
 #include "services/live/laboratory.hpp"
 

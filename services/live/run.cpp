@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "services/base/printable_text.hpp"
 #include "services/contract/evaluation_method_message.hpp"
-#include "services/printable_text.hpp"
 
 namespace dyncal::services::live {
 namespace {

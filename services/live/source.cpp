@@ -4,8 +4,8 @@
 
 #include <fmt/core.h>
 
+#include "services/base/printable_text.hpp"
 #include "services/contract/source_description.hpp"
-#include "services/printable_text.hpp"
 
 namespace dyncal::services::live {
 namespace {

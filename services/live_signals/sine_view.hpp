@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "analysis/sine/sine_fit.hpp"
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 #include "services/live_signals/settled_samples.hpp"
 #include "services/live_signals/trace.hpp"
 

@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 
 namespace dyncal::services {
 

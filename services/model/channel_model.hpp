@@ -11,7 +11,7 @@
 
 #include "analysis/response/compensation_filter.hpp"
 #include "analysis/response/response_choice.hpp"
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 #include "services/model/measured_response.hpp"
 
 namespace dyncal::services {

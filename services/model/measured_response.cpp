@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "services/byte_count.hpp"
+#include "services/base/byte_count.hpp"
 #include "services/evaluation/shared_phase_uncertainty.hpp"
 #include "services/model/result_reader.hpp"
 

@@ -20,8 +20,8 @@
 #include <vector>
 
 #include "analysis/response/response_fit.hpp"
-#include "services/error.hpp"
-#include "services/work_count.hpp"
+#include "services/base/error.hpp"
+#include "services/base/work_count.hpp"
 
 namespace dyncal::services {
 

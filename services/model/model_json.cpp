@@ -5,8 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "services/base/version.hpp"
 #include "services/report/json_number.hpp"
-#include "services/version.hpp"
 
 namespace dyncal::services {
 namespace {

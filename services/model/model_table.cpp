@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "services/base/printable_text.hpp"
 #include "services/contract/unit.hpp"
-#include "services/printable_text.hpp"
 #include "services/report/rounding.hpp"
 
 namespace dyncal::services {

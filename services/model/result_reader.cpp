@@ -5,7 +5,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "services/counted_file.hpp"
+#include "services/base/counted_file.hpp"
 #include "services/report/checked_json.hpp"
 
 namespace dyncal::services {

@@ -10,8 +10,8 @@
 
 #include "analysis/method/repetitions.hpp"
 #include "analysis/uncertainty/contribution.hpp"
-#include "services/byte_count.hpp"
-#include "services/error.hpp"
+#include "services/base/byte_count.hpp"
+#include "services/base/error.hpp"
 
 namespace dyncal::services {
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "services/base/error.hpp"
 #include "services/bench/bench_file.hpp"
-#include "services/error.hpp"
 #include "services/program/daemon.hpp"
 
 namespace dyncal::services {

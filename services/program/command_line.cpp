@@ -10,8 +10,8 @@
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
-#include "services/nearest_name.hpp"
-#include "services/printable_text.hpp"
+#include "services/base/nearest_name.hpp"
+#include "services/base/printable_text.hpp"
 #include "services/program/command_tree.hpp"
 #include "services/program/completion.hpp"
 

@@ -11,7 +11,7 @@
 
 #include <optional>
 
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 
 namespace CLI { // NOLINT(readability-identifier-naming): of the library
 class App;

@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 
 namespace CLI { // NOLINT(readability-identifier-naming): of the library
 class App;

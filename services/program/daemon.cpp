@@ -6,9 +6,9 @@
 #include <CLI/CLI.hpp>
 #include <spdlog/spdlog.h>
 
+#include "services/base/version.hpp"
 #include "services/host_clocks/clock_messages.hpp"
 #include "services/program/command_line.hpp"
-#include "services/version.hpp"
 
 namespace dyncal::services {
 

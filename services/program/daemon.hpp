@@ -14,7 +14,7 @@
 #include <stop_token>
 #include <string>
 
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 #include "services/host_clocks/clock_responder.hpp"
 #include "services/program/program.hpp"
 #include "services/program/watched_network.hpp"

@@ -14,7 +14,7 @@
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
-#include "services/printable_text.hpp"
+#include "services/base/printable_text.hpp"
 #include "services/program/last_words.hpp"
 
 namespace dyncal::services {

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 
 namespace dyncal::services {
 

@@ -11,7 +11,7 @@
 #include <fmt/core.h>
 #include <spdlog/spdlog.h>
 
-#include "services/printable_text.hpp"
+#include "services/base/printable_text.hpp"
 
 namespace dyncal::services {
 namespace {

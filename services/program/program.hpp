@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "services/base/error.hpp"
 #include "services/bus/bus.hpp"
-#include "services/error.hpp"
 #include "services/program/log.hpp"
 
 namespace CLI { // NOLINT(readability-identifier-naming): of the library

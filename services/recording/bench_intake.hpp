@@ -18,9 +18,9 @@
 #include <string>
 #include <vector>
 
+#include "services/base/error.hpp"
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
-#include "services/error.hpp"
 #include "services/recording/mcap_record.hpp"
 #include "services/recording/source_gaps.hpp"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 
 namespace dyncal::recording {
 

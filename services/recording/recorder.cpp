@@ -8,13 +8,13 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include "services/base/version.hpp"
 #include "services/bus/clock.hpp"
 #include "services/bus/host_network.hpp"
 #include "services/contract/digest.hpp"
 #include "services/recording/bench_intake.hpp"
 #include "services/recording/recorded_topics.hpp"
 #include "services/recording/recording_thread.hpp"
-#include "services/version.hpp"
 
 namespace dyncal::recording {
 namespace {

@@ -21,8 +21,8 @@
 #include <memory>
 #include <string>
 
+#include "services/base/error.hpp"
 #include "services/bus/bus.hpp"
-#include "services/error.hpp"
 #include "services/recording/chunk_codec.hpp"
 
 namespace dyncal::recording {

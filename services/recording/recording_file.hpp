@@ -18,7 +18,7 @@
 #include <string_view>
 
 #include "drivers/link/file_descriptor.hpp"
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 
 namespace dyncal::recording {
 

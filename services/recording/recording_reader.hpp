@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "drivers/link/file_descriptor.hpp"
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 #include "services/recording/mcap_record.hpp"
 
 namespace dyncal::recording {

@@ -5,8 +5,8 @@
 
 #include <fmt/core.h>
 
-#include "services/byte_count.hpp"
-#include "services/output/output_stream.hpp"
+#include "services/base/byte_count.hpp"
+#include "services/base/output_stream.hpp"
 #include "services/recording/recording_writer.hpp"
 
 namespace dyncal::recording {

@@ -9,9 +9,9 @@
 
 #include <filesystem>
 
-#include "services/error.hpp"
+#include "services/base/error.hpp"
+#include "services/base/work_count.hpp"
 #include "services/recording/recording_reader.hpp"
-#include "services/work_count.hpp"
 
 namespace dyncal::recording {
 

@@ -14,9 +14,9 @@
 #include <thread>
 
 #include "drivers/sample_source.hpp"
+#include "services/base/error.hpp"
 #include "services/bench/bench_file.hpp"
 #include "services/contract/source_block.hpp"
-#include "services/error.hpp"
 #include "services/source/block_ring.hpp"
 
 namespace dyncal::services {

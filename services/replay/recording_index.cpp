@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "services/byte_count.hpp"
+#include "services/base/byte_count.hpp"
 #include "services/contract/topics.hpp"
 #include "services/evaluation/result/run_pause.hpp"
 #include "services/recording/recorded_topics.hpp"

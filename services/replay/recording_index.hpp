@@ -20,11 +20,11 @@
 #include <vector>
 
 #include "idl/dyncal.h"
-#include "services/error.hpp"
+#include "services/base/error.hpp"
+#include "services/base/work_count.hpp"
 #include "services/evaluation/result/clock_report.hpp"
 #include "services/evaluation/result/run_outcome.hpp"
 #include "services/recording/recording_reader.hpp"
-#include "services/work_count.hpp"
 
 namespace dyncal::services {
 

@@ -17,8 +17,8 @@
 #include <stop_token>
 #include <string>
 
+#include "services/base/error.hpp"
 #include "services/bus/bus.hpp"
-#include "services/error.hpp"
 #include "services/recording/recording_reader.hpp"
 
 namespace dyncal::services {

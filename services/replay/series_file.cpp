@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "drivers/files/file_source.hpp"
-#include "services/byte_count.hpp"
+#include "services/base/byte_count.hpp"
 
 namespace dyncal::services {
 namespace {

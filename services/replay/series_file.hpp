@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "services/error.hpp"
-#include "services/work_count.hpp"
+#include "services/base/error.hpp"
+#include "services/base/work_count.hpp"
 
 namespace dyncal::services {
 

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "drivers/sample_block.hpp"
+#include "services/base/error.hpp"
 #include "services/bench/bench_file.hpp"
 #include "services/contract/triggered_record.hpp"
-#include "services/error.hpp"
 
 namespace dyncal::services {
 

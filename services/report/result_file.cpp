@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "services/counted_file.hpp"
+#include "services/base/counted_file.hpp"
 
 namespace dyncal::services {
 namespace {

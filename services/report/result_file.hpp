@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "analysis/response/comparison.hpp"
-#include "services/byte_count.hpp"
-#include "services/error.hpp"
+#include "services/base/byte_count.hpp"
+#include "services/base/error.hpp"
 
 namespace dyncal::services {
 

@@ -7,8 +7,9 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "services/json_text.hpp"
-#include "services/output/output_file.hpp"
+#include "services/base/json_text.hpp"
+#include "services/base/output_file.hpp"
+#include "services/base/version.hpp"
 #include "services/report/clock_json.hpp"
 #include "services/report/expanded_uncertainty.hpp"
 #include "services/report/flag_legend.hpp"
@@ -16,7 +17,6 @@
 #include "services/report/result_table.hpp"
 #include "services/report/run_setup_json.hpp"
 #include "services/report/step_json.hpp"
-#include "services/version.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 #include "services/evaluation/result/run_outcome.hpp"
 #include "services/report/figures/transfer_function.hpp"
 

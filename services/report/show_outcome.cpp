@@ -7,9 +7,9 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "services/base/output_file.hpp"
+#include "services/base/printable_text.hpp"
 #include "services/contract/run_identity.hpp"
-#include "services/output/output_file.hpp"
-#include "services/printable_text.hpp"
 #include "services/report/result_json.hpp"
 #include "services/report/result_table.hpp"
 #include "services/report/run_figures.hpp"

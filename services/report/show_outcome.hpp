@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 #include "services/evaluation/result/run_outcome.hpp"
 #include "services/report/run_figures.hpp"
 

@@ -17,7 +17,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 #include "services/report/checked_json.hpp"
 
 namespace dyncal::services {

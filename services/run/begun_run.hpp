@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 #include "services/evaluation/result/run_outcome.hpp"
 
 namespace dyncal::services {

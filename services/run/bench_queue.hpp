@@ -16,9 +16,9 @@
 #include <string>
 
 #include "idl/dyncal.h"
+#include "services/base/error.hpp"
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
-#include "services/error.hpp"
 
 namespace dyncal::services {
 

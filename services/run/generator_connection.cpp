@@ -5,7 +5,7 @@
 
 #include "drivers/generator/by_hand_generator.hpp"
 #include "drivers/generator/scpi_generator.hpp"
-#include "services/device_error.hpp"
+#include "services/base/device_error.hpp"
 
 namespace dyncal::services {
 

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "drivers/generator/generator.hpp"
+#include "services/base/error.hpp"
 #include "services/bench/bench_file.hpp"
-#include "services/error.hpp"
 #include "services/run/output_guard.hpp"
 
 namespace dyncal::services {

@@ -19,7 +19,7 @@
 #include <string>
 
 #include "analysis/base/frequency.hpp"
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 #include "services/evaluation/record/channel_level.hpp"
 #include "services/evaluation/record/source_record.hpp"
 

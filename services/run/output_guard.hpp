@@ -16,7 +16,7 @@
 #include <string>
 
 #include "drivers/link/file_descriptor.hpp"
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 
 namespace dyncal::services {
 

@@ -17,9 +17,9 @@
 #include <utility>
 
 #include "idl/dyncal.h"
+#include "services/base/error.hpp"
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
-#include "services/error.hpp"
 
 namespace dyncal::services {
 

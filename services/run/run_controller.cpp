@@ -7,13 +7,13 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include "services/base/version.hpp"
 #include "services/bus/host_network.hpp"
 #include "services/contract/run_identity.hpp"
 #include "services/evaluation/outcome_agreement.hpp"
 #include "services/evaluation/recipe/recipe_message.hpp"
 #include "services/evaluation/result/adc_file_message.hpp"
 #include "services/run/run_plan.hpp"
-#include "services/version.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -21,9 +21,9 @@
 #include <vector>
 
 #include "idl/dyncal.h"
+#include "services/base/error.hpp"
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
-#include "services/error.hpp"
 #include "services/evaluation/result/run_outcome.hpp"
 #include "services/run/guard_watch.hpp"
 

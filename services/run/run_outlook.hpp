@@ -12,7 +12,7 @@
 #include <optional>
 
 #include "idl/dyncal.h"
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 #include "services/run/run_commands.hpp"
 
 namespace dyncal::services {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "analysis/instrument/adc_calibration.hpp"
+#include "services/base/error.hpp"
 #include "services/bench/bench_file.hpp"
-#include "services/error.hpp"
 #include "services/evaluation/recipe/recipe.hpp"
 #include "services/evaluation/result/run_outcome.hpp"
 

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "idl/dyncal.h"
+#include "services/base/error.hpp"
 #include "services/bus/bus.hpp"
-#include "services/error.hpp"
 
 namespace dyncal::services {
 

@@ -6,7 +6,7 @@
 #include <fmt/core.h>
 
 #include "analysis/base/frequency.hpp"
-#include "services/device_error.hpp"
+#include "services/base/device_error.hpp"
 #include "services/run/level_settling.hpp"
 
 namespace dyncal::services {

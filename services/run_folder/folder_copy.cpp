@@ -10,8 +10,8 @@
 #include <fmt/core.h>
 
 #include "drivers/link/file_descriptor.hpp"
+#include "services/base/output_file.hpp"
 #include "services/bench/named_files.hpp"
-#include "services/output/output_file.hpp"
 
 namespace dyncal::services {
 namespace {

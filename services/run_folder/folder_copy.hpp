@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <filesystem>
 
+#include "services/base/error.hpp"
 #include "services/bench/bench_file.hpp"
-#include "services/error.hpp"
 
 namespace dyncal::services {
 

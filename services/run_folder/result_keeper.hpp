@@ -1,5 +1,5 @@
 // Keeps the result.json of a run up to date while it goes on: a thread of its own writes the newest
-// state whole (services/output), so that anyone who conducts the run never waits for the disk.
+// state whole (services/base), so that anyone who conducts the run never waits for the disk.
 //
 // Bound: one state is held besides the one that is being written. Policy when another comes: it
 // takes its place, since it holds all of it. A state that could not be written is reported by
@@ -16,7 +16,7 @@
 #include <optional>
 #include <thread>
 
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 #include "services/evaluation/result/run_outcome.hpp"
 
 namespace dyncal::services {

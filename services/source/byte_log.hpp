@@ -17,7 +17,7 @@
 #include <string_view>
 #include <vector>
 
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 
 namespace dyncal::services {
 

@@ -15,8 +15,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include "services/base/error.hpp"
 #include "services/bus/bus.hpp"
-#include "services/error.hpp"
 #include "services/source/source_service.hpp"
 #include "services/source/supervised.hpp"
 

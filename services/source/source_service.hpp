@@ -21,7 +21,7 @@
 #include <memory>
 #include <string>
 
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 #include "services/source/retransmission_buffer.hpp"
 #include "services/source/source_publisher.hpp"
 

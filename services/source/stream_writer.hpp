@@ -7,8 +7,8 @@
 #include <memory>
 #include <string>
 
+#include "services/base/error.hpp"
 #include "services/bus/bus.hpp"
-#include "services/error.hpp"
 #include "services/source/retransmission_buffer.hpp"
 #include "services/source/source_publisher.hpp"
 

@@ -15,7 +15,7 @@
 #include <variant>
 #include <vector>
 
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 
 namespace dyncal::services {
 

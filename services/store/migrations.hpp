@@ -5,7 +5,7 @@
 // (bad_file). All changes that are missing are one transaction.
 #pragma once
 
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 #include "services/store/database.hpp"
 
 namespace dyncal::services {

@@ -9,10 +9,10 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "services/base/json_text.hpp"
 #include "services/bench/named_files.hpp"
 #include "services/contract/channel_name.hpp"
 #include "services/contract/digest.hpp"
-#include "services/json_text.hpp"
 
 namespace dyncal::services {
 namespace {

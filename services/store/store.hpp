@@ -15,10 +15,10 @@
 #include <string>
 #include <vector>
 
-#include "services/error.hpp"
+#include "services/base/error.hpp"
+#include "services/base/work_count.hpp"
 #include "services/store/database.hpp"
 #include "services/store/result_record.hpp"
-#include "services/work_count.hpp"
 
 namespace dyncal::services {
 

@@ -8,7 +8,7 @@
 #include <memory>
 #include <string>
 
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 #include "services/supervision/metric_store.hpp"
 
 namespace dyncal::services {

@@ -10,8 +10,8 @@
 #include <memory>
 #include <string>
 
+#include "services/base/error.hpp"
 #include "services/contract/program_identity.hpp"
-#include "services/error.hpp"
 #include "services/supervision/daemon_metrics.hpp"
 #include "services/supervision/metrics_server.hpp"
 #include "services/supervision/service_manager.hpp"

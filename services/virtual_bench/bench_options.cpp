@@ -7,8 +7,8 @@
 #include <fmt/ranges.h>
 #include <map>
 
+#include "services/base/version.hpp"
 #include "services/program/command_line.hpp"
-#include "services/version.hpp"
 #include "services/virtual_bench/fault_option.hpp"
 
 namespace dyncal::services::virtual_bench {

@@ -10,7 +10,7 @@
 #include "drivers/virtual_bench/model/recording.hpp"
 #include "drivers/virtual_bench/model/virtual_bench.hpp"
 #include "drivers/virtual_bench/wire/bench_server.hpp"
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 
 namespace dyncal::services::virtual_bench {
 

@@ -28,7 +28,7 @@
 #include <string>
 
 #include "drivers/virtual_bench/model/bench_faults.hpp"
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 
 namespace dyncal::services::virtual_bench {
 

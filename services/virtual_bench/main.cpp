@@ -12,8 +12,8 @@
 #include "drivers/virtual_bench/can/can_line.hpp"
 #include "drivers/virtual_bench/can/can_sensor.hpp"
 #include "drivers/virtual_bench/model/truth.hpp"
-#include "services/json_text.hpp"
-#include "services/output/output_file.hpp"
+#include "services/base/json_text.hpp"
+#include "services/base/output_file.hpp"
 #include "services/program/command_line.hpp"
 #include "services/virtual_bench/bench_options.hpp"
 

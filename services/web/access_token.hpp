@@ -18,8 +18,8 @@
 #include <string>
 #include <string_view>
 
+#include "services/base/error.hpp"
 #include "services/bus/clock.hpp"
-#include "services/error.hpp"
 
 namespace dyncal::services::web {
 

@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
+#include "services/base/json_text.hpp"
 #include "services/bench/bench_file.hpp"
 #include "services/contract/time_name.hpp"
 #include "services/contract/topics.hpp"
-#include "services/json_text.hpp"
 #include "services/web/laboratory_answers.hpp"
 
 namespace dyncal::services::web {

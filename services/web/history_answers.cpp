@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "services/json_text.hpp"
+#include "services/base/json_text.hpp"
 #include "services/report/json_number.hpp"
 #include "services/store/history.hpp"
 #include "services/store/store.hpp"

@@ -6,7 +6,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "services/json_text.hpp"
+#include "services/base/json_text.hpp"
 #include "services/live/run_json.hpp"
 #include "services/report/step_json.hpp"
 #include "services/web/request_router.hpp"

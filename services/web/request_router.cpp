@@ -11,8 +11,8 @@
 #include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
-#include "services/json_text.hpp"
-#include "services/printable_text.hpp"
+#include "services/base/json_text.hpp"
+#include "services/base/printable_text.hpp"
 #include "services/web/addresses.hpp"
 #include "services/web/host_rules.hpp"
 #include "services/web/page_files.hpp"

@@ -18,8 +18,8 @@
 #include <httplib.h>
 
 #include "drivers/link/address.hpp"
+#include "services/base/error.hpp"
 #include "services/bus/clock.hpp"
-#include "services/error.hpp"
 #include "services/web/limited_server.hpp"
 #include "services/web/refusals.hpp"
 

@@ -10,8 +10,8 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "services/base/json_text.hpp"
 #include "services/contract/channel_name.hpp"
-#include "services/json_text.hpp"
 #include "services/live_signals/sine_view.hpp"
 #include "services/live_signals/spectrum.hpp"
 #include "services/live_signals/trace.hpp"

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "services/json_text.hpp"
+#include "services/base/json_text.hpp"
 #include "services/live/laboratory_json.hpp"
 #include "services/live/run_figures.hpp"
 #include "services/live/run_json.hpp"

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "drivers/link/address.hpp"
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 #include "services/program/daemon.hpp"
 
 namespace dyncal::services::web {

@@ -32,8 +32,8 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/sine/extended_sine_fit.hpp"
+#include "services/base/counted_file.hpp"
 #include "services/command/work_progress.hpp"
-#include "services/counted_file.hpp"
 #include "services/replay/series_file.hpp"
 
 namespace {

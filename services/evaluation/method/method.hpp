@@ -17,8 +17,8 @@
 #include <string>
 #include <vector>
 
+#include "services/base/error.hpp"
 #include "services/contract/triggered_record.hpp"
-#include "services/error.hpp"
 #include "services/evaluation/recipe/recipe.hpp"
 #include "services/evaluation/record/run_records.hpp"
 #include "services/evaluation/result/clock_report.hpp"

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "analysis/base/error.hpp"
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 #include "services/evaluation/method/selected_channels.hpp"
 #include "services/evaluation/method/step_results.hpp"
 #include "services/evaluation/method/step_task.hpp"

@@ -19,10 +19,10 @@
 #include "analysis/instrument/adc_calibration.hpp"
 #include "analysis/instrument/reference_calibration.hpp"
 #include "analysis/method/sample_stamping.hpp"
+#include "services/base/error.hpp"
 #include "services/contract/channel_name.hpp"
 #include "services/contract/evaluation_method.hpp"
 #include "services/contract/role_rules.hpp"
-#include "services/error.hpp"
 
 namespace dyncal::services {
 

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "idl/dyncal.h"
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 #include "services/evaluation/recipe/recipe.hpp"
 
 namespace dyncal::services {

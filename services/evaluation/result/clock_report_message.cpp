@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "services/version.hpp"
+#include "services/base/version.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "services/base/version.hpp"
 #include "services/evaluation/result/contribution_message.hpp"
-#include "services/version.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <complex>
 
+#include "services/base/version.hpp"
 #include "services/contract/evaluation_method_message.hpp"
-#include "services/version.hpp"
 
 namespace dyncal::services {
 namespace {

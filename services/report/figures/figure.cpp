@@ -4,7 +4,7 @@
 
 #include <fmt/core.h>
 
-#include "services/output/output_file.hpp"
+#include "services/base/output_file.hpp"
 
 namespace dyncal::services::figures {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 #include "services/report/figures/picture.hpp"
 
 namespace dyncal::services::figures {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "services/printable_text.hpp"
+#include "services/base/printable_text.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "services/version.hpp"
+#include "services/base/version.hpp"
 #include "tests/unit/services/analysis/played_sources.hpp"
 
 namespace dyncal::services {

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "services/base/json_text.hpp"
 #include "services/bus/memory/stepped_clock.hpp"
-#include "services/json_text.hpp"
 #include "services/live/run_json.hpp"
 #include "tests/unit/services/live/messages.hpp"
 

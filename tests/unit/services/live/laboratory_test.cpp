@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "services/base/printable_text.hpp"
 #include "services/bus/memory/memory_network.hpp"
 #include "services/contract/topics.hpp"
 #include "services/live/laboratory_readers.hpp"
-#include "services/printable_text.hpp"
 #include "tests/unit/services/live/messages.hpp"
 
 namespace dyncal::services::live {

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <spdlog/spdlog.h>
 
-#include "services/printable_text.hpp"
+#include "services/base/printable_text.hpp"
 #include "services/program/log.hpp"
 
 namespace dyncal::services {

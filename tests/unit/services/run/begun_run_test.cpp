@@ -5,8 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "services/base/version.hpp"
 #include "services/run/run_controller.hpp"
-#include "services/version.hpp"
 #include "tests/unit/services/run/played_analysis.hpp"
 #include "tests/unit/services/run/played_generator.hpp"
 #include "tests/unit/services/run/two_steps.hpp"

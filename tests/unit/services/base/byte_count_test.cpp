@@ -1,4 +1,4 @@
-#include "services/byte_count.hpp"
+#include "services/base/byte_count.hpp"
 
 #include <gtest/gtest.h>
 

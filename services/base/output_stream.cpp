@@ -1,4 +1,4 @@
-#include "services/output/output_stream.hpp"
+#include "services/base/output_stream.hpp"
 
 #include <cerrno>
 #include <cstdio>

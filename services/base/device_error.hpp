@@ -2,7 +2,7 @@
 #pragma once
 
 #include "drivers/error.hpp"
-#include "services/error.hpp"
+#include "services/base/error.hpp"
 
 namespace dyncal::services {
 

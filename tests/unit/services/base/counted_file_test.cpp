@@ -1,4 +1,4 @@
-#include "services/counted_file.hpp"
+#include "services/base/counted_file.hpp"
 
 #include <iterator>
 #include <string>

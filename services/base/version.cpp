@@ -1,4 +1,4 @@
-#include "services/version.hpp"
+#include "services/base/version.hpp"
 
 #include "commit.hpp"
 

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <istream>
 
-#include "services/byte_count.hpp"
+#include "services/base/byte_count.hpp"
 
 namespace dyncal::services {
 

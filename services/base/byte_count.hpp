@@ -10,7 +10,7 @@
 #include <system_error>
 #include <utility>
 
-#include "services/work_count.hpp"
+#include "services/base/work_count.hpp"
 
 namespace dyncal::services {
 

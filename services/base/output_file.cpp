@@ -1,4 +1,4 @@
-#include "services/output/output_file.hpp"
+#include "services/base/output_file.hpp"
 
 #include <cerrno>
 #include <cstring>

@@ -1,9 +1,9 @@
-#include "services/printable_text.hpp"
+#include "services/base/printable_text.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "services/json_text.hpp"
+#include "services/base/json_text.hpp"
 
 namespace dyncal::services {
 namespace {
