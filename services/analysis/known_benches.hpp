@@ -13,8 +13,8 @@
 #include <map>
 #include <string>
 
-#include "services/analysis/known_sources.hpp"
 #include "services/bus/clock.hpp"
+#include "services/contract/known_sources.hpp"
 
 namespace dyncal::services {
 

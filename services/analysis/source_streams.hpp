@@ -24,12 +24,12 @@
 #include <vector>
 
 #include "services/analysis/described_sessions.hpp"
-#include "services/analysis/duplicate_source_detector.hpp"
-#include "services/analysis/known_sources.hpp"
 #include "services/analysis/stream_follower.hpp"
 #include "services/analysis/waiting_blocks.hpp"
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
+#include "services/contract/duplicate_source_detector.hpp"
+#include "services/contract/known_sources.hpp"
 #include "services/evaluation/run_evaluator.hpp"
 
 namespace dyncal::services {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "services/analysis/known_sources.hpp"
+#include "services/contract/known_sources.hpp"
 #include "services/contract/topics.hpp"
 
 namespace dyncal::services::doctor {

@@ -1,4 +1,4 @@
-#include "services/analysis/duplicate_source_detector.hpp"
+#include "services/contract/duplicate_source_detector.hpp"
 
 #include <gtest/gtest.h>
 #include <vector>

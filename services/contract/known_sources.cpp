@@ -1,4 +1,4 @@
-#include "services/analysis/known_sources.hpp"
+#include "services/contract/known_sources.hpp"
 
 #include <algorithm>
 #include <utility>

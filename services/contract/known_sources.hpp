@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "idl/dyncal.h"
-#include "services/analysis/duplicate_source_detector.hpp"
+#include "services/contract/duplicate_source_detector.hpp"
 
 namespace dyncal::services {
 
