@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "services/host_clocks/clock_offset.hpp"
+#include "services/bus/host_clocks/clock_offset.hpp"
 
 namespace dyncal::services {
 

@@ -3,11 +3,11 @@
 #include <chrono>
 
 #include "services/base/version.hpp"
+#include "services/bus/host_clocks/clock_messages.hpp"
 #include "services/bus/host_network.hpp"
 #include "services/doctor/announcement_listener.hpp"
 #include "services/doctor/laboratory_watch.hpp"
 #include "services/doctor/unheard_analysis.hpp"
-#include "services/host_clocks/clock_messages.hpp"
 
 namespace dyncal::services {
 namespace {

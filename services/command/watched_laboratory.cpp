@@ -1,7 +1,7 @@
 #include "services/command/watched_laboratory.hpp"
 
 #include "services/base/version.hpp"
-#include "services/host_clocks/clock_messages.hpp"
+#include "services/bus/host_clocks/clock_messages.hpp"
 
 namespace dyncal::services {
 

@@ -6,10 +6,10 @@
 
 #include <fmt/format.h>
 
+#include "services/bus/host_clocks/clock_messages.hpp"
 #include "services/contract/topics.hpp"
 #include "services/doctor/checks.hpp"
 #include "services/doctor/qos_mismatch.hpp"
-#include "services/host_clocks/clock_messages.hpp"
 
 namespace dyncal::services::doctor {
 namespace {

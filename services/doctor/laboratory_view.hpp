@@ -12,8 +12,8 @@
 
 #include "idl/dyncal.h"
 #include "services/bus/discovery.hpp"
-#include "services/host_clocks/clock_asker.hpp"
-#include "services/host_clocks/link_meter.hpp"
+#include "services/bus/host_clocks/clock_asker.hpp"
+#include "services/bus/host_clocks/link_meter.hpp"
 
 namespace dyncal::services::doctor {
 

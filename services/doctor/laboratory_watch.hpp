@@ -9,10 +9,10 @@
 #include "services/base/error.hpp"
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
+#include "services/bus/host_clocks/clock_asker.hpp"
+#include "services/bus/host_clocks/link_meter.hpp"
 #include "services/contract/duplicate_source_detector.hpp"
 #include "services/doctor/laboratory_view.hpp"
-#include "services/host_clocks/clock_asker.hpp"
-#include "services/host_clocks/link_meter.hpp"
 
 namespace dyncal::services::doctor {
 

@@ -21,7 +21,7 @@
 
 #include "idl/dyncal.h"
 #include "services/bus/clock.hpp"
-#include "services/host_clocks/clock_asker.hpp"
+#include "services/bus/host_clocks/clock_asker.hpp"
 #include "services/live/bench.hpp"
 #include "services/live/limits.hpp"
 

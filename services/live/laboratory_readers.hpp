@@ -10,8 +10,8 @@
 #include "services/base/error.hpp"
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
+#include "services/bus/host_clocks/clock_asker.hpp"
 #include "services/contract/program_identity.hpp"
-#include "services/host_clocks/clock_asker.hpp"
 #include "services/live/laboratory.hpp"
 
 namespace dyncal::services::live {

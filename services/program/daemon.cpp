@@ -7,7 +7,7 @@
 #include <spdlog/spdlog.h>
 
 #include "services/base/version.hpp"
-#include "services/host_clocks/clock_messages.hpp"
+#include "services/bus/host_clocks/clock_messages.hpp"
 #include "services/program/command_line.hpp"
 
 namespace dyncal::services {

@@ -15,7 +15,7 @@
 #include <string>
 
 #include "services/base/error.hpp"
-#include "services/host_clocks/clock_responder.hpp"
+#include "services/bus/host_clocks/clock_responder.hpp"
 #include "services/program/program.hpp"
 #include "services/program/watched_network.hpp"
 #include "services/supervision/supervisor.hpp"

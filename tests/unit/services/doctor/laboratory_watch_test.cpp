@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "services/bus/host_clocks/clock_responder.hpp"
 #include "services/bus/memory/memory_network.hpp"
 #include "services/contract/topics.hpp"
-#include "services/host_clocks/clock_responder.hpp"
 
 namespace dyncal::services::doctor {
 namespace {

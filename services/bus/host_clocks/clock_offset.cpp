@@ -1,4 +1,4 @@
-#include "services/host_clocks/clock_offset.hpp"
+#include "services/bus/host_clocks/clock_offset.hpp"
 
 #include <algorithm>
 #include <cmath>

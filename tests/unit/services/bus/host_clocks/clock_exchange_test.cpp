@@ -4,10 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "services/bus/host_clocks/clock_asker.hpp"
+#include "services/bus/host_clocks/clock_responder.hpp"
 #include "services/bus/memory/memory_network.hpp"
 #include "services/contract/topics.hpp"
-#include "services/host_clocks/clock_asker.hpp"
-#include "services/host_clocks/clock_responder.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -1,4 +1,4 @@
-#include "services/host_clocks/clock_responder.hpp"
+#include "services/bus/host_clocks/clock_responder.hpp"
 
 #include "services/contract/topics.hpp"
 

@@ -24,7 +24,7 @@
 #include "services/base/error.hpp"
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
-#include "services/host_clocks/clock_asker.hpp"
+#include "services/bus/host_clocks/clock_asker.hpp"
 
 namespace dyncal::services {
 

@@ -19,8 +19,8 @@
 #include "services/base/error.hpp"
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
-#include "services/host_clocks/clock_messages.hpp"
-#include "services/host_clocks/clock_offset.hpp"
+#include "services/bus/host_clocks/clock_messages.hpp"
+#include "services/bus/host_clocks/clock_offset.hpp"
 
 namespace dyncal::services {
 

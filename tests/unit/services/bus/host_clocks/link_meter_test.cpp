@@ -1,14 +1,14 @@
 // A meter and the programs that echo its probes over the memory bus, which loses what it is told
 // to.
-#include "services/host_clocks/link_meter.hpp"
+#include "services/bus/host_clocks/link_meter.hpp"
 
 #include <functional>
 
 #include <gtest/gtest.h>
 
+#include "services/bus/host_clocks/clock_responder.hpp"
 #include "services/bus/memory/memory_network.hpp"
 #include "services/contract/topics.hpp"
-#include "services/host_clocks/clock_responder.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -1,4 +1,4 @@
-#include "services/host_clocks/clock_messages.hpp"
+#include "services/bus/host_clocks/clock_messages.hpp"
 
 #include <unistd.h>
 

@@ -14,7 +14,7 @@
 #include "services/base/error.hpp"
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
-#include "services/host_clocks/clock_messages.hpp"
+#include "services/bus/host_clocks/clock_messages.hpp"
 
 namespace dyncal::services {
 

@@ -1,4 +1,4 @@
-#include "services/host_clocks/link_meter.hpp"
+#include "services/bus/host_clocks/link_meter.hpp"
 
 #include <algorithm>
 
