@@ -11,7 +11,7 @@
 
 #include "analysis/instrument/adc_calibration.hpp"
 #include "drivers/sample_block.hpp"
-#include "services/bench/bench_file.hpp"
+#include "services/bench/file/bench_file.hpp"
 #include "services/bench_check/finding.hpp"
 #include "services/bench_check/key_lines.hpp"
 

@@ -6,7 +6,7 @@
 #include <fmt/ranges.h>
 #include <toml++/toml.h>
 
-#include "services/bench/toml_text.hpp"
+#include "services/bench/file/toml_text.hpp"
 
 namespace dyncal::services::bench_check {
 

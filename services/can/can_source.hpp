@@ -17,7 +17,7 @@
 #include "drivers/can/bus/frame_source.hpp"
 #include "drivers/can/sensor_stream.hpp"
 #include "services/base/error.hpp"
-#include "services/bench/source_settings.hpp"
+#include "services/bench/file/source_settings.hpp"
 #include "services/can/stream_settings.hpp"
 #include "services/source/source_publisher.hpp"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "drivers/can/stream_settings.hpp"
-#include "services/bench/source_settings.hpp"
+#include "services/bench/file/source_settings.hpp"
 
 namespace dyncal::services::can {
 

@@ -12,7 +12,7 @@
 
 #include "analysis/instrument/adc_comparison.hpp"
 #include "drivers/utc_clock.hpp"
-#include "services/bench/adc_file_writer.hpp"
+#include "services/bench/file/adc_file_writer.hpp"
 #include "services/command/progress_line.hpp"
 #include "services/command/run_command.hpp"
 #include "services/contract/digest.hpp"

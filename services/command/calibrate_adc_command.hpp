@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "services/bench/bench_file.hpp"
+#include "services/bench/file/bench_file.hpp"
 #include "services/program/program.hpp"
 
 namespace dyncal::services {

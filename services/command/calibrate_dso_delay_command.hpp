@@ -4,7 +4,7 @@
 //
 // Takes shots, prints delay, uncertainty and histogram, and writes them as JSON: the file that
 // [corrections] dso_delay = { file = ... } of a bench file names
-// (services/bench/dso_delay_file.hpp). With a generator's address the generator is set and its
+// (services/bench/file/dso_delay_file.hpp). With a generator's address the generator is set and its
 // output switched on and off; otherwise the operator does that. A shot that fails is repeated, up
 // to as many failures as shots. Belongs to one thread.
 #pragma once

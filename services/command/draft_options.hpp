@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "services/bench_draft/bench_draft.hpp"
+#include "services/bench/draft/bench_draft.hpp"
 
 namespace dyncal::services {
 

@@ -4,7 +4,7 @@
 
 #include <fmt/core.h>
 
-#include "services/bench/named_files.hpp"
+#include "services/bench/file/named_files.hpp"
 #include "services/command/own_recording.hpp"
 #include "services/contract/run_identity.hpp"
 #include "services/report/show_outcome.hpp"

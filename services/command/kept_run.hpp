@@ -12,7 +12,7 @@
 #include <optional>
 #include <string>
 
-#include "services/bench/bench_file.hpp"
+#include "services/bench/file/bench_file.hpp"
 #include "services/bus/bus.hpp"
 #include "services/program/log_file.hpp"
 #include "services/recording/recorder.hpp"

@@ -8,11 +8,11 @@
 #include <fmt/core.h>
 
 #include "drivers/can/dbc/dbc.hpp"
+#include "services/bench/draft/bench_text.hpp"
+#include "services/bench/draft/draft_questions.hpp"
+#include "services/bench/draft/new_file.hpp"
 #include "services/bench_check/checks.hpp"
 #include "services/bench_check/report.hpp"
-#include "services/bench_draft/bench_text.hpp"
-#include "services/bench_draft/draft_questions.hpp"
-#include "services/bench_draft/new_file.hpp"
 #include "services/command/draft_options.hpp"
 #include "services/program/program.hpp"
 

@@ -1,4 +1,4 @@
-// `dyncal new-bench`: writes a bench file to start from (services/bench_draft), by options, or by
+// `dyncal new-bench`: writes a bench file to start from (services/bench/draft), by options, or by
 // questions on a terminal when no name is given. It never overwrites a file, and writes nothing
 // that `dyncal check` would refuse. Belongs to one thread.
 #pragma once
@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-#include "services/bench_draft/bench_draft.hpp"
+#include "services/bench/draft/bench_draft.hpp"
 
 namespace dyncal::services {
 

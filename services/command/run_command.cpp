@@ -8,7 +8,7 @@
 
 #include "drivers/utc_clock.hpp"
 #include "services/base/printable_text.hpp"
-#include "services/bench/adc_file.hpp"
+#include "services/bench/file/adc_file.hpp"
 #include "services/bench_check/checks.hpp"
 #include "services/command/laboratory_look.hpp"
 #include "services/command/progress_line.hpp"

@@ -8,7 +8,7 @@
 
 #include "drivers/smartup/sensor.hpp"
 #include "services/base/error.hpp"
-#include "services/bench/bench_file.hpp"
+#include "services/bench/file/bench_file.hpp"
 
 namespace dyncal::services::dau {
 

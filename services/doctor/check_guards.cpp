@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "services/bench/generator_address.hpp"
+#include "services/bench/file/generator_address.hpp"
 #include "services/doctor/checks.hpp"
 
 namespace dyncal::services::doctor {

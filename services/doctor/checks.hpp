@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "services/bench/bench_file.hpp"
+#include "services/bench/file/bench_file.hpp"
 #include "services/doctor/finding.hpp"
 #include "services/doctor/host_view.hpp"
 #include "services/doctor/laboratory_view.hpp"

@@ -19,7 +19,7 @@
 #include "drivers/link/stop_signal.hpp"
 #include "drivers/tss/series_source.hpp"
 #include "services/base/error.hpp"
-#include "services/bench/source_settings.hpp"
+#include "services/bench/file/source_settings.hpp"
 #include "services/dso/trigger_count.hpp"
 
 namespace dyncal::services::dso {

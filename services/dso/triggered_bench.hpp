@@ -27,7 +27,7 @@
 
 #include "drivers/link/stop_signal.hpp"
 #include "services/base/error.hpp"
-#include "services/bench/bench_file.hpp"
+#include "services/bench/file/bench_file.hpp"
 #include "services/bus/bus.hpp"
 #include "services/dso/shot_device.hpp"
 #include "services/source/source_service.hpp"

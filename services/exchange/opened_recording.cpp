@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 
 #include "services/base/byte_count.hpp"
-#include "services/bench/named_files.hpp"
+#include "services/bench/file/named_files.hpp"
 #include "services/exchange/temporary_recording.hpp"
 #include "services/recording/recorded_topics.hpp"
 

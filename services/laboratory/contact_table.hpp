@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "services/bench/toml_table.hpp"
+#include "services/bench/file/toml_table.hpp"
 
 namespace dyncal::services {
 

@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 #include <toml++/toml.h>
 
-#include "services/bench/toml_text.hpp"
+#include "services/bench/file/toml_text.hpp"
 #include "services/report/stored_result.hpp"
 
 namespace dyncal::services {

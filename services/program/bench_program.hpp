@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "services/base/error.hpp"
-#include "services/bench/bench_file.hpp"
+#include "services/bench/file/bench_file.hpp"
 #include "services/program/daemon.hpp"
 
 namespace dyncal::services {

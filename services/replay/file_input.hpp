@@ -15,7 +15,7 @@
 
 #include "drivers/sample_source.hpp"
 #include "services/base/error.hpp"
-#include "services/bench/bench_file.hpp"
+#include "services/bench/file/bench_file.hpp"
 #include "services/contract/source_block.hpp"
 #include "services/source/block_ring.hpp"
 

@@ -13,7 +13,7 @@
 
 #include "drivers/sample_block.hpp"
 #include "services/base/error.hpp"
-#include "services/bench/bench_file.hpp"
+#include "services/bench/file/bench_file.hpp"
 #include "services/contract/triggered_record.hpp"
 
 namespace dyncal::services {

@@ -9,7 +9,7 @@
 
 #include "drivers/generator/generator.hpp"
 #include "services/base/error.hpp"
-#include "services/bench/bench_file.hpp"
+#include "services/bench/file/bench_file.hpp"
 #include "services/run/output_guard.hpp"
 
 namespace dyncal::services {

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "services/bench/generator_address.hpp"
+#include "services/bench/file/generator_address.hpp"
 
 namespace dyncal::services {
 namespace {

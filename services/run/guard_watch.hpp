@@ -4,10 +4,10 @@
 // A run without one goes on, for its conductor switches the output off whenever it can; but the
 // exciter of a conductor whose host or link fails would stay on, so that the operator is told: when
 // none is heard within `limit` of the beginning, when the last one falls silent, and when one
-// guards another generator (services/bench/generator_address.hpp). What a guard says of an output
-// that it cannot switch off is passed on, whatever others say. A run that a guard names is one that
-// it does not hear while it hears the guard: that run pauses until it is heard. Belongs to one
-// thread.
+// guards another generator (services/bench/file/generator_address.hpp). What a guard says of an
+// output that it cannot switch off is passed on, whatever others say. A run that a guard names is
+// one that it does not hear while it hears the guard: that run pauses until it is heard. Belongs to
+// one thread.
 #pragma once
 
 #include <chrono>

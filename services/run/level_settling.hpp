@@ -11,7 +11,7 @@
 #pragma once
 
 #include "drivers/generator/level_control.hpp"
-#include "services/bench/bench_file.hpp"
+#include "services/bench/file/bench_file.hpp"
 
 namespace dyncal::services {
 

@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "analysis/instrument/adc_calibration.hpp"
-#include "services/bench/bench_file.hpp"
+#include "services/bench/file/bench_file.hpp"
 #include "services/evaluation/result/run_outcome.hpp"
 #include "services/run/begun_run.hpp"
 #include "services/run/run_watch.hpp"

@@ -11,7 +11,7 @@
 
 #include "analysis/instrument/adc_calibration.hpp"
 #include "services/base/error.hpp"
-#include "services/bench/bench_file.hpp"
+#include "services/bench/file/bench_file.hpp"
 #include "services/evaluation/recipe/recipe.hpp"
 #include "services/evaluation/result/run_outcome.hpp"
 

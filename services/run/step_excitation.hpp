@@ -27,7 +27,7 @@
 #include "drivers/generator/generator.hpp"
 #include "drivers/generator/level_control.hpp"
 #include "idl/dyncal.h"
-#include "services/bench/bench_file.hpp"
+#include "services/bench/file/bench_file.hpp"
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
 #include "services/run/generator_connection.hpp"

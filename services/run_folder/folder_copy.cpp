@@ -11,7 +11,7 @@
 
 #include "drivers/link/file_descriptor.hpp"
 #include "services/base/output_file.hpp"
-#include "services/bench/named_files.hpp"
+#include "services/bench/file/named_files.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -9,7 +9,7 @@
 #include <filesystem>
 
 #include "services/base/error.hpp"
-#include "services/bench/bench_file.hpp"
+#include "services/bench/file/bench_file.hpp"
 
 namespace dyncal::services {
 

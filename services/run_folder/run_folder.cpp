@@ -16,7 +16,7 @@
 
 #include <fmt/core.h>
 
-#include "services/bench/named_files.hpp"
+#include "services/bench/file/named_files.hpp"
 #include "services/contract/run_identity.hpp"
 #include "services/contract/time_name.hpp"
 #include "services/report/run_figures.hpp"

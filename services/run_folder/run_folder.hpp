@@ -16,7 +16,7 @@
 
 #include "drivers/link/file_descriptor.hpp"
 #include "services/base/error.hpp"
-#include "services/bench/bench_file.hpp"
+#include "services/bench/file/bench_file.hpp"
 #include "services/evaluation/result/run_outcome.hpp"
 #include "services/run_folder/result_keeper.hpp"
 #include "services/run_folder/space_estimate.hpp"

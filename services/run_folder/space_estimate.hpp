@@ -14,7 +14,7 @@
 #include <map>
 #include <string>
 
-#include "services/bench/bench_file.hpp"
+#include "services/bench/file/bench_file.hpp"
 #include "services/evaluation/result/run_outcome.hpp"
 
 namespace dyncal::services {

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "services/base/json_text.hpp"
-#include "services/bench/named_files.hpp"
+#include "services/bench/file/named_files.hpp"
 #include "services/contract/channel_name.hpp"
 #include "services/contract/digest.hpp"
 

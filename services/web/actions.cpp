@@ -8,7 +8,7 @@
 #include <spdlog/spdlog.h>
 
 #include "services/base/json_text.hpp"
-#include "services/bench/bench_file.hpp"
+#include "services/bench/file/bench_file.hpp"
 #include "services/contract/time_name.hpp"
 #include "services/contract/topics.hpp"
 #include "services/web/laboratory_answers.hpp"

@@ -11,8 +11,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "services/bench/asked_keys.hpp"
-#include "services/bench/bench_file.hpp"
+#include "services/bench/file/asked_keys.hpp"
+#include "services/bench/file/bench_file.hpp"
 #include "services/certificate/refusing_flags.hpp"
 #include "services/evaluation/result/result_flag.hpp"
 #include "services/laboratory/laboratory_file.hpp"

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "services/bench/bench_file.hpp"
+#include "services/bench/file/bench_file.hpp"
 
 namespace dyncal::services {
 namespace {

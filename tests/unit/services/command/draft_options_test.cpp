@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "services/bench_draft/bench_text.hpp"
+#include "services/bench/draft/bench_text.hpp"
 
 namespace dyncal::services {
 namespace {

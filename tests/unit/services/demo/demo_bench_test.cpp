@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "services/bench/bench_file.hpp"
+#include "services/bench/file/bench_file.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace dyncal::services {

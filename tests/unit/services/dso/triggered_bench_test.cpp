@@ -14,7 +14,7 @@
 #include "drivers/link/stop_signal.hpp"
 #include "drivers/tss/series_source.hpp"
 #include "drivers/virtual_bench/wire/triggered_server.hpp"
-#include "services/bench/bench_file.hpp"
+#include "services/bench/file/bench_file.hpp"
 #include "services/contract/topics.hpp"
 #include "services/source/source_service.hpp"
 #include "tests/dds_domain.hpp"

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "services/bench/bench_file.hpp"
+#include "services/bench/file/bench_file.hpp"
 
 namespace dyncal::tests {
 

@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "services/bench/named_files.hpp"
+#include "services/bench/file/named_files.hpp"
 #include "tests/temporary_folder.hpp"
 #include "tests/unit/services/report/example_outcome.hpp"
 #include "tests/unit/services/run_folder/size_limit.hpp"

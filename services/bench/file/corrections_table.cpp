@@ -1,0 +1,77 @@
+#include "services/bench/file/corrections_table.hpp"
+
+#include <fmt/core.h>
+
+#include "services/bench/file/dso_delay_file.hpp"
+#include "services/bench/file/reference_file.hpp"
+
+namespace dyncal::services {
+
+namespace {
+
+void read_trigger_delay(TomlTable table, NamedFiles& files, CorrectionSettings& corrections) {
+  if (!table.has("file")) {
+    corrections.dso_delay_s = table.number("value_s", 0.0, "seconds");
+    corrections.u_dso_delay_s = table.number("u_s", 0.0, "seconds");
+  } else if (table.has("value_s") || table.has("u_s")) {
+    table.refuse("file", "is given beside value_s or u_s; the file says both");
+  } else {
+    const auto delay = read_dso_delay_file(files.resolve(table.required_text("file")));
+    if (delay) {
+      corrections.dso_delay_s = delay->value_s;
+      corrections.u_dso_delay_s = delay->u_s;
+    } else {
+      table.refuse("file", delay.error().message);
+    }
+  }
+  if (corrections.u_dso_delay_s > 1.0) {
+    table.refuse(table.has("file") ? "file" : "u_s",
+                 "gives a standard uncertainty above 1 s, which is not plausible; is it given in "
+                 "microseconds or nanoseconds?");
+  }
+  if (corrections.u_dso_delay_s < 0.0) {
+    table.refuse("u_s", "is a standard uncertainty and must not be negative");
+  }
+  table.finish();
+}
+
+AdcCorrectionSettings read_adc(TomlTable table, NamedFiles& files) {
+  AdcCorrectionSettings adc;
+  const std::string file = table.required_text("file");
+  adc.file = files.resolve(file);
+  if (!file.empty() && !std::filesystem::is_regular_file(adc.file)) {
+    table.refuse("file",
+                 fmt::format("names {}, which does not exist or is not a file", adc.file.string()));
+  }
+  adc.channel = table.required_text("channel");
+  adc.phase_sign = table.one_of("phase_sign", {"lag", "lead"}, "lag") == "lag" ? PhaseSign::lag
+                                                                               : PhaseSign::lead;
+  adc.test_amplitude_vpp = table.optional_number("test_amplitude_vpp", "V peak to peak");
+  table.finish();
+  return adc;
+}
+
+} // namespace
+
+CorrectionSettings read_corrections(TomlTable table, NamedFiles& files) {
+  CorrectionSettings corrections;
+  if (auto adc = table.table("adc")) {
+    corrections.adc = read_adc(std::move(*adc), files);
+  }
+  if (table.has("reference")) {
+    auto points = read_reference_file(files.resolve(table.required_text("reference")));
+    if (points) {
+      corrections.reference = std::move(*points);
+    } else {
+      table.refuse("reference", "names " + points.error().message);
+    }
+  }
+  corrections.reference_delay_s = table.number("reference_delay_s", 0.0, "seconds");
+  if (auto delay = table.table("dso_delay")) {
+    read_trigger_delay(std::move(*delay), files, corrections);
+  }
+  table.finish();
+  return corrections;
+}
+
+} // namespace dyncal::services

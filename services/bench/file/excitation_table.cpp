@@ -1,0 +1,115 @@
+#include "services/bench/file/excitation_table.hpp"
+
+#include <algorithm>
+
+#include <fmt/core.h>
+
+#include "analysis/base/frequency.hpp"
+
+namespace dyncal::services {
+namespace {
+
+constexpr int max_attempts = 10;
+constexpr int max_repetitions = 1000;
+constexpr double max_step_s = 86'400.0; // settling or duration of one step: a day
+// What one message of the plan carries, and more than anybody waits for.
+constexpr std::size_t max_steps = 10'000;
+
+void spread_levels(TomlTable& table, ExcitationSettings& excitation) {
+  const std::size_t frequencies = excitation.frequencies_hz.size();
+  if (excitation.levels_m_s2.size() == 1) {
+    if (excitation.levels_m_s2.front() <= 0.0) {
+      table.refuse("level", "must be positive, in m/s^2");
+    }
+    excitation.levels_m_s2.resize(frequencies, excitation.levels_m_s2.front());
+  }
+  if (table.refused("frequencies_hz") || table.refused("level")) {
+    return;
+  }
+  if (excitation.levels_m_s2.size() != frequencies) {
+    table.refuse("level", fmt::format("lists {} levels for {} frequencies",
+                                      excitation.levels_m_s2.size(), frequencies));
+  }
+  for (std::size_t i = 0; i < excitation.levels_m_s2.size(); ++i) {
+    if (excitation.levels_m_s2[i] <= 0.0) {
+      table.refuse_entry("level", i, "must be positive, in m/s^2");
+    }
+  }
+}
+
+void read_window(TomlTable& table, ExcitationSettings& excitation) {
+  excitation.whole_record =
+      table.one_of("window", {"search", "whole-record"}, "search") == "whole-record";
+  if (!excitation.whole_record) {
+    return;
+  }
+  if (excitation.frequencies_hz.size() != 1 || excitation.repetitions != 1) {
+    table.refuse("window", "can be \"whole-record\" for one frequency and one repetition only: "
+                           "records of several steps must be searched");
+  }
+  for (const char* key : {"settling", "settling_s", "duration_s"}) {
+    if (table.has(key)) {
+      table.refuse(key,
+                   "has no meaning when window is \"whole-record\": every sample is evaluated");
+    }
+  }
+}
+
+void check_number_of_steps(TomlTable& table, const ExcitationSettings& excitation) {
+  const std::size_t steps =
+      excitation.frequencies_hz.size() * static_cast<std::size_t>(excitation.repetitions);
+  if (excitation.repetitions > max_repetitions) {
+    table.refuse("repetitions", fmt::format("must be between 1 and {}", max_repetitions));
+  } else if (steps > max_steps) {
+    table.refuse("repetitions",
+                 fmt::format("makes {} steps of {} frequencies; a run has at most {}", steps,
+                             excitation.frequencies_hz.size(), max_steps));
+  }
+}
+
+} // namespace
+
+ExcitationSettings read_excitation(TomlTable table) {
+  ExcitationSettings excitation;
+  excitation.frequencies_hz = table.texts("frequencies_hz");
+  if (excitation.frequencies_hz.empty()) {
+    table.refuse(
+        "frequencies_hz",
+        "must list at least one frequency as decimal text, for example [\"10\", \"12.5\"]");
+  }
+  for (std::size_t i = 0; i < excitation.frequencies_hz.size(); ++i) {
+    const std::string& text = excitation.frequencies_hz[i];
+    if (const auto frequency = analysis::Frequency::parse(text); !frequency) {
+      table.refuse_entry("frequencies_hz", i,
+                         fmt::format("holds \"{}\", which is not a positive number in Hz", text));
+    }
+  }
+  excitation.levels_m_s2 = table.numbers("level", "m/s^2");
+  spread_levels(table, excitation);
+  excitation.level_deviation_rel =
+      table.optional_number("level_deviation_rel", "parts of the level");
+  if (excitation.level_deviation_rel && *excitation.level_deviation_rel <= 0.0) {
+    table.refuse("level_deviation_rel", "must be positive: 0.1 flags steps that are off by 10 %");
+  }
+  excitation.repetitions = table.whole_number("repetitions", 1, 1);
+  check_number_of_steps(table, excitation);
+  excitation.attempts = table.whole_number("attempts", excitation.attempts, 1);
+  if (excitation.attempts > max_attempts) {
+    table.refuse("attempts", fmt::format("must be between 1 and {}", max_attempts));
+  }
+  excitation.settling_s = table.number("settling_s", excitation.settling_s, "seconds");
+  excitation.duration_s = table.number("duration_s", excitation.duration_s, "seconds");
+  if (!(excitation.settling_s >= 0.0 && excitation.settling_s <= max_step_s)) {
+    table.refuse("settling_s", fmt::format("must be between 0 and {} s, a day", max_step_s));
+  }
+  if (!(excitation.duration_s > 0.0 && excitation.duration_s <= max_step_s)) {
+    table.refuse("duration_s", fmt::format("must be above 0 and at most {} s, a day", max_step_s));
+  }
+  excitation.settling_from_data =
+      table.one_of("settling", {"fixed", "from-data"}, "fixed") == "from-data";
+  read_window(table, excitation);
+  table.finish();
+  return excitation;
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,142 @@
+#include "services/bench/file/source_table.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <set>
+#include <string_view>
+#include <system_error>
+
+#include <fmt/core.h>
+
+#include "services/bench/file/bench_name.hpp"
+#include "services/bench/file/can_source.hpp"
+#include "services/bench/file/file_source.hpp"
+#include "services/bench/file/oscilloscope_source.hpp"
+#include "services/bench/file/series_source.hpp"
+#include "services/bench/file/smartup_source.hpp"
+#include "services/bench/file/socket_source.hpp"
+#include "services/contract/unit.hpp"
+
+namespace dyncal::services {
+
+namespace {
+
+DriverSettings read_driver(TomlTable& table, const std::string& driver, NamedFiles& files) {
+  if (driver == "smartup") {
+    return read_smartup_source(table);
+  }
+  if (driver == "socket") {
+    return read_socket_source(table);
+  }
+  if (driver == "can") {
+    return read_can_source(table, files);
+  }
+  if (driver == "oscilloscope") {
+    return read_oscilloscope_source(table, files);
+  }
+  if (driver == "series") {
+    return read_series_source(table, files);
+  }
+  return driver == "file" ? read_file_source(table, files) : FileSourceSettings{};
+}
+
+void read_units(TomlTable& table, SourceSettings& source) {
+  std::size_t entry = 0;
+  for (const auto& [channel, unit] : table.text_map("units")) {
+    ++entry;
+    if (const auto d_si = to_d_si(unit)) {
+      source.units.emplace(channel, *d_si);
+    } else {
+      table.refuse_entry(
+          "units", entry,
+          fmt::format("gives channel '{}' the unit \"{}\", which is neither D-SI nor a known short "
+                      "form such as \"m/s^2\" or \"V\"",
+                      channel, unit));
+    }
+  }
+}
+
+// "none", or "LOW to HIGH".
+std::optional<StatedRange> range_of(const std::string& text) {
+  constexpr std::string_view word = " to ";
+  const std::size_t place = text.find(word);
+  if (text == "none") {
+    return StatedRange{};
+  }
+  if (place == std::string::npos) {
+    return std::nullopt;
+  }
+  StatedRange range;
+  const auto read = [](std::string_view number, double& value) {
+    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
+    return error == std::errc() && end == number.data() + number.size() && std::isfinite(value);
+  };
+  const std::string_view whole = text;
+  return read(whole.substr(0, place), range.minimum) &&
+                 read(whole.substr(place + word.size()), range.maximum) &&
+                 range.minimum < range.maximum
+             ? std::optional(range)
+             : std::nullopt;
+}
+
+void read_ranges(TomlTable& table, SourceSettings& source) {
+  std::size_t entry = 0;
+  for (const auto& [channel, text] : table.text_map("ranges")) {
+    ++entry;
+    if (const auto range = range_of(text)) {
+      source.identity.ranges.emplace(channel, *range);
+    } else {
+      table.refuse_entry("ranges", entry,
+                         fmt::format("gives channel '{}' the range \"{}\", which is neither "
+                                     "\"none\" nor two rising numbers such as \"-20 to 20\"",
+                                     channel, text));
+    }
+  }
+}
+
+SourceSettings read_source(TomlTable table, const std::string& name, NamedFiles& files) {
+  SourceSettings source;
+  source.name = name;
+  source.where = table.where("driver");
+  const std::string driver =
+      table.one_of("driver", {"smartup", "socket", "file", "can", "oscilloscope", "series"}, "");
+  source.driver = read_driver(table, driver, files);
+  source.identity = {.device = table.text("device"),
+                     .serial = table.text("serial"),
+                     .firmware = table.text("firmware")};
+  source.channels = table.text_map("channels");
+  if (driver == "smartup" || driver == "socket") { // others have a rate of their own
+    source.nominal_rate_hz = table.optional_number("nominal_rate_hz", "Hz");
+    if (source.nominal_rate_hz && *source.nominal_rate_hz <= 0.0) {
+      table.refuse("nominal_rate_hz", "must be positive, in Hz");
+    }
+  }
+  read_units(table, source);
+  read_ranges(table, source);
+  const std::string usual = driver == "smartup" || driver == "can" ? "utc" : "local";
+  source.time_base = table.one_of("time_base", {"utc", "local"}, usual) == "utc"
+                         ? drivers::TimeBase::utc
+                         : drivers::TimeBase::local;
+  // What changes no sample is left out: how fast a file is played, and a rate to check against.
+  source.origin.settings = table.lines_without(
+      source.is<CanSourceSettings>() ? std::set<std::string>{"play"}
+                                     : std::set<std::string>{"play", "nominal_rate_hz"});
+  table.finish();
+  return source;
+}
+
+} // namespace
+
+std::vector<SourceSettings> read_sources(TomlTable table, NamedFiles& files) {
+  std::vector<SourceSettings> sources;
+  for (const std::string& name : table.keys()) {
+    check_name(table, name, name);
+    if (auto inner = table.table(name)) {
+      sources.push_back(read_source(std::move(*inner), name, files));
+    }
+  }
+  return sources;
+}
+
+} // namespace dyncal::services

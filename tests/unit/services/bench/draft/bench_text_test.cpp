@@ -1,0 +1,89 @@
+#include "services/bench/draft/bench_text.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "services/bench_check/checks.hpp"
+#include "services/bench_check/report.hpp"
+#include "tests/temporary_folder.hpp"
+
+namespace dyncal::services::bench_draft {
+namespace {
+
+void write_records(const tests::TemporaryFolder& folder) {
+  std::string acs = "t_ns,reference,sync,sensor\n";
+  std::string dau = "t_ns,acceleration_z,sync\n";
+  for (int i = 0; i < 200; ++i) {
+    acs += std::to_string(i * 100'000) + ",1,2,3\n";
+    dau += std::to_string(i * 1'000'000) + ",1,2\n";
+  }
+  folder.write("acs.csv", acs);
+  folder.write("dau.csv", dau);
+}
+
+TEST(BenchText, EveryCombinationPassesTheCheckWithoutWarning) {
+  const tests::TemporaryFolder folder;
+  write_records(folder);
+  folder.write("made.dbc", dbc_text());
+  int combinations = 0;
+  for (std::size_t sensor = 0; sensor < sensor_kinds().size(); ++sensor) {
+    for (std::size_t acs = 0; acs < acs_kinds().size(); ++acs) {
+      for (std::size_t generator = 0; generator < generator_kinds().size(); ++generator) {
+        BenchDraft draft;
+        draft.name = "new-1";
+        draft.sensor = static_cast<SensorKind>(sensor);
+        draft.acs = static_cast<AcsKind>(acs);
+        draft.generator = static_cast<GeneratorKind>(generator);
+        draft.sensor_file = "dau.csv";
+        draft.acs_file = "acs.csv";
+        const std::string text = bench_text(draft, "made.dbc");
+        const std::vector<bench_check::BenchView> views{
+            bench_check::look_at_bench_text(text, folder.path() / "bench.toml")};
+        const auto findings = bench_check::check_benches(views);
+        for (const auto& finding : findings) {
+          EXPECT_EQ(finding.severity, bench_check::Severity::note)
+              << bench_check::as_text(findings) << text;
+        }
+        EXPECT_EQ(views[0].bench.bench, "new-1");
+        EXPECT_EQ(views[0].bench.excitation.frequencies_hz, draft.frequencies_hz);
+        EXPECT_THAT(text, testing::HasSubstr("# "));
+        ++combinations;
+      }
+    }
+  }
+  EXPECT_EQ(combinations, 30);
+}
+
+TEST(BenchText, ChannelsOfRecordsHaveAnyName) {
+  const tests::TemporaryFolder folder;
+  folder.write("acs.csv", "t_ns,Kanal 1,sync \"in\"\n0,1,2\n100000,1,2\n200000,1,2\n");
+  folder.write("dau.csv", "t_ns,a.z,s\n0,1,2\n1000000,1,2\n2000000,1,2\n");
+  BenchDraft draft;
+  draft.name = "named";
+  draft.sensor = SensorKind::file;
+  draft.acs = AcsKind::file;
+  draft.sensor_file = "dau.csv";
+  draft.acs_file = "acs.csv";
+  draft.reference = "Kanal 1";
+  draft.sync = "sync \"in\"";
+  draft.sensor_channel = "a.z";
+  draft.sensor_sync = "s";
+  const std::vector<bench_check::BenchView> views{
+      bench_check::look_at_bench_text(bench_text(draft, ""), folder.path() / "bench.toml")};
+  const auto findings = bench_check::check_benches(views);
+  EXPECT_EQ(bench_check::exit_status(findings), 0) << bench_check::as_text(findings);
+  ASSERT_EQ(views[0].bench.method.dut.size(), 1U);
+  EXPECT_EQ(views[0].bench.method.dut[0].channel, "a.z");
+}
+
+TEST(BenchText, TextsOfTheDraftStayTexts) {
+  BenchDraft draft;
+  draft.name = "a\"\n[evil]\nx = \"";
+  const auto reading = parse_whole_bench_file(bench_text(draft, ""), "bench.toml");
+  EXPECT_EQ(reading.file.bench, draft.name);
+  ASSERT_EQ(reading.problems.size(), 1U);
+  EXPECT_EQ(reading.problems[0].key, "bench");
+}
+
+} // namespace
+} // namespace dyncal::services::bench_draft
