@@ -5,7 +5,7 @@
 #include <fmt/core.h>
 
 #include "services/acs/played_source.hpp"
-#include "services/program/bench_program.hpp"
+#include "services/daemon/program/bench_program.hpp"
 #include "services/source/run_sources.hpp"
 
 namespace {

@@ -36,7 +36,7 @@
 #include "services/analysis/run_session.hpp"
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
-#include "services/supervision/daemon_metrics.hpp"
+#include "services/daemon/supervision/daemon_metrics.hpp"
 
 namespace dyncal::services {
 

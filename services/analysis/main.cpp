@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 
 #include "services/analysis/analysis_service.hpp"
-#include "services/program/daemon.hpp"
+#include "services/daemon/program/daemon.hpp"
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <spdlog/spdlog.h>
 
 #include "services/can/can_source.hpp"
-#include "services/program/bench_program.hpp"
+#include "services/daemon/program/bench_program.hpp"
 #include "services/source/run_sources.hpp"
 
 namespace {

@@ -4,7 +4,7 @@
 #include <libxml/parser.h>
 #include <libxml/xmlschemas.h>
 
-#include "services/program/child_process.hpp"
+#include "services/daemon/program/child_process.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -17,8 +17,8 @@
 #include "services/command/run_command.hpp"
 #include "services/contract/digest.hpp"
 #include "services/contract/topics.hpp"
-#include "services/program/bench_program.hpp"
-#include "services/program/watched_network.hpp"
+#include "services/daemon/program/bench_program.hpp"
+#include "services/daemon/program/watched_network.hpp"
 #include "services/report/show_outcome.hpp"
 
 namespace dyncal::services {

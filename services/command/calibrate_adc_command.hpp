@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "services/bench/file/bench_file.hpp"
-#include "services/program/program.hpp"
+#include "services/daemon/program/program.hpp"
 
 namespace dyncal::services {
 

@@ -17,7 +17,7 @@
 #include "services/base/json_text.hpp"
 #include "services/base/output_file.hpp"
 #include "services/base/printable_text.hpp"
-#include "services/program/program.hpp"
+#include "services/daemon/program/program.hpp"
 #include "services/run/output_guard.hpp"
 
 namespace dyncal::services {

@@ -10,7 +10,7 @@
 #include "services/base/json_text.hpp"
 #include "services/base/output_file.hpp"
 #include "services/command/pulse_file.hpp"
-#include "services/program/program.hpp"
+#include "services/daemon/program/program.hpp"
 #include "services/report/figures/stamp_deviation.hpp"
 
 namespace dyncal::services {

@@ -4,7 +4,7 @@
 
 #include "services/certificate/certificate_file.hpp"
 #include "services/command/work_progress.hpp"
-#include "services/program/program.hpp"
+#include "services/daemon/program/program.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -16,10 +16,10 @@
 #include "drivers/virtual_bench/model/response_file.hpp"
 #include "services/base/output_file.hpp"
 #include "services/command/run_command.hpp"
+#include "services/daemon/program/child_process.hpp"
 #include "services/demo/demo_bench.hpp"
 #include "services/demo/truth_check.hpp"
 #include "services/demo/vendor_assignment.hpp"
-#include "services/program/child_process.hpp"
 
 namespace dyncal::services {
 namespace {

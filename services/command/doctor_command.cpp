@@ -8,10 +8,10 @@
 
 #include "services/base/json_text.hpp"
 #include "services/command/laboratory_look.hpp"
+#include "services/daemon/program/bench_program.hpp"
 #include "services/doctor/checks.hpp"
 #include "services/doctor/report.hpp"
 #include "services/doctor/unheard_analysis.hpp"
-#include "services/program/bench_program.hpp"
 
 namespace dyncal::services {
 namespace {

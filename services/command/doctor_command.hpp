@@ -8,7 +8,7 @@
 #include <stop_token>
 #include <string>
 
-#include "services/program/program.hpp"
+#include "services/daemon/program/program.hpp"
 
 namespace dyncal::services {
 

@@ -8,8 +8,8 @@
 #include "services/base/printable_text.hpp"
 #include "services/command/share_line.hpp"
 #include "services/command/work_progress.hpp"
+#include "services/daemon/program/program.hpp"
 #include "services/exchange/export_recording.hpp"
-#include "services/program/program.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -19,7 +19,7 @@
 #include "services/base/json_text.hpp"
 #include "services/base/printable_text.hpp"
 #include "services/command/work_progress.hpp"
-#include "services/program/program.hpp"
+#include "services/daemon/program/program.hpp"
 #include "services/replay/series_file.hpp"
 #include "services/report/rounding.hpp"
 

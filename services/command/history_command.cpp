@@ -12,7 +12,7 @@
 #include "services/base/printable_text.hpp"
 #include "services/command/work_progress.hpp"
 #include "services/contract/unit.hpp"
-#include "services/program/program.hpp"
+#include "services/daemon/program/program.hpp"
 #include "services/report/figures/drift.hpp"
 #include "services/report/rounding.hpp"
 #include "services/store/history.hpp"

@@ -9,7 +9,7 @@
 #include "analysis/clock/sample_clock.hpp"
 #include "services/base/json_text.hpp"
 #include "services/command/work_progress.hpp"
-#include "services/program/program.hpp"
+#include "services/daemon/program/program.hpp"
 #include "services/replay/series_file.hpp"
 
 namespace dyncal::services {

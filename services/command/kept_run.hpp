@@ -14,7 +14,7 @@
 
 #include "services/bench/file/bench_file.hpp"
 #include "services/bus/bus.hpp"
-#include "services/program/log_file.hpp"
+#include "services/daemon/program/log_file.hpp"
 #include "services/recording/recorder.hpp"
 #include "services/run/run_controller.hpp"
 #include "services/run_folder/run_folder.hpp"

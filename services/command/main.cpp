@@ -21,7 +21,7 @@
 #include "services/command/recording_options.hpp"
 #include "services/command/run_command.hpp"
 #include "services/command/triaxial_command.hpp"
-#include "services/program/command_line.hpp"
+#include "services/daemon/program/command_line.hpp"
 #include "services/run/output_guard.hpp"
 
 namespace {

@@ -7,11 +7,11 @@
 
 #include "services/base/error.hpp"
 #include "services/command/work_progress.hpp"
+#include "services/daemon/program/program.hpp"
 #include "services/model/channel_model.hpp"
 #include "services/model/model_figure.hpp"
 #include "services/model/model_json.hpp"
 #include "services/model/model_table.hpp"
-#include "services/program/program.hpp"
 #include "services/report/result_json.hpp"
 
 namespace dyncal::services {

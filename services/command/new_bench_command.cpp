@@ -14,7 +14,7 @@
 #include "services/bench_check/checks.hpp"
 #include "services/bench_check/report.hpp"
 #include "services/command/draft_options.hpp"
-#include "services/program/program.hpp"
+#include "services/daemon/program/program.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -10,7 +10,7 @@
 #include "services/base/printable_text.hpp"
 #include "services/base/version.hpp"
 #include "services/command/work_progress.hpp"
-#include "services/program/program.hpp"
+#include "services/daemon/program/program.hpp"
 #include "services/recording/recording_reader.hpp"
 #include "services/recording/repair.hpp"
 

@@ -5,7 +5,7 @@
 #include <fmt/core.h>
 
 #include "services/base/printable_text.hpp"
-#include "services/program/watched_network.hpp"
+#include "services/daemon/program/watched_network.hpp"
 
 namespace dyncal::services {
 namespace {

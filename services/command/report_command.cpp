@@ -4,9 +4,9 @@
 
 #include "services/base/output_file.hpp"
 #include "services/command/work_progress.hpp"
+#include "services/daemon/program/program.hpp"
 #include "services/document/pdf.hpp"
 #include "services/document/report_document.hpp"
-#include "services/program/program.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "services/command/kept_run.hpp"
-#include "services/program/program.hpp"
+#include "services/daemon/program/program.hpp"
 #include "services/report/run_figures.hpp"
 #include "services/run/run_controller.hpp"
 

@@ -7,7 +7,7 @@
 #include "services/base/printable_text.hpp"
 #include "services/command/work_progress.hpp"
 #include "services/contract/run_identity.hpp"
-#include "services/program/program.hpp"
+#include "services/daemon/program/program.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -14,7 +14,7 @@
 #include "services/base/error.hpp"
 #include "services/base/json_text.hpp"
 #include "services/command/work_progress.hpp"
-#include "services/program/program.hpp"
+#include "services/daemon/program/program.hpp"
 #include "services/report/result_file.hpp"
 
 namespace dyncal::services {

@@ -7,7 +7,7 @@
 #include "services/base/printable_text.hpp"
 #include "services/certificate/verification.hpp"
 #include "services/command/work_progress.hpp"
-#include "services/program/program.hpp"
+#include "services/daemon/program/program.hpp"
 
 namespace dyncal::services {
 

@@ -6,9 +6,9 @@
 #include <memory>
 #include <string>
 
+#include "services/daemon/program/watched_network.hpp"
 #include "services/live/laboratory.hpp"
 #include "services/live/laboratory_readers.hpp"
-#include "services/program/watched_network.hpp"
 
 namespace dyncal::services {
 

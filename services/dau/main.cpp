@@ -6,9 +6,9 @@
 #include <spdlog/spdlog.h>
 
 #include "drivers/smartup/receiver.hpp"
+#include "services/daemon/program/bench_program.hpp"
 #include "services/dau/endpoint_watch.hpp"
 #include "services/dau/listening_plan.hpp"
-#include "services/program/bench_program.hpp"
 #include "services/source/source_service.hpp"
 #include "services/source/supervised.hpp"
 

@@ -11,7 +11,7 @@
 #include <fmt/core.h>
 
 #include "services/base/output_file.hpp"
-#include "services/program/child_process.hpp"
+#include "services/daemon/program/child_process.hpp"
 #include "services/report/stored_result.hpp"
 
 namespace dyncal::services {

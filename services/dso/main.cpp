@@ -4,8 +4,8 @@
 #include <thread>
 #include <vector>
 
+#include "services/daemon/program/bench_program.hpp"
 #include "services/dso/triggered_bench.hpp"
-#include "services/program/bench_program.hpp"
 #include "services/source/source_service.hpp"
 #include "services/source/supervised.hpp"
 

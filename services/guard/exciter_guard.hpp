@@ -29,11 +29,11 @@
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
 #include "services/contract/program_identity.hpp"
+#include "services/daemon/supervision/daemon_metrics.hpp"
 #include "services/guard/driven_record.hpp"
 #include "services/guard/exciter_watch.hpp"
 #include "services/guard/guarded_output.hpp"
 #include "services/guard/reference_watch.hpp"
-#include "services/supervision/daemon_metrics.hpp"
 
 namespace dyncal::services {
 

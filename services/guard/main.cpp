@@ -8,8 +8,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include "services/daemon/program/bench_program.hpp"
 #include "services/guard/exciter_guard.hpp"
-#include "services/program/bench_program.hpp"
 
 namespace dyncal::services {
 namespace {

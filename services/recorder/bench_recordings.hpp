@@ -24,8 +24,8 @@
 #include "services/base/error.hpp"
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
+#include "services/daemon/supervision/daemon_metrics.hpp"
 #include "services/recording/recorder.hpp"
-#include "services/supervision/daemon_metrics.hpp"
 
 namespace dyncal::services {
 

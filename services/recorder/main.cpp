@@ -2,7 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <spdlog/spdlog.h>
 
-#include "services/program/daemon.hpp"
+#include "services/daemon/program/daemon.hpp"
 #include "services/recorder/bench_recordings.hpp"
 
 namespace dyncal::services {

@@ -16,8 +16,8 @@
 #include <unistd.h>
 
 #include "drivers/generator/generator_output.hpp"
-#include "services/program/child_process.hpp"
-#include "services/program/program.hpp"
+#include "services/daemon/program/child_process.hpp"
+#include "services/daemon/program/program.hpp"
 
 namespace dyncal::services {
 namespace {

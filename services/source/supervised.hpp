@@ -4,8 +4,8 @@
 #include <string>
 
 #include "services/bus/bus.hpp"
+#include "services/daemon/supervision/supervisor.hpp"
 #include "services/source/source_service.hpp"
-#include "services/supervision/supervisor.hpp"
 
 namespace dyncal::services {
 

@@ -8,7 +8,7 @@
 #include <map>
 
 #include "services/base/version.hpp"
-#include "services/program/command_line.hpp"
+#include "services/daemon/program/command_line.hpp"
 #include "services/virtual_bench/fault_option.hpp"
 
 namespace dyncal::services::virtual_bench {

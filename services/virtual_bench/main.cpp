@@ -14,7 +14,7 @@
 #include "drivers/virtual_bench/model/truth.hpp"
 #include "services/base/json_text.hpp"
 #include "services/base/output_file.hpp"
-#include "services/program/command_line.hpp"
+#include "services/daemon/program/command_line.hpp"
 #include "services/virtual_bench/bench_options.hpp"
 
 namespace {

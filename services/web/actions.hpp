@@ -19,8 +19,8 @@
 
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
-#include "services/program/child_process.hpp"
-#include "services/program/program.hpp"
+#include "services/daemon/program/child_process.hpp"
+#include "services/daemon/program/program.hpp"
 #include "services/web/access_token.hpp"
 #include "services/web/request_router.hpp"
 #include "services/web/state_cache.hpp"

@@ -7,8 +7,8 @@
 #include <CLI/CLI.hpp>
 #include <spdlog/spdlog.h>
 
-#include "services/program/child_process.hpp"
-#include "services/program/daemon.hpp"
+#include "services/daemon/program/child_process.hpp"
+#include "services/daemon/program/daemon.hpp"
 #include "services/web/web_service.hpp"
 
 namespace dyncal::services {

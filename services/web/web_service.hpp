@@ -12,7 +12,7 @@
 
 #include "drivers/link/address.hpp"
 #include "services/base/error.hpp"
-#include "services/program/daemon.hpp"
+#include "services/daemon/program/daemon.hpp"
 
 namespace dyncal::services::web {
 

@@ -14,7 +14,7 @@ NAME = r"\bdyncal_[a-z_]+"
 class Monitoring(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        code = (ROOT / "services/supervision/daemon_metrics.cpp").read_text("utf-8")
+        code = (ROOT / "services/daemon/supervision/daemon_metrics.cpp").read_text("utf-8")
         cls.in_code = set(re.findall(r'"(dyncal_[a-z_]+)"', code))
         cls.dashboard = json.loads((MONITORING / "grafana-dashboard.json").read_text("utf-8"))
 

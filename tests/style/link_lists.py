@@ -16,7 +16,7 @@ REFUSED = {
 }
 # What must be there, so that an empty list is not taken for a short one.
 EXPECTED = {
-    "dyncal-analysis": ["services/evaluation/", "services/program/", "analysis/"],
+    "dyncal-analysis": ["services/evaluation/", "services/daemon/program/", "analysis/"],
 }
 
 

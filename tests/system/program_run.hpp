@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "services/program/child_process.hpp"
+#include "services/daemon/program/child_process.hpp"
 
 namespace dyncal::tests {
 

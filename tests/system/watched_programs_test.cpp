@@ -7,16 +7,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "services/supervision/metrics_server.hpp"
-#include "services/supervision/service_manager.hpp"
+#include "services/daemon/supervision/metrics_server.hpp"
+#include "services/daemon/supervision/service_manager.hpp"
 #include "tests/dds_domain.hpp"
 #include "tests/patience.hpp"
 #include "tests/system/program_run.hpp"
 #include "tests/system/test_folder.hpp"
 #include "tests/temporary_folder.hpp"
 #include "tests/udp_port.hpp"
-#include "tests/unit/services/supervision/notify_socket.hpp"
-#include "tests/unit/services/supervision/scrape.hpp"
+#include "tests/unit/services/daemon/supervision/notify_socket.hpp"
+#include "tests/unit/services/daemon/supervision/scrape.hpp"
 
 namespace dyncal::tests {
 namespace {

@@ -4,12 +4,12 @@
 #include <gtest/gtest.h>
 
 #include "services/bus/memory/memory_network.hpp"
-#include "services/supervision/metrics_server.hpp"
+#include "services/daemon/supervision/metrics_server.hpp"
 #include "tests/patience.hpp"
 #include "tests/temporary_folder.hpp"
 #include "tests/udp_port.hpp"
-#include "tests/unit/services/supervision/notify_socket.hpp"
-#include "tests/unit/services/supervision/scrape.hpp"
+#include "tests/unit/services/daemon/supervision/notify_socket.hpp"
+#include "tests/unit/services/daemon/supervision/scrape.hpp"
 
 namespace dyncal::services {
 namespace {

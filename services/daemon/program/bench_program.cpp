@@ -1,0 +1,53 @@
+#include "services/daemon/program/bench_program.hpp"
+
+#include <CLI/CLI.hpp>
+
+namespace dyncal::services {
+namespace {
+
+Expected<std::vector<BenchFile>> read_benches(const std::vector<std::string>& paths,
+                                              Daemon& daemon) {
+  std::vector<BenchFile> benches;
+  std::string names;
+  for (const std::string& path : paths) {
+    auto bench = read_bench_file(path);
+    if (!bench) {
+      return fail(bench.error());
+    }
+    add_network_settings(bench->network, daemon.network);
+    names += (names.empty() ? "bench " : ", ") + bench->bench;
+    benches.push_back(std::move(*bench));
+  }
+  daemon.supervisor().describe(names);
+  return benches;
+}
+
+} // namespace
+
+void add_network_settings(const NetworkSettings& bench, NetworkOptions& options) {
+  options.peers.insert(options.peers.end(), bench.peers.begin(), bench.peers.end());
+  options.no_multicast = options.no_multicast || !bench.multicast;
+  if (options.interface_name.empty()) {
+    options.interface_name = bench.interface_name;
+  }
+}
+
+int run_bench_program(int argc, char** argv, const BenchProgram& program) {
+  std::vector<std::string> paths;
+  return run_daemon(
+      argc, argv,
+      {.name = program.name,
+       .description = program.description,
+       .log = LogWriting::by_thread,
+       .add_options =
+           [&](CLI::App& app) { app.add_option("BENCH.toml", paths, "bench files")->required(); },
+       .serve = [&](Daemon& daemon) -> Expected<void> {
+         const auto benches = read_benches(paths, daemon);
+         if (!benches) {
+           return fail(benches.error());
+         }
+         return program.serve(*benches, daemon);
+       }});
+}
+
+} // namespace dyncal::services

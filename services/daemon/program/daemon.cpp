@@ -1,0 +1,80 @@
+#include "services/daemon/program/daemon.hpp"
+
+#include <cstdlib>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+#include <spdlog/spdlog.h>
+
+#include "services/base/version.hpp"
+#include "services/bus/host_clocks/clock_messages.hpp"
+#include "services/daemon/program/command_line.hpp"
+
+namespace dyncal::services {
+
+Daemon::Daemon(std::string name, NetworkOptions options, std::unique_ptr<Supervisor> supervisor,
+               const std::stop_token& signals)
+    : network(std::move(options)), name_(std::move(name)), signals_(signals),
+      supervisor_(std::move(supervisor)) {
+  stopping_.emplace(signals_, [this] { supervisor_->stopping(); });
+}
+
+Expected<void> Daemon::join() {
+  auto joined = WatchedNetwork::join(network, name_, signals_);
+  if (!joined) {
+    return fail(joined.error());
+  }
+  joined_ = std::move(*joined);
+  stopping_.emplace(joined_->stop(), [this] { supervisor_->stopping(); });
+  refused_ = joined_->participant.refused_packets();
+  auto clock = ClockResponder::start(joined_->participant, identity());
+  if (!clock) {
+    return fail(clock.error());
+  }
+  clock_ = std::move(*clock);
+  return {};
+}
+
+void Daemon::turned() {
+  supervisor_->report_refused_packets(refused_->count());
+  supervisor_->report_malformed_messages(joined_->participant.malformed_messages());
+  supervisor_->turned();
+}
+
+Expected<void> Daemon::outcome(Expected<void> served) const {
+  return joined_ ? joined_->outcome(std::move(served)) : served;
+}
+
+int run_daemon(int argc, char** argv, const DaemonProgram& program) {
+  CLI::App app{program.description, program.name};
+  app.set_version_flag("--version", build_description());
+  NetworkOptions network;
+  std::string metrics;
+  if (program.add_options) {
+    program.add_options(app);
+  }
+  add_network_options(app, network);
+  add_metrics_option(app, metrics);
+  if (const auto status = read_command_line(app, argc, argv)) {
+    return *status;
+  }
+  set_up_log(program.name, program.log);
+  auto supervisor =
+      Supervisor::create(this_program(program.name, software_version(), network.dds), metrics);
+  if (!supervisor) {
+    return report_error(supervisor.error());
+  }
+  const std::stop_token signals = stop_on_signals();
+  const auto served = [&] { // what it made ends before the log does
+    Daemon daemon(program.name, std::move(network), std::move(*supervisor), signals);
+    return daemon.outcome(program.serve(daemon));
+  }();
+  if (!served) {
+    return report_error(served.error());
+  }
+  spdlog::info("stopped");
+  finish_log();
+  return EXIT_SUCCESS;
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,71 @@
+// What every daemon of a laboratory does alike: its command line, log, signals, participant, the
+// answers to who asks for its clock, and what it reports of itself to systemd and Prometheus.
+//
+// run_daemon() is the body of main(): it reads the command line, sets up the log and calls `serve`,
+// which joins the network once it knows with what options, serves until stop(), and returns. A
+// program that serves bench files uses run_bench_program() (bench_program.hpp) instead.
+//
+// Threads: join() from the one that called `serve`, the others from any after that.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
+
+#include "services/base/error.hpp"
+#include "services/bus/host_clocks/clock_responder.hpp"
+#include "services/daemon/program/program.hpp"
+#include "services/daemon/program/watched_network.hpp"
+#include "services/daemon/supervision/supervisor.hpp"
+
+namespace dyncal::services {
+
+class Daemon;
+
+struct DaemonProgram {
+  std::string name;        // "dyncal-dau"
+  std::string description; // one sentence, for --help
+  LogWriting log = LogWriting::at_once;
+  std::function<void(CLI::App&)> add_options{}; // of its own; may be empty
+  // Blocks until daemon.stop(). What it returns is the end of the program.
+  std::function<Expected<void>(Daemon& daemon)> serve;
+};
+
+class Daemon {
+public:
+  Daemon(std::string name, NetworkOptions options, std::unique_ptr<Supervisor> supervisor,
+         const std::stop_token& signals);
+
+  // As the command line has it; a bench file may add to it before join().
+  NetworkOptions network;
+
+  // Joins the network and answers who asks for this program and its clock. Fails (network) as
+  // join_network() does.
+  [[nodiscard]] Expected<void> join();
+  // REQUIRES: joined.
+  [[nodiscard]] bus::Participant& participant() { return joined_->participant; }
+  // Requested by a signal, and once joined also when nobody hears the program any more.
+  [[nodiscard]] std::stop_token stop() const { return joined_ ? joined_->stop() : signals_; }
+  [[nodiscard]] Supervisor& supervisor() { return *supervisor_; }
+  [[nodiscard]] const ProgramIdentity& identity() const { return supervisor_->identity(); }
+  // One turn of the main loop: what the network refused is reported with it.
+  void turned();
+  // `served`, the last word of the program, as WatchedNetwork::outcome().
+  [[nodiscard]] Expected<void> outcome(Expected<void> served) const;
+
+private:
+  std::string name_;
+  std::stop_token signals_;
+  std::unique_ptr<Supervisor> supervisor_;
+  std::unique_ptr<WatchedNetwork> joined_;
+  std::shared_ptr<const bus::RefusedPackets> refused_;
+  std::unique_ptr<ClockResponder> clock_;
+  std::optional<std::stop_callback<std::function<void()>>> stopping_;
+};
+
+// The body of main(). Returns the exit status.
+[[nodiscard]] int run_daemon(int argc, char** argv, const DaemonProgram& program);
+
+} // namespace dyncal::services

@@ -1,0 +1,124 @@
+#include "services/daemon/program/watched_network.hpp"
+
+#include <algorithm>
+#include <condition_variable>
+#include <cstdlib>
+#include <utility>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+namespace dyncal::services {
+namespace {
+
+using Addresses = std::vector<bus::HostAddress>;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::milliseconds look_interval{500};
+// For what a program does at its end, such as closing its files.
+constexpr std::chrono::seconds ending_time{2};
+
+// Of the interface that was named, which counts whatever it is; of all where none was.
+Addresses addresses_of(const std::string& interface_name) {
+  Addresses addresses = bus::host_addresses().value_or(Addresses());
+  if (!interface_name.empty()) {
+    std::erase_if(addresses,
+                  [&](const bus::HostAddress& one) { return one.interface != interface_name; });
+    for (bus::HostAddress& one : addresses) {
+      one.inner = false;
+    }
+  }
+  return addresses;
+}
+
+// `name_or_address` as --interface has it.
+std::string interface_called(const std::string& name_or_address) {
+  const Addresses addresses = bus::host_addresses().value_or(Addresses());
+  const auto found =
+      std::find_if(addresses.begin(), addresses.end(),
+                   [&](const bus::HostAddress& one) { return one.address == name_or_address; });
+  return found == addresses.end() ? name_or_address : found->interface;
+}
+
+} // namespace
+
+Expected<std::unique_ptr<WatchedNetwork>>
+WatchedNetwork::join(const NetworkOptions& options, const std::string& program,
+                     const std::stop_token& asked,
+                     std::function<void(const std::string& why)> when_deaf) {
+  // First, so that what comes meanwhile is noticed.
+  std::string interface_name = interface_called(options.interface_name);
+  AddressesAtStart start{addresses_of(interface_name), {}};
+  auto joined = join_network(options, program);
+  if (!joined) {
+    return fail(joined.error());
+  }
+  return std::unique_ptr<WatchedNetwork>(
+      new WatchedNetwork(std::move(*joined), std::move(interface_name), std::move(start), asked,
+                         std::move(when_deaf)));
+}
+
+WatchedNetwork::WatchedNetwork(bus::Participant joined, std::string interface_name,
+                               AddressesAtStart start, const std::stop_token& asked,
+                               std::function<void(const std::string&)> when_deaf)
+    : participant(std::move(joined)), announced_(participant.own_addresses()),
+      interface_(std::move(interface_name)), start_(std::move(start)),
+      when_deaf_(std::move(when_deaf)), asked_(asked, [this] { stop_.request_stop(); }),
+      thread_([this](const std::stop_token& ended) { look(ended); }) {}
+
+void WatchedNetwork::look(const std::stop_token& ended) {
+  std::mutex mutex;
+  std::condition_variable_any bell;
+  std::unique_lock lock(mutex);
+  Addresses before = start_.host;
+  std::string why_before;
+  auto since = Clock::now();
+  while (!bell.wait_for(lock, ended, look_interval, [&] { return ended.stop_requested(); })) {
+    const Addresses now = addresses_of(interface_);
+    start_.announced = announced_->get();
+    if (const std::string change = difference(before, now); !change.empty()) {
+      spdlog::warn("addresses of this host: {}; this program is heard at {}, as it has announced",
+                   change, fmt::join(start_.announced, ", "));
+    }
+    before = now;
+    const std::string why = what_deafens(start_, now);
+    if (why != std::exchange(why_before, why)) {
+      since = Clock::now();
+    }
+    if (!why.empty() && Clock::now() - since >= settling_time) {
+      end(why, ended);
+      return;
+    }
+  }
+}
+
+void WatchedNetwork::end(const std::string& why, const std::stop_token& ended) {
+  {
+    const std::lock_guard lock(mutex_);
+    deaf_because_ = why;
+  }
+  if (when_deaf_) {
+    when_deaf_(why);
+  }
+  stop_.request_stop();
+  std::unique_lock lock(mutex_);
+  std::condition_variable_any bell;
+  if (!bell.wait_for(lock, ended, ending_time, [&] { return ended.stop_requested(); })) {
+    lock.unlock();
+    static_cast<void>(outcome({}));
+  }
+}
+
+Expected<void> WatchedNetwork::outcome(Expected<void> served) const {
+  const std::lock_guard lock(mutex_);
+  if (!deaf_because_.empty()) {
+    std::_Exit(report_error(
+        {ErrorCode::network,
+         fmt::format("{}: nobody hears this program at the addresses that it has announced, so it "
+                     "ends to be started again",
+                     deaf_because_)}));
+  }
+  return served;
+}
+
+} // namespace dyncal::services

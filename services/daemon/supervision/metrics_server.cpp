@@ -1,0 +1,141 @@
+#include "services/daemon/supervision/metrics_server.hpp"
+
+#include <arpa/inet.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <optional>
+
+#include "services/daemon/supervision/process_metrics.hpp"
+
+#ifdef DYNCAL_HAVE_PROMETHEUS
+#include <prometheus/collectable.h>
+#include <prometheus/exposer.h>
+#include <prometheus/registry.h>
+#endif
+
+namespace dyncal::services {
+namespace {
+
+std::optional<sockaddr_in> parse_address(const std::string& text) {
+  const auto colon = text.rfind(':');
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  if (colon == std::string::npos ||
+      inet_pton(AF_INET, text.substr(0, colon).c_str(), &address.sin_addr) != 1) {
+    return std::nullopt;
+  }
+  std::uint16_t port = 0;
+  const char* end = text.data() + text.size();
+  const auto parsed = std::from_chars(text.data() + colon + 1, end, port);
+  if (parsed.ec != std::errc() || parsed.ptr != end) {
+    return std::nullopt;
+  }
+  address.sin_port = htons(port);
+  return address;
+}
+
+// Why nobody can listen there; empty if it is free. The HTTP server itself does not say why.
+std::string reason_against(const sockaddr_in& address) {
+  const int descriptor = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  const int on = 1;
+  setsockopt(descriptor, SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on));
+  const bool free =
+      bind(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
+  const std::string reason = free ? "" : std::strerror(errno);
+  close(descriptor);
+  return reason;
+}
+
+} // namespace
+
+#ifdef DYNCAL_HAVE_PROMETHEUS
+
+namespace {
+
+// Looks at the process whenever somebody asks.
+class ProcessMetrics final : public prometheus::Collectable {
+public:
+  [[nodiscard]] std::vector<prometheus::MetricFamily> Collect() const override {
+    add_process_metrics(store_);
+    return store_.registry()->Collect();
+  }
+
+private:
+  mutable MetricStore store_;
+};
+
+} // namespace
+
+struct MetricsServer::Implementation {
+  Implementation(const std::string& address, const MetricStore& store)
+      : process(std::make_shared<ProcessMetrics>()), exposer(address, 1) {
+    exposer.RegisterCollectable(store.registry());
+    exposer.RegisterCollectable(process);
+  }
+  std::shared_ptr<ProcessMetrics> process; // outlives the exposer, which holds it weakly
+  prometheus::Exposer exposer;
+};
+
+bool can_serve_metrics() {
+  return true;
+}
+
+Expected<std::unique_ptr<MetricsServer>> MetricsServer::start(const std::string& address,
+                                                              const MetricStore& store) {
+  const auto parsed = parse_address(address);
+  if (!parsed) {
+    return fail(ErrorCode::bad_argument, "invalid --metrics '" + address +
+                                             "': must be ADDRESS:PORT with an IPv4 address, for "
+                                             "example 127.0.0.1:9464");
+  }
+  if (const std::string reason = reason_against(*parsed); !reason.empty()) {
+    return fail(ErrorCode::network, "--metrics " + address + ": cannot listen there (" + reason +
+                                        "); give every program of this host a port of its own");
+  }
+  try {
+    return std::unique_ptr<MetricsServer>(
+        new MetricsServer(std::make_unique<Implementation>(address, store)));
+  } catch (const std::exception& error) {
+    return fail(ErrorCode::network,
+                "--metrics " + address + ": cannot listen there (" + error.what() + ")");
+  }
+}
+
+int MetricsServer::port() const {
+  const auto ports = implementation_->exposer.GetListeningPorts();
+  return ports.empty() ? 0 : ports.front();
+}
+
+#else
+
+struct MetricsServer::Implementation {};
+
+bool can_serve_metrics() {
+  return false;
+}
+
+Expected<std::unique_ptr<MetricsServer>> MetricsServer::start(const std::string& address,
+                                                              const MetricStore& /*store*/) {
+  static_cast<void>(parse_address);
+  static_cast<void>(reason_against);
+  return fail(ErrorCode::bad_argument, "--metrics " + address +
+                                           ": this build has no metrics, because prometheus-cpp "
+                                           "was not there (Debian: prometheus-cpp-dev)");
+}
+
+int MetricsServer::port() const {
+  return 0;
+}
+
+#endif
+
+MetricsServer::MetricsServer(std::unique_ptr<Implementation> implementation)
+    : implementation_(std::move(implementation)) {}
+
+MetricsServer::~MetricsServer() = default;
+
+} // namespace dyncal::services

@@ -1,0 +1,11 @@
+// What every process has, with the names that Prometheus' own clients give it. Any thread.
+#pragma once
+
+#include "services/daemon/supervision/metric_store.hpp"
+
+namespace dyncal::services {
+
+// Resident and virtual memory, processor time, open descriptors, threads, time of start.
+void add_process_metrics(MetricStore& store);
+
+} // namespace dyncal::services
