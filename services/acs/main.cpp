@@ -6,7 +6,7 @@
 
 #include "services/acs/played_source.hpp"
 #include "services/daemon/program/bench_program.hpp"
-#include "services/source/run_sources.hpp"
+#include "services/stream/run_sources.hpp"
 
 namespace {
 

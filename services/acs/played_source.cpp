@@ -6,7 +6,7 @@
 
 #include "drivers/acs/socket_acs.hpp"
 #include "drivers/files/file_source.hpp"
-#include "services/source/play_of_run.hpp"
+#include "services/stream/play_of_run.hpp"
 
 namespace dyncal::services::acs {
 namespace {

@@ -15,7 +15,7 @@
 #include "drivers/sample_source.hpp"
 #include "services/base/error.hpp"
 #include "services/bench/file/bench_file.hpp"
-#include "services/source/source_publisher.hpp"
+#include "services/stream/source_publisher.hpp"
 
 namespace dyncal::services::acs {
 

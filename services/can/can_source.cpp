@@ -10,7 +10,7 @@
 #include "drivers/can/dbc/dbc.hpp"
 #include "services/can/can_status.hpp"
 #include "services/can/stream_settings.hpp"
-#include "services/source/play_of_run.hpp"
+#include "services/stream/play_of_run.hpp"
 
 namespace dyncal::services::can {
 

@@ -19,7 +19,7 @@
 #include "services/base/error.hpp"
 #include "services/bench/file/source_settings.hpp"
 #include "services/can/stream_settings.hpp"
-#include "services/source/source_publisher.hpp"
+#include "services/stream/source_publisher.hpp"
 
 namespace dyncal::services::can {
 

@@ -1,7 +1,7 @@
 // The description of a source as drivers give it, read from the contract's message, and whether
 // another instrument has taken its place.
 //
-// The other way is services/source/messages.hpp, where a source is published. Any thread.
+// The other way is services/stream/messages.hpp, where a source is published. Any thread.
 #pragma once
 
 #include <string>

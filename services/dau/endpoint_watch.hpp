@@ -12,7 +12,7 @@
 
 #include "drivers/smartup/reception_observer.hpp"
 #include "services/dau/listening_plan.hpp"
-#include "services/source/source_publisher.hpp"
+#include "services/stream/source_publisher.hpp"
 
 namespace dyncal::services::dau {
 

@@ -9,8 +9,8 @@
 #include "services/daemon/program/bench_program.hpp"
 #include "services/dau/endpoint_watch.hpp"
 #include "services/dau/listening_plan.hpp"
-#include "services/source/source_service.hpp"
-#include "services/source/supervised.hpp"
+#include "services/stream/source_service.hpp"
+#include "services/stream/supervised.hpp"
 
 namespace dyncal::services::dau {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "services/daemon/program/bench_program.hpp"
 #include "services/dso/triggered_bench.hpp"
-#include "services/source/source_service.hpp"
-#include "services/source/supervised.hpp"
+#include "services/stream/source_service.hpp"
+#include "services/stream/supervised.hpp"
 
 namespace {
 

@@ -30,7 +30,7 @@
 #include "services/bench/file/bench_file.hpp"
 #include "services/bus/bus.hpp"
 #include "services/dso/shot_device.hpp"
-#include "services/source/source_service.hpp"
+#include "services/stream/source_service.hpp"
 
 #include "idl/dyncal.h"
 

@@ -17,7 +17,7 @@
 #include "services/base/error.hpp"
 #include "services/bench/file/bench_file.hpp"
 #include "services/contract/source_block.hpp"
-#include "services/source/block_ring.hpp"
+#include "services/stream/block_ring.hpp"
 
 namespace dyncal::services {
 

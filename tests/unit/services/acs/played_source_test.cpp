@@ -10,7 +10,7 @@
 
 #include "services/bus/bus.hpp"
 #include "services/contract/topics.hpp"
-#include "services/source/source_service.hpp"
+#include "services/stream/source_service.hpp"
 #include "tests/dds_domain.hpp"
 #include "tests/patience.hpp"
 #include "tests/unit/drivers/files/temporary_file.hpp"

@@ -10,10 +10,10 @@
 
 #include "drivers/can/bus/scripted_source.hpp"
 #include "services/can/can_status.hpp"
-#include "services/source/source_service.hpp"
+#include "services/stream/source_service.hpp"
 #include "tests/temporary_folder.hpp"
 #include "tests/unit/drivers/collecting_sink.hpp"
-#include "tests/unit/services/source/bench_listener.hpp"
+#include "tests/unit/services/stream/bench_listener.hpp"
 
 namespace dyncal::services::can {
 namespace {

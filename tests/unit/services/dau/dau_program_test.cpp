@@ -12,7 +12,7 @@
 #include "tests/unit/drivers/smartup/datagram_writer.hpp"
 #include "tests/unit/drivers/smartup/udp_sender.hpp"
 #include "tests/unit/services/dau/bench_text.hpp"
-#include "tests/unit/services/source/bench_listener.hpp"
+#include "tests/unit/services/stream/bench_listener.hpp"
 
 namespace dyncal {
 namespace {

@@ -16,7 +16,7 @@
 #include "drivers/virtual_bench/wire/triggered_server.hpp"
 #include "services/bench/file/bench_file.hpp"
 #include "services/contract/topics.hpp"
-#include "services/source/source_service.hpp"
+#include "services/stream/source_service.hpp"
 #include "tests/dds_domain.hpp"
 #include "tests/patience.hpp"
 

@@ -1,0 +1,274 @@
+#include "services/stream/source_service.hpp"
+
+#include <algorithm>
+#include <map>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "services/bus/bus.hpp"
+#include "services/contract/topics.hpp"
+#include "services/stream/catch_up_server.hpp"
+#include "services/stream/source_publication.hpp"
+
+namespace dyncal::services {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr auto write_limit =
+    std::chrono::milliseconds(50); // of one write, before the other sources get their turn
+constexpr auto retry_interval = std::chrono::milliseconds(10); // for what could not be written
+constexpr auto acknowledgment_limit = std::chrono::seconds(2);
+constexpr std::size_t max_name = 64; // bound of the keys of the contract
+
+// What the bench asks of its sources.
+struct BenchReaders {
+  bus::Reader<dyncal::wire::Command> command;
+  bus::Reader<dyncal::wire::Measurement> measurement;
+  std::vector<std::string> running{};
+};
+
+} // namespace
+
+class SourceService::Implementation {
+public:
+  Implementation(bus::Participant& participant, SourceServiceOptions options)
+      : participant_(participant), options_(std::move(options)),
+        wake_up_(std::make_shared<bus::WakeUp>()), catch_up_(participant) {}
+
+  Expected<std::shared_ptr<SourcePublisher>> add(SourceOptions source);
+  void start() {
+    if (!thread_.joinable()) {
+      thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+      catch_up_thread_ = std::jthread([this](const std::stop_token& stop) { give_again(stop); });
+    }
+  }
+  void stop();
+
+private:
+  Expected<void> join_bench(const std::string& bench);
+  void run(const std::stop_token& stop);
+  void give_again(const std::stop_token& stop);
+  void finish();
+  bool step_channels();
+  void keep_up();
+  void listen();
+  void take_commands(const std::string& bench, BenchReaders& readers);
+  void take_measurements(const std::string& bench, BenchReaders& readers);
+
+  bus::Participant& participant_;
+  const SourceServiceOptions options_;
+  const std::shared_ptr<bus::WakeUp> wake_up_;
+  std::map<std::string, BenchReaders> benches_;
+  std::vector<std::unique_ptr<SourcePublication>> channels_;
+  CatchUpServer catch_up_; // of its thread, once that has started
+  std::jthread thread_;
+  std::jthread catch_up_thread_;
+};
+
+Expected<void> SourceService::Implementation::join_bench(const std::string& bench) {
+  if (benches_.contains(bench)) {
+    return {};
+  }
+  auto command = participant_.reader<dyncal::wire::Command>(bus::topics::command,
+                                                            bus::Profile::command, bench, wake_up_);
+  if (!command) {
+    return fail(command.error());
+  }
+  auto measurement = participant_.reader<dyncal::wire::Measurement>(
+      bus::topics::measurement, bus::Profile::state, bench, wake_up_);
+  if (!measurement) {
+    return fail(measurement.error());
+  }
+  benches_.emplace(bench, BenchReaders{std::move(*command), std::move(*measurement)});
+  return {};
+}
+
+Expected<std::shared_ptr<SourcePublisher>>
+SourceService::Implementation::add(SourceOptions source) {
+  for (const auto* name : {&source.bench, &source.source}) {
+    if (name->empty() || name->size() > max_name) {
+      return fail(ErrorCode::bad_argument,
+                  "the name '" + *name + "' of a bench or source must have 1 to 64 characters");
+    }
+  }
+  const auto taken = [&](const auto& channel) {
+    const SourceOptions& other = channel->publisher().options();
+    return other.bench == source.bench && other.source == source.source;
+  };
+  if (std::ranges::any_of(channels_, taken)) {
+    return fail(ErrorCode::bad_argument, "bench '" + source.bench + "' has the source '" +
+                                             source.source +
+                                             "' twice: give each bench file its own bench name");
+  }
+  if (auto joined = join_bench(source.bench); !joined) {
+    return fail(joined.error());
+  }
+  auto publisher = std::make_shared<SourcePublisher>(std::move(source), wake_up_);
+  auto kept = std::make_shared<RetransmissionBuffer>(options_.kept);
+  auto channel = SourcePublication::create(participant_, publisher, kept, options_.software);
+  if (!channel) {
+    return fail(channel.error());
+  }
+  if (auto added = catch_up_.add(publisher->options(), std::move(kept)); !added) {
+    return fail(added.error());
+  }
+  (*channel)->report_to(options_.reported);
+  channels_.push_back(std::move(*channel));
+  return publisher;
+}
+
+void SourceService::Implementation::take_commands(const std::string& bench, BenchReaders& readers) {
+  readers.command.take([&](const dyncal::wire::Command& command) {
+    if (command.kind() != wire::COMMAND_ARM || command.bench() != bench) {
+      return;
+    }
+    for (auto& channel : channels_) {
+      const SourceOptions& source = channel->publisher().options();
+      if (source.bench == bench && source.source == command.target().c_str()) {
+        channel->answer(command.run());
+        channel->kept().want(Clock::now());
+      }
+    }
+  });
+}
+
+void SourceService::Implementation::take_measurements(const std::string& bench,
+                                                      BenchReaders& readers) {
+  auto running = readers.running;
+  bool under_way = false;
+  readers.measurement.take([&](const dyncal::wire::Measurement& measurement) {
+    const std::string run = measurement.run().c_str();
+    std::erase(running, run);
+    under_way = under_way || measurement.state() == wire::MEASUREMENT_PLANNED ||
+                measurement.state() == wire::MEASUREMENT_RUNNING;
+    if (measurement.state() == wire::MEASUREMENT_RUNNING) {
+      running.push_back(run);
+    }
+  });
+  const bool changed = running != readers.running;
+  readers.running = std::move(running);
+  for (auto& channel : channels_) {
+    if (channel->publisher().options().bench != bench) {
+      continue;
+    }
+    if (under_way) {
+      channel->kept().want(Clock::now());
+    }
+    if (changed) {
+      channel->publisher().note_running(readers.running);
+    }
+  }
+}
+
+void SourceService::Implementation::listen() {
+  for (auto& [bench, readers] : benches_) {
+    take_commands(bench, readers);
+    take_measurements(bench, readers);
+  }
+}
+
+// Returns true if something is left to do at once.
+bool SourceService::Implementation::step_channels() {
+  bool more = false;
+  for (auto& channel : channels_) {
+    more = channel->step(write_limit) || more;
+  }
+  return more;
+}
+
+// A stream that is played faster than real time fills memory faster than the other thread looks.
+void SourceService::Implementation::keep_up() {
+  if (std::ranges::any_of(channels_,
+                          [](const auto& channel) { return channel->kept().tidy_due(); })) {
+    catch_up_.wake_up()->ring();
+  }
+}
+
+void SourceService::Implementation::give_again(const std::stop_token& stop) {
+  const std::stop_callback wake(stop, [this] { catch_up_.wake_up()->ring(); });
+  while (!stop.stop_requested()) {
+    catch_up_.wake_up()->wait_until(catch_up_.step());
+  }
+}
+
+void SourceService::Implementation::run(const std::stop_token& stop) {
+  const std::stop_callback wake(stop, [this] { wake_up_->ring(); });
+  while (!stop.stop_requested()) {
+    if (options_.turned) {
+      options_.turned();
+    }
+    listen();
+    const bool more = step_channels();
+    keep_up();
+    auto due = Clock::now() + options_.status_interval;
+    for (auto& channel : channels_) {
+      due = std::min(due, channel->step_status(options_.status_interval, write_limit));
+      if (channel->blocked()) {
+        due = std::min(due, Clock::now() + retry_interval);
+      }
+    }
+    if (!more) {
+      wake_up_->wait_until(due);
+    }
+  }
+  finish();
+}
+
+void SourceService::Implementation::finish() {
+  const auto deadline = Clock::now() + options_.stop_limit;
+  for (auto& channel : channels_) {
+    channel->publisher().end();
+    channel->flush();
+  }
+  const auto idle = [](const auto& channel) { return channel->idle(); };
+  while (!std::ranges::all_of(channels_, idle) && Clock::now() < deadline) {
+    if (!step_channels()) {
+      wake_up_->wait_until(std::min(deadline, Clock::now() + retry_interval));
+    }
+  }
+  const auto acknowledged_by = Clock::now() + acknowledgment_limit;
+  for (auto& channel : channels_) {
+    channel->step_status(std::chrono::nanoseconds(0), write_limit);
+    channel->wait_for_acknowledgments(std::max(Clock::duration(0), acknowledged_by - Clock::now()));
+  }
+}
+
+void SourceService::Implementation::stop() {
+  if (!thread_.joinable()) {
+    return;
+  }
+  thread_.request_stop();
+  thread_.join();
+  catch_up_thread_.request_stop();
+  catch_up_thread_.join();
+}
+
+SourceService::SourceService(std::unique_ptr<Implementation> implementation)
+    : implementation_(std::move(implementation)) {}
+
+SourceService::~SourceService() {
+  stop();
+}
+
+std::unique_ptr<SourceService> SourceService::create(bus::Participant& participant,
+                                                     SourceServiceOptions options) {
+  return std::unique_ptr<SourceService>(
+      new SourceService(std::make_unique<Implementation>(participant, std::move(options))));
+}
+
+Expected<std::shared_ptr<SourcePublisher>> SourceService::add(SourceOptions options) {
+  return implementation_->add(std::move(options));
+}
+
+void SourceService::start() {
+  implementation_->start();
+}
+
+void SourceService::stop() {
+  implementation_->stop();
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,76 @@
+// What every source program is made of: one publishing thread that carries all sources of a process
+// to the bus, whatever benches they belong to (a bench is a partition).
+//
+// Per source it writes its samples (DauSamples, AcsSamples, CanSamples) or records (DsoRecord,
+// TssRecord), SourceDescription when it is known or changes, and SourceStatus every 500 ms and at
+// once when the state changes. It answers COMMAND_ARM for a described source in its stream with an
+// empty message that names the run, behind everything written before: anyone who reads that answer
+// reads what follows. A write that times out is tried again until it succeeds or the service stops.
+// What was written is kept, and given again to who asks for it (catch_up_server.hpp), by a second
+// thread.
+//
+//   auto service = SourceService::create(participant, {"dyncal-dau", software});
+//   auto source = service->add({.bench = "acc-1", .source = "dau", .kind = SourceKind::dau});
+//   service->start();  ... source->take(block) ...  service->stop();
+//
+// Threads: create, add, start and stop from one thread; the publishers from any.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "services/base/error.hpp"
+#include "services/stream/retransmission_buffer.hpp"
+#include "services/stream/source_publisher.hpp"
+
+namespace dyncal::bus {
+class Participant;
+}
+namespace dyncal::wire {
+class SourceStatus;
+}
+
+namespace dyncal::services {
+
+struct SourceServiceOptions {
+  std::string software; // name and version, as descriptions carry it
+  std::chrono::nanoseconds status_interval = std::chrono::milliseconds(500);
+  std::chrono::nanoseconds stop_limit =
+      std::chrono::seconds(5); // for what is still in the rings when the service stops
+  KeptLimits kept = {};        // of each source
+  // Called by the publishing thread at every turn of its loop, at least every status_interval.
+  std::function<void()> turned = {};
+  // Called by it with every status that it has published, and how many messages with samples the
+  // source has written.
+  std::function<void(const wire::SourceStatus&, std::uint64_t)> reported = {};
+};
+
+class SourceService {
+public:
+  // `participant` outlives the service.
+  [[nodiscard]] static std::unique_ptr<SourceService> create(bus::Participant& participant,
+                                                             SourceServiceOptions options);
+  ~SourceService(); // stops
+
+  SourceService(const SourceService&) = delete;
+  SourceService& operator=(const SourceService&) = delete;
+
+  // Before start(). Fails (bad_argument) when the bench has a source of this name already or a name
+  // is empty or longer than 64 characters, (network) when the bus refuses.
+  [[nodiscard]] Expected<std::shared_ptr<SourcePublisher>> add(SourceOptions options);
+
+  void start();
+
+  // Ends every stream, publishes what the rings hold as far as stop_limit allows, reports ENDED and
+  // waits for acknowledgments. Idempotent.
+  void stop();
+
+private:
+  class Implementation;
+  explicit SourceService(std::unique_ptr<Implementation> implementation);
+  std::unique_ptr<Implementation> implementation_;
+};
+
+} // namespace dyncal::services
