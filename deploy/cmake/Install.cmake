@@ -33,7 +33,7 @@ install(DIRECTORY deploy/example-lab DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONE
 if(DYNCAL_GUIDE_FOLDER)
   install(DIRECTORY ${DYNCAL_GUIDE_FOLDER} DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT programs)
 endif()
-install(FILES services/model/model.schema.json services/report/result.schema.json
+install(FILES services/views/model/model.schema.json services/views/report/result.schema.json
   DESTINATION ${data} COMPONENT programs)
 # The schema of certificates, under licences of its own.
 install(DIRECTORY deploy/third-party/dcc DESTINATION ${data} COMPONENT programs)

@@ -16,8 +16,8 @@
 #include "services/replay/file_input.hpp"
 #include "services/replay/sample_memory.hpp"
 #include "services/replay/shot_files.hpp"
-#include "services/report/show_outcome.hpp"
 #include "services/run/run_plan.hpp"
+#include "services/views/report/show_outcome.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -11,7 +11,7 @@
 #include <stop_token>
 #include <string>
 
-#include "services/report/run_figures.hpp"
+#include "services/views/report/run_figures.hpp"
 
 namespace dyncal::services {
 

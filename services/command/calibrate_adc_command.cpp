@@ -19,7 +19,7 @@
 #include "services/contract/topics.hpp"
 #include "services/daemon/program/bench_program.hpp"
 #include "services/daemon/program/watched_network.hpp"
-#include "services/report/show_outcome.hpp"
+#include "services/views/report/show_outcome.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -11,7 +11,7 @@
 #include "services/base/output_file.hpp"
 #include "services/command/pulse_file.hpp"
 #include "services/daemon/program/program.hpp"
-#include "services/report/figures/stamp_deviation.hpp"
+#include "services/views/figures/stamp_deviation.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <fmt/core.h>
 
-#include "services/certificate/certificate_file.hpp"
 #include "services/command/work_progress.hpp"
 #include "services/daemon/program/program.hpp"
+#include "services/views/certificate/certificate_file.hpp"
 
 namespace dyncal::services {
 namespace {

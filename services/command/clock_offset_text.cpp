@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include "services/report/rounding.hpp"
+#include "services/views/report/rounding.hpp"
 
 namespace dyncal::services {
 

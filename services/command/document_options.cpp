@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "services/command/keep_options.hpp"
-#include "services/laboratory/contact_table.hpp"
+#include "services/views/lab_file/contact_table.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "services/report/run_figures.hpp"
+#include "services/views/report/run_figures.hpp"
 
 namespace dyncal::services {
 

@@ -21,7 +21,7 @@
 #include "services/command/work_progress.hpp"
 #include "services/daemon/program/program.hpp"
 #include "services/replay/series_file.hpp"
-#include "services/report/rounding.hpp"
+#include "services/views/report/rounding.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -13,9 +13,9 @@
 #include "services/command/work_progress.hpp"
 #include "services/contract/unit.hpp"
 #include "services/daemon/program/program.hpp"
-#include "services/report/figures/drift.hpp"
-#include "services/report/rounding.hpp"
 #include "services/store/history.hpp"
+#include "services/views/figures/drift.hpp"
+#include "services/views/report/rounding.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -7,9 +7,9 @@
 #include "services/bench/file/named_files.hpp"
 #include "services/command/own_recording.hpp"
 #include "services/contract/run_identity.hpp"
-#include "services/report/show_outcome.hpp"
-#include "services/report/stored_result.hpp"
 #include "services/store/store.hpp"
+#include "services/views/report/show_outcome.hpp"
+#include "services/views/report/stored_result.hpp"
 
 namespace dyncal::services {
 namespace {

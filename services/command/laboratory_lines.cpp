@@ -7,7 +7,7 @@
 #include "services/command/clock_offset_text.hpp"
 #include "services/command/harmless_text.hpp"
 #include "services/evaluation/result/result_flag.hpp"
-#include "services/report/rounding.hpp"
+#include "services/views/report/rounding.hpp"
 
 namespace dyncal::services {
 namespace {

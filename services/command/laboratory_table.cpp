@@ -12,7 +12,7 @@
 #include "services/command/harmless_text.hpp"
 #include "services/contract/run_identity.hpp"
 #include "services/contract/unit.hpp"
-#include "services/report/rounding.hpp"
+#include "services/views/report/rounding.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -101,7 +101,7 @@ Line source_line(const live::Source& source, BenchState state, Clock::Instant no
 }
 
 // The newest result of a channel that has a value, and whether most of its values are above their
-// noise (as services/report/result_table.hpp decides it).
+// noise (as services/views/report/result_table.hpp decides it).
 struct ChannelSummary {
   const StepResult* newest = nullptr;
   std::size_t results = 0;

@@ -10,7 +10,7 @@
 #include "services/command/harmless_text.hpp"
 #include "services/command/watched_laboratory.hpp"
 #include "services/contract/run_identity.hpp"
-#include "services/live/laboratory_json.hpp"
+#include "services/views/live/laboratory_json.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -8,11 +8,11 @@
 #include "services/base/error.hpp"
 #include "services/command/work_progress.hpp"
 #include "services/daemon/program/program.hpp"
-#include "services/model/channel_model.hpp"
-#include "services/model/model_figure.hpp"
-#include "services/model/model_json.hpp"
-#include "services/model/model_table.hpp"
-#include "services/report/result_json.hpp"
+#include "services/views/model/channel_model.hpp"
+#include "services/views/model/model_figure.hpp"
+#include "services/views/model/model_json.hpp"
+#include "services/views/model/model_table.hpp"
+#include "services/views/report/result_json.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -2,8 +2,8 @@
 // it.
 //
 // Prints which orders the values support and the parameters with u; writes all numbers as JSON
-// (services/model/model.schema.json), the residuals as figures. Exit status 1 and one line when a
-// file is not a result, or nothing can be fitted. Belongs to one thread.
+// (services/views/model/model.schema.json), the residuals as figures. Exit status 1 and one line
+// when a file is not a result, or nothing can be fitted. Belongs to one thread.
 #pragma once
 
 #include <filesystem>

@@ -5,8 +5,8 @@
 #include "services/base/output_file.hpp"
 #include "services/command/work_progress.hpp"
 #include "services/daemon/program/program.hpp"
-#include "services/document/pdf.hpp"
-#include "services/document/report_document.hpp"
+#include "services/views/document/pdf.hpp"
+#include "services/views/document/report_document.hpp"
 
 namespace dyncal::services {
 namespace {

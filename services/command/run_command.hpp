@@ -11,8 +11,8 @@
 
 #include "services/command/kept_run.hpp"
 #include "services/daemon/program/program.hpp"
-#include "services/report/run_figures.hpp"
 #include "services/run/run_controller.hpp"
+#include "services/views/report/run_figures.hpp"
 
 namespace dyncal::services {
 

@@ -15,7 +15,7 @@
 #include "services/base/json_text.hpp"
 #include "services/command/work_progress.hpp"
 #include "services/daemon/program/program.hpp"
-#include "services/report/result_file.hpp"
+#include "services/views/report/result_file.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -5,9 +5,9 @@
 #include <fmt/core.h>
 
 #include "services/base/printable_text.hpp"
-#include "services/certificate/verification.hpp"
 #include "services/command/work_progress.hpp"
 #include "services/daemon/program/program.hpp"
+#include "services/views/certificate/verification.hpp"
 
 namespace dyncal::services {
 

@@ -14,7 +14,7 @@
 #include "services/command/laboratory_lines.hpp"
 #include "services/command/laboratory_table.hpp"
 #include "services/command/watched_laboratory.hpp"
-#include "services/live/laboratory_json.hpp"
+#include "services/views/live/laboratory_json.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "services/evaluation/transfer_summary.hpp"
-#include "services/report/result_json.hpp"
-#include "services/report/show_outcome.hpp"
+#include "services/views/report/result_json.hpp"
+#include "services/views/report/show_outcome.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -37,7 +37,7 @@ public:
   // Why the newest state is not on the disk; nothing if it is, or is being written.
   [[nodiscard]] std::optional<Error> problem() const;
   // Ends the thread; then the final state is written. Fails (bad_file) when it cannot be, with
-  // where the results are instead (services/report/show_outcome.hpp).
+  // where the results are instead (services/views/report/show_outcome.hpp).
   [[nodiscard]] Expected<void> finish(const RunOutcome& outcome);
   void stop();
 

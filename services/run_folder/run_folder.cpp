@@ -19,9 +19,9 @@
 #include "services/bench/file/named_files.hpp"
 #include "services/contract/run_identity.hpp"
 #include "services/contract/time_name.hpp"
-#include "services/report/run_figures.hpp"
-#include "services/report/stored_result.hpp"
 #include "services/run_folder/folder_copy.hpp"
+#include "services/views/report/run_figures.hpp"
+#include "services/views/report/stored_result.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "services/base/json_text.hpp"
-#include "services/live/run_json.hpp"
-#include "services/report/step_json.hpp"
+#include "services/views/live/run_json.hpp"
+#include "services/views/report/step_json.hpp"
 #include "services/web/request_router.hpp"
 
 namespace dyncal::services::web {

@@ -12,10 +12,10 @@
 
 #include "services/base/json_text.hpp"
 #include "services/contract/channel_name.hpp"
-#include "services/live_signals/sine_view.hpp"
-#include "services/live_signals/spectrum.hpp"
-#include "services/live_signals/trace.hpp"
-#include "services/report/json_number.hpp"
+#include "services/views/report/json_number.hpp"
+#include "services/views/signals/sine_view.hpp"
+#include "services/views/signals/spectrum.hpp"
+#include "services/views/signals/trace.hpp"
 #include "services/web/laboratory_answers.hpp"
 #include "services/web/request_router.hpp"
 

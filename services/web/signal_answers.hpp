@@ -10,7 +10,7 @@
 
 #include <httplib.h>
 
-#include "services/live_signals/signal_tap.hpp"
+#include "services/views/signals/signal_tap.hpp"
 #include "services/web/state_cache.hpp"
 
 namespace dyncal::services::web {

@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 
 #include "services/base/json_text.hpp"
-#include "services/live/laboratory_json.hpp"
-#include "services/live/run_figures.hpp"
-#include "services/live/run_json.hpp"
-#include "services/report/picture_json.hpp"
+#include "services/views/live/laboratory_json.hpp"
+#include "services/views/live/run_figures.hpp"
+#include "services/views/live/run_json.hpp"
+#include "services/views/report/picture_json.hpp"
 
 namespace dyncal::services::web {
 namespace {

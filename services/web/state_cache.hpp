@@ -22,7 +22,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "services/live/laboratory.hpp"
-#include "services/report/figures/transfer_function.hpp"
+#include "services/views/figures/transfer_function.hpp"
 
 namespace dyncal::services::web {
 

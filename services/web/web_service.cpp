@@ -5,8 +5,8 @@
 
 #include "services/bus/host_network.hpp"
 #include "services/live/laboratory_readers.hpp"
-#include "services/live_signals/signal_tap.hpp"
 #include "services/store/store.hpp"
+#include "services/views/signals/signal_tap.hpp"
 #include "services/web/access_token.hpp"
 #include "services/web/actions.hpp"
 #include "services/web/event_stream.hpp"

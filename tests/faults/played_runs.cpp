@@ -17,7 +17,7 @@
 #include "services/evaluation/result/result_message.hpp"
 #include "services/evaluation/result/transfer_function_message.hpp"
 #include "tests/unit/services/live/messages.hpp"
-#include "tests/unit/services/report/example_outcome.hpp"
+#include "tests/unit/services/views/report/example_outcome.hpp"
 
 namespace {
 

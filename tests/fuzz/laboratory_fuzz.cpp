@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "services/laboratory/laboratory_file.hpp"
-#include "services/laboratory/sensor_file.hpp"
+#include "services/views/lab_file/laboratory_file.hpp"
+#include "services/views/lab_file/sensor_file.hpp"
 
 namespace {
 

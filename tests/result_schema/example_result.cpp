@@ -3,8 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "services/report/result_json.hpp"
-#include "tests/unit/services/report/example_outcome.hpp"
+#include "services/views/report/result_json.hpp"
+#include "tests/unit/services/views/report/example_outcome.hpp"
 
 int main() {
   std::puts(dyncal::services::result_json(dyncal::tests::example_outcome()).dump(1).c_str());

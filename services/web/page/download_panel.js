@@ -1,6 +1,6 @@
 /**
  * What a run left on the server's disk, to be downloaded; its figures also as pictures: the ones
- * that the files hold, drawn by services/report/figures.
+ * that the files hold, drawn by services/views/figures.
  */
 
 import { element, name_element, set_shown } from "./element.js";

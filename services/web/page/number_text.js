@@ -1,6 +1,6 @@
 /**
  * Numbers as people read them: a value and its uncertainty with the digits that mean something, as
- * services/report/rounding.hpp has them on the terminal, and plain ones with a unit.
+ * services/views/report/rounding.hpp has them on the terminal, and plain ones with a unit.
  *
  * What is not known (null) is an en dash.
  */

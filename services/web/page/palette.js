@@ -1,5 +1,5 @@
 /**
- * Colours and markers of what is drawn: those of services/report/figures/panel.cpp (Okabe and Ito,
+ * Colours and markers of what is drawn: those of services/views/figures/panel.cpp (Okabe and Ito,
  * for any colour vision). What must stand out from the ground (axes, grid, means) takes its colour
  * from the style sheet.
  */

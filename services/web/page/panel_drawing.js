@@ -1,5 +1,5 @@
 /**
- * Draws what stands in a panel of a picture on a canvas, as services/report/figures/panel.cpp draws
+ * Draws what stands in a panel of a picture on a canvas, as services/views/figures/panel.cpp draws
  * it in files: band, bars, dots, then series with lines, error bars and markers.
  */
 

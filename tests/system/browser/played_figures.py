@@ -1,5 +1,5 @@
 """What dyncal-web would answer at /figures of the laboratory that is played: pictures described as
-services/report/picture_json.hpp does, made from its own points and as plainly as possible.
+services/views/report/picture_json.hpp does, made from its own points and as plainly as possible.
 
 Their members are held against those of the real program in real_laboratory_test.py.
 """

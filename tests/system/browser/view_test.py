@@ -249,7 +249,7 @@ class Views(PageCase):
 
     def test_numbers_are_rounded_as_on_the_terminal(self):
         page = self.open()
-        # The cases of services/report/rounding.hpp and its test.
+        # The cases of services/views/report/rounding.hpp and its test.
         cases = [[0.9771834, 0.000934], [-3.14159, 0.00087], [8.1234e-6, 1.5e-8], [2e-7, 0.014],
                  [9814.26, 230], [1, 0.0996], [9.96e-6, 1e-6], [-0.0004, 0.014], [5, 0]]
         given = page.value("import('/page/number_text.js').then(m => "

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/temporary_folder.hpp"
-#include "tests/unit/services/report/example_outcome.hpp"
+#include "tests/unit/services/views/report/example_outcome.hpp"
 
 namespace dyncal::services {
 namespace {

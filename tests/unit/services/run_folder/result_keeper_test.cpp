@@ -11,8 +11,8 @@
 
 #include "tests/patience.hpp"
 #include "tests/temporary_folder.hpp"
-#include "tests/unit/services/report/example_outcome.hpp"
 #include "tests/unit/services/run_folder/size_limit.hpp"
+#include "tests/unit/services/views/report/example_outcome.hpp"
 
 namespace dyncal::services {
 namespace {

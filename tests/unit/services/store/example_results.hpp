@@ -7,8 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "services/report/result_json.hpp"
-#include "tests/unit/services/report/example_outcome.hpp"
+#include "services/views/report/result_json.hpp"
+#include "tests/unit/services/views/report/example_outcome.hpp"
 
 namespace dyncal::tests {
 

@@ -1,0 +1,278 @@
+#include "services/views/certificate/certificate_contents.hpp"
+
+#include <algorithm>
+#include <array>
+#include <ctime>
+#include <fstream>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <openssl/rand.h>
+
+#include "services/base/version.hpp"
+#include "services/contract/digest.hpp"
+#include "services/views/certificate/objections.hpp"
+#include "services/views/certificate/ratio_unit.hpp"
+#include "services/views/report/stated_value.hpp"
+
+namespace dyncal::services {
+namespace {
+
+tl::unexpected<Error> missing(const std::filesystem::path& file, const std::string& what,
+                              const std::string& why) {
+  return fail(ErrorCode::bad_file,
+              fmt::format("{}:1: {} is missing: {}", file.string(), what, why));
+}
+
+std::string new_uuid() {
+  std::array<unsigned char, 16> bytes{};
+  if (RAND_bytes(bytes.data(), static_cast<int>(bytes.size())) != 1) {
+    return {};
+  }
+  bytes[6] = static_cast<unsigned char>((bytes[6] & 0x0fU) | 0x40U); // version 4
+  bytes[8] = static_cast<unsigned char>((bytes[8] & 0x3fU) | 0x80U);
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    text += fmt::format("{}{:02x}", i == 4 || i == 6 || i == 8 || i == 10 ? "-" : "", bytes.at(i));
+  }
+  return text;
+}
+
+std::string today() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  return fmt::format("{:04}-{:02}-{:02}", utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday);
+}
+
+// The sensor as its source described itself to the run.
+SensorFile described_sensor(const StoredResult& result, const std::string& channel) {
+  SensorFile sensor;
+  const std::string name = channel.substr(0, channel.find('/'));
+  for (const CheckedJson& source : result.root().nodes("sources")) {
+    if (source.text("source") == name) {
+      sensor.name = "Digital sensor";
+      sensor.model = source.text_or("device", "");
+      sensor.serial = source.text_or("serial", "");
+      sensor.firmware = source.text_or("firmware", "");
+    }
+  }
+  return sensor;
+}
+
+Expected<void> gather_sensor(const CertificateRequest& request, CertificateContents& contents) {
+  if (!request.sensor.empty()) {
+    auto sensor = read_sensor_file(request.sensor);
+    if (!sensor) {
+      return fail(sensor.error());
+    }
+    contents.sensor = std::move(*sensor);
+    return {};
+  }
+  contents.sensor = described_sensor(contents.result, contents.channels.front().channel);
+  if (contents.sensor.serial.empty()) {
+    return fail(ErrorCode::bad_file,
+                fmt::format("{}: the run does not know the serial number of the sensor; state the "
+                            "sensor with --sensor SENSOR.toml",
+                            contents.result.file.string()));
+  }
+  return {};
+}
+
+Expected<void> gather_laboratory(const CertificateRequest& request, CertificateContents& contents) {
+  auto laboratory = read_laboratory_file(request.laboratory);
+  if (!laboratory) {
+    return fail(laboratory.error());
+  }
+  contents.laboratory = std::move(*laboratory);
+  const std::filesystem::path& file = contents.laboratory.path;
+  if (contents.laboratory.persons.empty()) {
+    return missing(file, "table [[person]]", "a certificate names who is responsible for it");
+  }
+  if (!contents.laboratory.reference) {
+    return missing(file, "table [reference]",
+                   "a certificate states what its values are traceable to");
+  }
+  if (contents.laboratory.reference->standard.empty()) {
+    return missing(file, "key 'reference.standard'",
+                   "ISO 16063-11 for a laser interferometer, ISO 16063-21 for a reference "
+                   "transducer");
+  }
+  return {};
+}
+
+Expected<void> gather_customer(CertificateContents& contents) {
+  const auto& of_sensor = contents.sensor.customer;
+  const auto& of_laboratory = contents.laboratory.customer;
+  if (!of_sensor && !of_laboratory) {
+    return missing(contents.laboratory.path, "table [customer]",
+                   "a certificate names its customer, here or in the sensor file");
+  }
+  contents.customer = of_sensor ? *of_sensor : *of_laboratory;
+  contents.conditions = contents.sensor.conditions.empty() ? contents.laboratory.conditions
+                                                           : contents.sensor.conditions;
+  return {};
+}
+
+Expected<void> gather_dates(const CertificateRequest& request, CertificateContents& contents) {
+  constexpr std::size_t date_length = 10;
+  contents.issued = today();
+  contents.began = request.performed.empty() ? contents.result.began_utc.substr(0, date_length)
+                                             : request.performed;
+  contents.ended = request.performed.empty() ? contents.result.ended_utc.substr(0, date_length)
+                                             : request.performed;
+  if (contents.began.empty() || contents.ended.empty()) {
+    return fail(ErrorCode::bad_argument,
+                fmt::format("{}: the run does not know when it was measured, for its stamps are "
+                            "not in UTC; state the day with --performed YYYY-MM-DD",
+                            contents.result.file.string()));
+  }
+  return {};
+}
+
+// As large as it may be: a recording is read in parts.
+Expected<void> hash_recording(const std::filesystem::path& run, CertificateContents& contents) {
+  const std::filesystem::path recording = run / "recording.mcap";
+  std::error_code unknown;
+  if (!std::filesystem::is_directory(run, unknown) ||
+      !std::filesystem::exists(recording, unknown)) {
+    return {};
+  }
+  std::ifstream stream(recording, std::ios::binary);
+  Digest digest;
+  std::string part(1U << 20U, '\0');
+  while (stream.read(part.data(), static_cast<std::streamsize>(part.size())) ||
+         stream.gcount() > 0) {
+    digest.add(part.data(), static_cast<std::size_t>(stream.gcount()));
+  }
+  if (!stream.eof()) {
+    return fail(
+        ErrorCode::bad_file,
+        fmt::format("{}: cannot be read whole, so its hash cannot be stated", recording.string()));
+  }
+  contents.recording_sha256 = digest.hex();
+  return {};
+}
+
+std::vector<std::string> asked_channels(const StoredResult& result,
+                                        const std::vector<std::string>& asked) {
+  if (!asked.empty()) {
+    return asked;
+  }
+  std::vector<std::string> responding;
+  for (const StoredChannel& channel : result.channels) {
+    if (channel.responds) {
+      responding.push_back(channel.channel);
+    }
+  }
+  return responding;
+}
+
+Expected<void> gather_values(const CertificateRequest& request, CertificateContents& contents) {
+  const std::vector<std::string> names = asked_channels(contents.result, request.channels);
+  if (names.empty()) {
+    return fail(ErrorCode::no_result, fmt::format("{}: no channel responds to the excitation, so "
+                                                  "there is nothing to certify",
+                                                  contents.result.file.string()));
+  }
+  auto channels = certified_channels(contents.result, names);
+  if (!channels) {
+    return fail(channels.error());
+  }
+  contents.channels = std::move(*channels);
+  contents.objections = objections_to(contents.result, names);
+  contents.flags = stated_flags(contents.result, names);
+  contents.has_monte_carlo = std::all_of(
+      contents.result.points.begin(), contents.result.points.end(), [&](const StoredPoint& point) {
+        return !point.valid || point.has_monte_carlo ||
+               std::find(names.begin(), names.end(), point.channel) == names.end();
+      });
+  return {};
+}
+
+Expected<void> refuse_unless_forced(const CertificateRequest& request,
+                                    const CertificateContents& contents) {
+  constexpr std::size_t max_shown = 5;
+  if (contents.objections.empty() || request.force) {
+    return {};
+  }
+  const std::size_t shown = std::min(contents.objections.size(), max_shown);
+  const std::vector<std::string> first(contents.objections.begin(),
+                                       contents.objections.begin() +
+                                           static_cast<std::ptrdiff_t>(shown));
+  const std::string others = contents.objections.size() > shown
+                                 ? fmt::format("; and {} more", contents.objections.size() - shown)
+                                 : "";
+  return fail(ErrorCode::no_result,
+              fmt::format("{}: no certificate: {}{}. Measure again, leave channels out with "
+                          "--channel, or --force a certificate that says all this",
+                          contents.result.file.string(), fmt::join(first, "; "), others));
+}
+
+Expected<CertificateContents> gather(const CertificateRequest& request) {
+  CertificateContents contents;
+  auto result = read_stored_result(request.run);
+  if (!result) {
+    return fail(result.error());
+  }
+  contents.result = std::move(*result);
+  using Step = Expected<void> (*)(const CertificateRequest&, CertificateContents&);
+  for (const Step step :
+       {Step{gather_values}, Step{gather_laboratory}, Step{gather_sensor}, Step{gather_dates}}) {
+    if (auto done = step(request, contents); !done) {
+      return fail(done.error());
+    }
+  }
+  for (auto done : {gather_customer(contents), refuse_unless_forced(request, contents),
+                    hash_recording(request.run, contents)}) {
+    if (!done) {
+      return fail(done.error());
+    }
+  }
+  contents.number = request.number.empty() ? contents.sensor.certificate_number : request.number;
+  contents.identifier = new_uuid();
+  contents.software = software_version();
+  return contents;
+}
+
+} // namespace
+
+Expected<std::vector<CertifiedChannel>>
+certified_channels(const StoredResult& result, const std::vector<std::string>& channels) {
+  std::vector<CertifiedChannel> certified;
+  for (const std::string& name : channels) {
+    CertifiedChannel channel{.channel = name, .unit = {}, .values = {}};
+    for (StoredValue& value : result.values_of(name)) {
+      if (can_be_stated(value)) {
+        channel.values.push_back(std::move(value));
+      }
+    }
+    if (channel.values.empty()) {
+      return fail(ErrorCode::bad_argument,
+                  fmt::format("{}: channel '{}' has no value that could be certified",
+                              result.file.string(), name));
+    }
+    const auto unit = ratio_in_d_si(channel.values.front().unit);
+    if (!unit) {
+      return fail(ErrorCode::bad_file,
+                  fmt::format("{}: the unit of {} is '{}', which has no form in the SI; state the "
+                              "units of sensor and reference in the bench file and evaluate the "
+                              "run again",
+                              result.file.string(), name, channel.values.front().unit));
+    }
+    channel.unit = *unit;
+    certified.push_back(std::move(channel));
+  }
+  return certified;
+}
+
+Expected<CertificateContents> gather_certificate(const CertificateRequest& request) {
+  try {
+    return gather(request);
+  } catch (const BadKey& bad) {
+    return fail(ErrorCode::bad_file,
+                fmt::format("{}: {}", result_file_of(request.run).string(), bad.sentence));
+  }
+}
+
+} // namespace dyncal::services

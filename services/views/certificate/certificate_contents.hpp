@@ -1,0 +1,62 @@
+// What a certificate states, gathered from the stored result, the laboratory file and the sensor
+// file, and checked: nothing that a certificate needs may be missing.
+//
+// Fails (bad_file) naming the missing table or key and its file; (bad_argument) for a channel
+// without values; (no_result) when something speaks against the certificate (objections.hpp) and it
+// is not forced. Any thread.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "services/base/error.hpp"
+#include "services/views/lab_file/laboratory_file.hpp"
+#include "services/views/lab_file/sensor_file.hpp"
+#include "services/views/report/stored_result.hpp"
+
+namespace dyncal::services {
+
+struct CertificateRequest {
+  std::filesystem::path run; // a run folder or a result file
+  std::filesystem::path laboratory;
+  std::filesystem::path sensor;      // empty: as the run's source describes itself
+  std::vector<std::string> channels; // empty: all that respond
+  std::string number;                // empty: that of the sensor file, if any
+  std::string performed;             // YYYY-MM-DD; empty: from the run
+  bool force = false;
+};
+
+struct CertifiedChannel {
+  std::string channel;
+  std::string unit; // D-SI
+  std::vector<StoredValue> values;
+};
+
+struct CertificateContents {
+  StoredResult result;
+  LaboratoryFile laboratory;
+  SensorFile sensor;
+  Contact customer;
+  Conditions conditions;
+  std::vector<CertifiedChannel> channels;
+  std::string number;     // may be empty
+  std::string identifier; // a new UUID
+  std::string began;      // YYYY-MM-DD
+  std::string ended;
+  std::string issued;
+  std::string software;
+  std::string recording_sha256;        // empty: no recording in the run folder
+  std::vector<std::string> objections; // in spite of which it is issued
+  std::vector<std::string> flags;      // that are stated beside the values
+  bool has_monte_carlo = false;        // a check for every value
+};
+
+[[nodiscard]] Expected<CertificateContents> gather_certificate(const CertificateRequest& request);
+
+// Channels with their unit in D-SI and the values that can be stated. Fails (bad_file) for a unit
+// that is not known.
+[[nodiscard]] Expected<std::vector<CertifiedChannel>>
+certified_channels(const StoredResult& result, const std::vector<std::string>& channels);
+
+} // namespace dyncal::services

@@ -1,0 +1,72 @@
+#include "services/views/certificate/certificate_file.hpp"
+
+#include <fmt/core.h>
+
+#include "services/base/output_file.hpp"
+#include "services/views/certificate/dcc.hpp"
+#include "services/views/certificate/schema.hpp"
+
+namespace dyncal::services {
+namespace {
+
+Expected<void> check_name(const std::filesystem::path& output) {
+  std::error_code unknown;
+  if (std::filesystem::exists(output, unknown)) {
+    return fail(ErrorCode::bad_file,
+                fmt::format("{}: exists already, and a certificate is not overwritten; name "
+                            "another file with --output",
+                            output.string()));
+  }
+  return check_output_file(output);
+}
+
+// As a reader of the file will see it.
+Expected<void> check_text(const std::string& text, const CertificateFileRequest& request,
+                          const DccSchema& schema) {
+  const std::string name = request.output.string();
+  const auto document = XmlDocument::parse(text, name);
+  if (!document) {
+    return fail(document.error());
+  }
+  if (auto valid = schema.validate(*document, name); !valid) {
+    return valid;
+  }
+  if (request.key) {
+    if (const auto signer = check_signature(*document); !signer) {
+      return fail(ErrorCode::bad_file, fmt::format("{}: {}", name, signer.error().message));
+    }
+  }
+  return {};
+}
+
+} // namespace
+
+Expected<CertificateContents> write_certificate(const CertificateFileRequest& request) {
+  if (auto possible = check_name(request.output); !possible) {
+    return fail(possible.error());
+  }
+  const auto schema = DccSchema::load(request.schema);
+  if (!schema) {
+    return fail(schema.error());
+  }
+  auto contents = gather_certificate(request.certificate);
+  if (!contents) {
+    return contents;
+  }
+  XmlDocument document = dcc_of(*contents);
+  if (request.key) {
+    if (auto done = sign(document, *request.key); !done) {
+      return fail(done.error());
+    }
+  }
+  const std::string text = document.text();
+  if (auto checked = check_text(text, request, *schema); !checked) {
+    return fail(checked.error());
+  }
+  if (auto written = write_output_file(request.output, text); !written) {
+    return fail(written.error());
+  }
+  return contents;
+}
+
+} // namespace dyncal::services

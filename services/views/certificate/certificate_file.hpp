@@ -1,0 +1,28 @@
+// Makes the certificate of a stored run as a file: gathered, written as a DCC, signed, and only
+// then held against the schema and its own signature as anybody would who reads it. What fails a
+// check is not written; an older file is never overwritten.
+//
+// Fails as gather_certificate(), sign() and DccSchema do. One thread at a time.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "services/base/error.hpp"
+#include "services/views/certificate/certificate_contents.hpp"
+#include "services/views/certificate/signature.hpp"
+
+namespace dyncal::services {
+
+struct CertificateFileRequest {
+  CertificateRequest certificate;
+  std::optional<SigningKey> key; // nothing: not signed
+  std::filesystem::path schema;  // empty: the installed one
+  std::filesystem::path output;
+};
+
+// What was certified, for a line to the user.
+[[nodiscard]] Expected<CertificateContents>
+write_certificate(const CertificateFileRequest& request);
+
+} // namespace dyncal::services

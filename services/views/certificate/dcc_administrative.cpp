@@ -1,0 +1,153 @@
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include "services/views/certificate/dcc.hpp"
+#include "services/views/report/stated_value.hpp"
+
+namespace dyncal::services {
+namespace {
+
+// "dyncal 0.2.0 (1a2b3c4)": name and release.
+void add_software(XmlElement list, const std::string& text, std::string_view description) {
+  const std::string line = single_line(text);
+  const std::size_t space = line.find(' ');
+  XmlElement software = list.add("dcc:software");
+  add_text(software, "dcc:name", line.substr(0, space));
+  software.add("dcc:release", space == std::string::npos ? "not stated" : line.substr(space + 1));
+  software.add("dcc:type", "application");
+  add_text(software, "dcc:description", description);
+}
+
+void add_identification(XmlElement list, std::string_view type, std::string_view issuer,
+                        const std::string& value, std::string_view name) {
+  XmlElement identification = list.add("dcc:identification");
+  if (!type.empty()) {
+    identification.attribute("refType", type);
+  }
+  identification.add("dcc:issuer", issuer);
+  identification.add("dcc:value", single_line(value));
+  add_text(identification, "dcc:name", name);
+}
+
+void add_core_data(XmlElement parent, const CertificateContents& contents) {
+  XmlElement core = parent.add("dcc:coreData");
+  core.add("dcc:countryCodeISO3166_1", contents.laboratory.laboratory.country);
+  core.add("dcc:usedLangCodeISO639_1", "en");
+  core.add("dcc:mandatoryLangCodeISO639_1", "en");
+  core.add("dcc:uniqueIdentifier", contents.identifier);
+  XmlElement identifications = core.add("dcc:identifications");
+  if (!contents.number.empty()) {
+    add_identification(identifications, "basic_certificateNumber", "calibrationLaboratory",
+                       contents.number, "Certificate number");
+  }
+  add_identification(identifications, "", "calibrationLaboratory",
+                     contents.result.bench + " / " + contents.result.run, "Bench / run");
+  if (!contents.sensor.received.empty()) {
+    core.add("dcc:receiptDate", contents.sensor.received);
+  }
+  core.add("dcc:beginPerformanceDate", contents.began);
+  core.add("dcc:endPerformanceDate", contents.ended);
+  core.add("dcc:performanceLocation", "laboratory");
+  core.add("dcc:issueDate", contents.issued);
+}
+
+void add_item(XmlElement parent, const SensorFile& sensor) {
+  XmlElement item = parent.add("dcc:items").add("dcc:item");
+  add_text(item, "dcc:name", sensor.name.empty() ? "Digital sensor" : sensor.name);
+  if (!sensor.firmware.empty()) {
+    XmlElement software = item.add("dcc:installedSoftwares").add("dcc:software");
+    add_text(software, "dcc:name", "firmware");
+    software.add("dcc:release", single_line(sensor.firmware));
+    software.add("dcc:type", "firmware");
+  }
+  if (!sensor.manufacturer.empty()) {
+    add_text(item.add("dcc:manufacturer"), "dcc:name", sensor.manufacturer);
+  }
+  if (!sensor.model.empty()) {
+    item.add("dcc:model", single_line(sensor.model));
+  }
+  XmlElement identifications = item.add("dcc:identifications");
+  add_identification(identifications, "basic_serialNo", "manufacturer", sensor.serial,
+                     "Serial number");
+  if (!sensor.owner_identification.empty()) {
+    add_identification(identifications, "", "owner", sensor.owner_identification,
+                       "Identification of the owner");
+  }
+}
+
+void add_laboratory(XmlElement parent, const LaboratoryFile& file) {
+  XmlElement laboratory = parent.add("dcc:calibrationLaboratory");
+  if (!file.accreditation.empty()) {
+    laboratory.add("dcc:calibrationLaboratoryCode", single_line(file.accreditation));
+  }
+  add_contact(laboratory.add("dcc:contact"), file.laboratory);
+}
+
+void add_persons(XmlElement parent, const LaboratoryFile& file) {
+  XmlElement list = parent.add("dcc:respPersons");
+  for (const Person& person : file.persons) {
+    XmlElement one = list.add("dcc:respPerson");
+    add_text(one.add("dcc:person"), "dcc:name", person.name);
+    if (!person.role.empty()) {
+      one.add("dcc:role", single_line(person.role));
+    }
+    if (person.main_signer) {
+      one.add("dcc:mainSigner", "true");
+    }
+  }
+}
+
+void add_forced(XmlElement list, const std::vector<std::string>& objections) {
+  XmlElement statement = list.add("dcc:statement").attribute("refType", "dyncal_forced");
+  add_text(statement, "dcc:name", "Issued in spite of objections");
+  XmlElement declaration = statement.add("dcc:declaration");
+  declaration
+      .add("dcc:content",
+           "THIS CERTIFICATE WAS FORCED: the software that evaluated the measurement refused it. "
+           "The laboratory has issued it all the same. What spoke against it:")
+      .attribute("lang", "en");
+  for (const std::string& objection : objections) {
+    declaration.add("dcc:content", objection).attribute("lang", "en");
+  }
+  statement.add("dcc:valid", "false");
+}
+
+void add_traceability(XmlElement list, const ReferenceStandard& reference) {
+  XmlElement statement = list.add("dcc:statement").attribute("refType", "basic_traceability");
+  add_text(statement, "dcc:name", "Metrological traceability");
+  statement.add("dcc:traceable", "true");
+  statement.add("dcc:reference", single_line(reference.certificate));
+  add_text(statement, "dcc:declaration",
+           fmt::format("{} The reference ({}, serial number {}) was calibrated by {}, certificate "
+                       "{}{}.",
+                       reference.traceability, reference.equipment.name, reference.equipment.serial,
+                       reference.issued_by, reference.certificate,
+                       reference.issued.empty() ? "" : " of " + reference.issued));
+}
+
+void add_statements(XmlElement parent, const CertificateContents& contents) {
+  XmlElement list = parent.add("dcc:statements");
+  if (!contents.objections.empty()) {
+    add_forced(list, contents.objections);
+  }
+  add_traceability(list, *contents.laboratory.reference);
+  for (const std::string& text : contents.laboratory.statements) {
+    add_text(list.add("dcc:statement"), "dcc:declaration", text);
+  }
+}
+
+} // namespace
+
+void add_administrative_data(XmlElement root, const CertificateContents& contents) {
+  XmlElement data = root.add("dcc:administrativeData");
+  XmlElement software = data.add("dcc:dccSoftware");
+  add_software(software, contents.software, "made this certificate");
+  add_core_data(data, contents);
+  add_item(data, contents.sensor);
+  add_laboratory(data, contents.laboratory);
+  add_persons(data, contents.laboratory);
+  add_contact(data.add("dcc:customer"), contents.customer);
+  add_statements(data, contents);
+}
+
+} // namespace dyncal::services

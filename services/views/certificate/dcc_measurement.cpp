@@ -1,0 +1,271 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include "services/views/certificate/dcc.hpp"
+#include "services/views/lab_file/embedded_picture.hpp"
+#include "services/views/report/rounding.hpp"
+#include "services/views/report/stated_value.hpp"
+
+namespace dyncal::services {
+namespace {
+
+constexpr double kelvin_at_0_degc = 273.15;
+constexpr double pascal_per_hpa = 100.0;
+
+XmlElement add_method(XmlElement list, std::string_view type, std::string_view name,
+                      const std::string& description, const std::vector<std::string>& norms) {
+  XmlElement method = list.add("dcc:usedMethod");
+  if (!type.empty()) {
+    method.attribute("refType", type);
+  }
+  add_text(method, "dcc:name", name);
+  add_text(method, "dcc:description", description);
+  for (const std::string& norm : norms) {
+    method.add("dcc:norm", norm);
+  }
+  return method;
+}
+
+void add_methods(XmlElement parent, const CertificateContents& contents) {
+  XmlElement list = parent.add("dcc:usedMethods");
+  const bool is_primary = contents.laboratory.reference->standard == "ISO 16063-11";
+  add_method(list,
+             is_primary ? "vibration_primarySineCalibration" : "vibration_secondarySineCalibration",
+             is_primary ? "Calibration by laser interferometry with sinusoidal excitation"
+                        : "Calibration by comparison to a reference transducer with sinusoidal "
+                          "excitation",
+             method_description(contents.result.method),
+             {is_primary ? "ISO 16063-11:1999" : "ISO 16063-21:2003"});
+  std::string uncertainty =
+      "Expanded uncertainties U = k u with the coverage factor k stated with each value, for the "
+      "coverage probability stated with it; u from the contributions by the law of propagation. " +
+      rounding_rule();
+  std::vector<std::string> norms{"JCGM 100:2008"};
+  if (contents.has_monte_carlo) {
+    uncertainty += " Every single result was cross-checked by the Monte Carlo method.";
+    norms.emplace_back("JCGM 101:2008");
+  }
+  add_method(list, "basic_methodMeasurementUncertainty", "Measurement uncertainty", uncertainty,
+             norms);
+  add_method(list, "dyncal_phaseConvention", "Sign convention of the phase", sign_convention(),
+             {"ISO 2041:2018"});
+}
+
+void add_used_software(XmlElement parent, const StoredResult& result) {
+  XmlElement list = parent.add("dcc:usedSoftware");
+  std::vector<std::pair<std::string, std::string>> programs{{result.software, "conducted the run"}};
+  const std::string analysis = result.root().node("analysis").text_or("software", "");
+  if (!analysis.empty()) {
+    programs.emplace_back(analysis, "evaluated the run");
+  }
+  for (const auto& [text, task] : programs) {
+    const std::string line = single_line(text);
+    const std::size_t space = line.find(' ');
+    XmlElement software = list.add("dcc:software");
+    add_text(software, "dcc:name", line.substr(0, space));
+    software.add("dcc:release", space == std::string::npos ? "not stated" : line.substr(space + 1));
+    software.add("dcc:type", "application");
+    add_text(software, "dcc:description", task);
+  }
+}
+
+XmlElement add_equipment(XmlElement list, const Equipment& equipment,
+                         const std::string& description) {
+  XmlElement one = list.add("dcc:measuringEquipment");
+  add_text(one, "dcc:name", equipment.name);
+  if (!description.empty()) {
+    add_text(one, "dcc:description", description);
+  }
+  if (!equipment.manufacturer.empty()) {
+    add_text(one.add("dcc:manufacturer"), "dcc:name", equipment.manufacturer);
+  }
+  if (!equipment.model.empty()) {
+    one.add("dcc:model", single_line(equipment.model));
+  }
+  if (!equipment.serial.empty()) {
+    XmlElement identification = one.add("dcc:identifications").add("dcc:identification");
+    identification.attribute("refType", "basic_serialNo");
+    identification.add("dcc:issuer", "manufacturer");
+    identification.add("dcc:value", single_line(equipment.serial));
+    add_text(identification, "dcc:name", "Serial number");
+  }
+  return one;
+}
+
+void add_equipments(XmlElement parent, const CertificateContents& contents) {
+  XmlElement list = parent.add("dcc:measuringEquipments");
+  const ReferenceStandard& reference = *contents.laboratory.reference;
+  add_equipment(list, reference.equipment,
+                fmt::format("Reference. {} Certificate {} of {}.", reference.traceability,
+                            reference.certificate, reference.issued_by))
+      .attribute("refType", "basic_referenceStandard");
+  for (const Equipment& equipment : contents.laboratory.equipment) {
+    add_equipment(list, equipment, "");
+  }
+  const std::string sensor = contents.channels.front().channel;
+  for (const CheckedJson& source : contents.result.root().nodes("sources")) {
+    const std::string name = source.text("source");
+    const std::string device = source.text_or("device", "");
+    if (sensor.starts_with(name + "/") || device.empty()) {
+      continue; // the item itself
+    }
+    add_equipment(list, {device, "", "", source.text_or("serial", "")},
+                  fmt::format("Source '{}' of the run", name));
+  }
+}
+
+void add_real(XmlElement parent, double value, double expanded, std::string_view unit) {
+  const RoundedValue rounded = round_by_uncertainty(value, expanded);
+  XmlElement real = parent.add("si:real");
+  real.add("si:value", rounded.value);
+  real.add("si:unit", unit);
+  XmlElement uncertainty = real.add("si:measurementUncertaintyUnivariate").add("si:expandedMU");
+  uncertainty.add("si:valueExpandedMU", rounded.u);
+  uncertainty.add("si:coverageFactor", "2.00");
+  uncertainty.add("si:coverageProbability", "0.95");
+}
+
+XmlElement add_condition(XmlElement list, std::string_view name) {
+  XmlElement condition = list.add("dcc:influenceCondition");
+  add_text(condition, "dcc:name", name);
+  return condition.add("dcc:data");
+}
+
+void add_stated_conditions(XmlElement list, const Conditions& conditions) {
+  if (const auto& temperature = conditions.temperature_degc) {
+    XmlElement quantity = add_condition(list, "Ambient temperature").add("dcc:quantity");
+    XmlElement hybrid = quantity.attribute("refType", "basic_temperature").add("si:hybrid");
+    add_real(hybrid, temperature->value + kelvin_at_0_degc, temperature->expanded, "\\kelvin");
+    add_real(hybrid, temperature->value, temperature->expanded, "\\degreecelsius");
+  }
+  if (const auto& humidity = conditions.humidity_percent) {
+    XmlElement quantity = add_condition(list, "Relative humidity").add("dcc:quantity");
+    add_real(quantity.attribute("refType", "basic_humidityRelative"), humidity->value,
+             humidity->expanded, "\\percent");
+  }
+  if (const auto& pressure = conditions.pressure_hpa) {
+    XmlElement quantity = add_condition(list, "Air pressure").add("dcc:quantity");
+    add_real(quantity.attribute("refType", "basic_pressureAtmospheric"),
+             pascal_per_hpa * pressure->value, pascal_per_hpa * pressure->expanded, "\\pascal");
+  }
+}
+
+// "27.3 to 28.9"; empty without a finite value.
+std::string range_of(const CertificateContents& contents, double StoredPoint::*member,
+                     int decimals) {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  for (const CertifiedChannel& channel : contents.channels) {
+    for (const StoredPoint& point : contents.result.points_of(channel.channel)) {
+      if (std::isfinite(point.*member)) {
+        low = std::min(low, point.*member);
+        high = std::max(high, point.*member);
+      }
+    }
+  }
+  return low > high ? "" : fmt::format("{:.{}f} to {:.{}f}", low, decimals, high, decimals);
+}
+
+void add_conditions(XmlElement parent, const CertificateContents& contents) {
+  XmlElement list = parent.add("dcc:influenceConditions");
+  add_stated_conditions(list, contents.conditions);
+  const auto add_said = [&](std::string_view name, const std::string& text) {
+    if (!text.empty()) {
+      add_text(add_condition(list, name), "dcc:text", text);
+    }
+  };
+  add_said("Mounting", contents.conditions.mounting);
+  add_said("Orientation", contents.conditions.orientation);
+  const std::string temperature = range_of(contents, &StoredPoint::temperature_degc, 1);
+  add_said("Temperature of the sensor",
+           temperature.empty() ? ""
+                               : temperature + " degrees Celsius, measured by the sensor itself, "
+                                               "for information");
+  const std::string level = range_of(contents, &StoredPoint::measured_level_m_s2, 3);
+  add_said("Level of the excitation",
+           level.empty()
+               ? "sinusoidal, amplitude as planned"
+               : fmt::format("sinusoidal, amplitude from the reference: {} m/s^2", level));
+}
+
+XmlElement add_meta_data(XmlElement list, std::string_view type, std::string_view name) {
+  XmlElement data = list.add("dcc:metaData").attribute("refType", type);
+  add_text(data, "dcc:name", name);
+  return data;
+}
+
+void add_said(XmlElement list, std::string_view type, std::string_view name,
+              const std::string& text) {
+  if (!text.empty()) {
+    add_text(add_meta_data(list, type, name), "dcc:declaration", text);
+  }
+}
+
+std::string clock_text(const CheckedJson& clock) {
+  const double rate_hz = clock.number("mean_rate_hz");
+  const double interval_s = clock.number("mean_interval_s");
+  const double u_interval_s = clock.number("u_mean_interval_s");
+  const std::string head = fmt::format("Source '{}': ", clock.text("source"));
+  if (std::isfinite(u_interval_s) && u_interval_s > 0.0 && interval_s > 0.0) {
+    const RoundedValue rounded =
+        round_by_uncertainty(rate_hz, 2.0 * rate_hz * u_interval_s / interval_s);
+    return fmt::format("{}mean sample rate {} Hz, U = {} Hz (k = 2).", head, rounded.value,
+                       rounded.u);
+  }
+  return fmt::format("{}mean sample rate {:.6g} Hz, for information: nothing is known of the "
+                     "uncertainty of the clock that it was compared with.",
+                     head, rate_hz);
+}
+
+void add_clock(XmlElement list, const StoredResult& result) {
+  for (const CheckedJson& clock : result.root().nodes("sample_clock")) {
+    add_said(list, "dyncal_sampleClock", "Sample clock", clock_text(clock));
+  }
+}
+
+void add_recipe(XmlElement list, const StoredResult& result) {
+  const std::string recipe = result.root().text_or("recipe", "");
+  if (recipe.empty()) {
+    return;
+  }
+  XmlElement data = add_meta_data(list, "dyncal_recipe", "Recipe: the bench file of the run");
+  XmlElement file = data.add("dcc:data").add("dcc:byteData");
+  file.add("dcc:fileName", "bench.toml");
+  file.add("dcc:mimeType", "application/toml");
+  file.add("dcc:dataBase64", base64(recipe));
+}
+
+void add_all_meta_data(XmlElement parent, const CertificateContents& contents) {
+  XmlElement list = parent.add("dcc:measurementMetaData");
+  add_said(list, "dyncal_resultSha256", "SHA-256 of the result file", contents.result.sha256);
+  add_said(list, "dyncal_recipeSha256", "SHA-256 of the recipe", contents.result.recipe_sha256);
+  add_said(list, "dyncal_recordingSha256", "SHA-256 of the recording", contents.recording_sha256);
+  add_clock(list, contents.result);
+  for (const std::string& flag : contents.flags) {
+    add_said(list, "dyncal_flag", "To be known with the values", flag);
+  }
+  if (contents.objections.empty()) {
+    add_said(list, "dyncal_losses", "Losses",
+             "No value stated here lacks samples for a reason that is not stated with it.");
+  }
+  add_recipe(list, contents.result);
+}
+
+} // namespace
+
+void add_measurement_results(XmlElement root, const CertificateContents& contents) {
+  XmlElement result = root.add("dcc:measurementResults").add("dcc:measurementResult");
+  add_text(result, "dcc:name", "Dynamic calibration with sinusoidal excitation");
+  add_methods(result, contents);
+  add_used_software(result, contents.result);
+  add_equipments(result, contents);
+  add_conditions(result, contents);
+  add_results(result, contents.channels, !contents.objections.empty());
+  add_all_meta_data(result, contents);
+}
+
+} // namespace dyncal::services

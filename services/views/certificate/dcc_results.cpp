@@ -1,0 +1,107 @@
+#include <algorithm>
+#include <functional>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "services/views/certificate/dcc.hpp"
+#include "services/views/report/stated_value.hpp"
+
+namespace dyncal::services {
+namespace {
+
+using Values = std::vector<StoredValue>;
+using Statement = StatedValue (*)(const StoredValue&);
+
+std::string joined(const Values& values, const std::function<std::string(const StoredValue&)>& of) {
+  std::vector<std::string> texts;
+  texts.reserve(values.size());
+  for (const StoredValue& value : values) {
+    texts.push_back(of(value));
+  }
+  return fmt::format("{}", fmt::join(texts, " "));
+}
+
+XmlElement add_quantity(XmlElement list, std::string_view type, std::string_view name) {
+  XmlElement quantity = list.add("dcc:quantity").attribute("refType", type);
+  add_text(quantity, "dcc:name", name);
+  return quantity;
+}
+
+// Without uncertainty: what was planned.
+void add_plain_list(XmlElement quantity, const std::string& values, std::string_view unit) {
+  XmlElement list = quantity.add("si:realListXMLList");
+  list.add("si:valueXMLList", values);
+  list.add("si:unitXMLList", unit);
+}
+
+void add_measured_list(XmlElement parent, const Values& values, Statement stated,
+                       std::string_view unit) {
+  XmlElement list = parent.add("si:realListXMLList");
+  list.add("si:valueXMLList",
+           joined(values, [&](const StoredValue& value) { return stated(value).value; }));
+  list.add("si:unitXMLList", unit);
+  XmlElement expanded =
+      list.add("si:measurementUncertaintyUnivariateXMLList").add("si:expandedMUXMLList");
+  expanded.add("si:valueExpandedMUXMLList",
+               joined(values, [&](const StoredValue& value) { return stated(value).expanded; }));
+  expanded.add("si:coverageFactorXMLList",
+               joined(values, [&](const StoredValue& value) { return stated(value).k; }));
+  expanded.add("si:coverageProbabilityXMLList", joined(values, [](const StoredValue& value) {
+                 return fmt::format("{:.4f}", value.coverage_probability);
+               }));
+  expanded.add("si:distributionXMLList",
+               joined(values, [](const StoredValue&) { return std::string("normal"); }));
+}
+
+void add_channel(XmlElement results, const CertifiedChannel& channel, bool forced) {
+  XmlElement result = results.add("dcc:result").attribute("refType", "dyncal_transferFunction");
+  add_text(result, "dcc:name", result_name(channel.channel));
+  std::string description =
+      "Complex transfer function over frequency, means over the repetitions. " + sign_convention();
+  if (const std::string advice = advice_on_repetitions(channel.values); !advice.empty()) {
+    description += " " + advice;
+  }
+  if (forced) {
+    description = "THIS CERTIFICATE WAS FORCED, see the first statement. " + description;
+  }
+  add_text(result, "dcc:description", description);
+  XmlElement list =
+      result.add("dcc:data").add("dcc:list").attribute("refType", "basic_1IndexTable");
+  add_plain_list(
+      add_quantity(list, "vibration_frequency basic_nominalValue basic_tableIndex0",
+                   "Excitation frequency"),
+      joined(channel.values, [](const StoredValue& value) { return value.frequency_text_hz; }),
+      "\\hertz");
+  add_plain_list(
+      add_quantity(list, "vibration_accelerationAmplitude basic_nominalValue",
+                   "Amplitude of the excitation, as planned"),
+      joined(channel.values,
+             [](const StoredValue& value) { return fmt::format("{:g}", value.level_m_s2); }),
+      "\\metre\\second\\tothe{-2}");
+  add_measured_list(add_quantity(list, "vibration_magnitude", "Magnitude"), channel.values,
+                    stated_magnitude, channel.unit);
+  XmlElement phase = add_quantity(list, "vibration_phase", "Phase").add("si:hybrid");
+  add_measured_list(phase, channel.values, stated_phase_rad, "\\radian");
+  add_measured_list(phase, channel.values, stated_phase_deg, "\\degree");
+  add_plain_list(add_quantity(list, "dyncal_repetitions", "Number of repetitions"),
+                 joined(channel.values,
+                        [](const StoredValue& value) { return std::to_string(value.repetitions); }),
+                 "\\one");
+}
+
+} // namespace
+
+std::string result_name(const std::string& channel) {
+  return "Transfer function of " + channel;
+}
+
+void add_results(XmlElement measurement_result, const std::vector<CertifiedChannel>& channels,
+                 bool forced) {
+  XmlElement results = measurement_result.add("dcc:results");
+  for (const CertifiedChannel& channel : channels) {
+    add_channel(results, channel, forced);
+  }
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,28 @@
+// In place of the rest of this room where libxml2 or xmlsec1 were missing when dyncal was built.
+#include "services/views/certificate/certificate_file.hpp"
+#include "services/views/certificate/verification.hpp"
+
+namespace dyncal::services {
+namespace {
+
+tl::unexpected<Error> not_in_this_build() {
+  return fail(ErrorCode::bad_argument,
+              "this build of dyncal has no certificates: libxml2 and xmlsec1 were missing when it "
+              "was built (Debian: apt install libxml2-dev libxmlsec1-dev, then build again)");
+}
+
+} // namespace
+
+Expected<CertificateContents> write_certificate(const CertificateFileRequest& /*request*/) {
+  return not_in_this_build();
+}
+
+Expected<std::vector<Finding>> verify(const VerificationRequest& /*request*/) {
+  return not_in_this_build();
+}
+
+const char* to_string(Verification /*question*/) {
+  return "certificate";
+}
+
+} // namespace dyncal::services

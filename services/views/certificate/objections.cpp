@@ -1,0 +1,152 @@
+#include "services/views/certificate/objections.hpp"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "services/views/certificate/refusing_flags.hpp"
+#include "services/views/report/stated_value.hpp"
+
+namespace dyncal::services {
+namespace {
+
+// Which values have a flag, by its name; a flag of the whole channel stands at "all frequencies".
+using FlagPlaces = std::map<std::string, std::vector<std::string>>;
+
+void add_place(FlagPlaces& places, const std::vector<std::string>& flags,
+               const std::string& place) {
+  for (const std::string& flag : flags) {
+    std::vector<std::string>& known = places[flag];
+    if (std::find(known.begin(), known.end(), place) == known.end()) {
+      known.push_back(place);
+    }
+  }
+}
+
+FlagPlaces flag_places(const StoredResult& result, const std::string& channel) {
+  FlagPlaces places;
+  for (const StoredChannel& one : result.channels) {
+    if (one.channel == channel) {
+      add_place(places, one.flag_names, "all frequencies");
+    }
+  }
+  const auto is_of_all = [&](const std::string& flag) { return places.contains(flag); };
+  FlagPlaces single;
+  for (const StoredValue& value : result.values_of(channel)) {
+    add_place(single, value.flag_names, value.frequency_text_hz + " Hz");
+  }
+  for (const StoredPoint& point : result.points_of(channel)) {
+    if (point.valid) {
+      add_place(single, point.flag_names, point.frequency_text_hz + " Hz");
+    }
+  }
+  for (auto& [flag, where] : single) {
+    if (!is_of_all(flag)) {
+      places.emplace(flag, std::move(where));
+    }
+  }
+  return places;
+}
+
+std::vector<std::string> flags_by_verdict(const StoredResult& result, const std::string& channel,
+                                          bool forbidding) {
+  std::vector<std::string> sentences;
+  for (const auto& [flag, places] : flag_places(result, channel)) {
+    const FlagVerdict verdict = verdict_on(parse_flag_name(flag));
+    if (verdict.forbids == forbidding) {
+      sentences.push_back(fmt::format("{} at {}: flag {}: {}", channel, fmt::join(places, ", "),
+                                      flag, verdict.reason));
+    }
+  }
+  return sentences;
+}
+
+void add_missing_values(const StoredResult& result, const std::string& channel,
+                        std::vector<std::string>& objections) {
+  std::size_t invalid = 0;
+  std::string first;
+  std::set<unsigned> measured_steps;
+  for (const StoredPoint& point : result.points_of(channel)) {
+    if (point.valid) {
+      measured_steps.insert(point.step);
+    } else if (++invalid == 1) {
+      first = fmt::format("at {} Hz, repetition {}: {}", point.frequency_text_hz, point.repetition,
+                          point.problem);
+    }
+  }
+  if (invalid > 0) {
+    objections.push_back(
+        fmt::format("{}: {} single results have no value; the first {}", channel, invalid, first));
+  }
+  if (measured_steps.size() < result.planned_steps) {
+    objections.push_back(fmt::format("{}: {} of {} planned steps have a value", channel,
+                                     measured_steps.size(), result.planned_steps));
+  }
+  for (const StoredValue& value : result.values_of(channel)) {
+    if (!can_be_stated(value)) {
+      objections.push_back(fmt::format("{} at {} Hz: the result has no value with a usable U; it "
+                                       "is left out",
+                                       channel, value.frequency_text_hz));
+    }
+  }
+}
+
+// Such flags have a verdict of their own.
+bool explains_loss(const std::string& name) {
+  constexpr std::array flags{ResultFlag::samples_lost, ResultFlag::records_lost,
+                             ResultFlag::shots_missing, ResultFlag::shots_left_out,
+                             ResultFlag::excitation_broken_off};
+  return std::find(flags.begin(), flags.end(), parse_flag_name(name)) != flags.end();
+}
+
+void add_losses(const StoredResult& result, const std::string& channel,
+                std::vector<std::string>& objections) {
+  for (const StoredPoint& point : result.points_of(channel)) {
+    const bool is_explained =
+        std::any_of(point.flag_names.begin(), point.flag_names.end(), explains_loss);
+    if (point.valid && point.lost > 0 && !is_explained) {
+      objections.push_back(fmt::format("{} at {} Hz, repetition {}: {} samples were lost within "
+                                       "the step, and no flag says why",
+                                       channel, point.frequency_text_hz, point.repetition,
+                                       point.lost));
+    }
+  }
+}
+
+} // namespace
+
+std::vector<std::string> objections_to(const StoredResult& result,
+                                       const std::vector<std::string>& channels) {
+  std::vector<std::string> objections;
+  if (result.interrupted) {
+    objections.emplace_back("the run was interrupted");
+  }
+  if (!result.problem.empty()) {
+    objections.push_back("the run ended early: " + result.problem);
+  }
+  for (const std::string& channel : channels) {
+    add_missing_values(result, channel, objections);
+    add_losses(result, channel, objections);
+    for (std::string& sentence : flags_by_verdict(result, channel, true)) {
+      objections.push_back(std::move(sentence));
+    }
+  }
+  return objections;
+}
+
+std::vector<std::string> stated_flags(const StoredResult& result,
+                                      const std::vector<std::string>& channels) {
+  std::vector<std::string> sentences;
+  for (const std::string& channel : channels) {
+    for (std::string& sentence : flags_by_verdict(result, channel, false)) {
+      sentences.push_back(std::move(sentence));
+    }
+  }
+  return sentences;
+}
+
+} // namespace dyncal::services

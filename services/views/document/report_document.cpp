@@ -1,0 +1,176 @@
+#include "services/views/document/report_document.hpp"
+
+#include <algorithm>
+#include <array>
+#include <ctime>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "services/base/version.hpp"
+#include "services/views/document/html.hpp"
+#include "services/views/document/report_front.hpp"
+#include "services/views/document/report_results.hpp"
+#include "services/views/document/report_setup.hpp"
+#include "services/views/document/report_style.hpp"
+
+namespace dyncal::services {
+namespace {
+
+std::string today() {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  std::array<char, 16> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%d", &local);
+  return text.data();
+}
+
+std::vector<std::string> channels_with_values(const StoredResult& result) {
+  std::vector<std::string> names;
+  for (const StoredValue& value : result.values) {
+    if (std::find(names.begin(), names.end(), value.channel) == names.end()) {
+      names.push_back(value.channel);
+    }
+  }
+  return names;
+}
+
+// Those asked for, else those that respond, else all.
+Expected<std::vector<std::string>> chosen_channels(const StoredResult& result,
+                                                   const std::vector<std::string>& asked) {
+  const std::vector<std::string> known = channels_with_values(result);
+  for (const std::string& channel : asked) {
+    if (std::find(known.begin(), known.end(), channel) == known.end()) {
+      return fail(ErrorCode::bad_argument,
+                  fmt::format("{}: channel '{}' has no value; this run has: {}",
+                              result.file.string(), channel, fmt::join(known, ", ")));
+    }
+  }
+  if (!asked.empty()) {
+    return asked;
+  }
+  std::vector<std::string> responding;
+  for (const StoredChannel& channel : result.channels) {
+    if (channel.responds && std::find(known.begin(), known.end(), channel.channel) != known.end()) {
+      responding.push_back(channel.channel);
+    }
+  }
+  return responding.empty() ? known : responding;
+}
+
+// What the run folder has beside the transfer functions, which are drawn again.
+void add_pictures(const std::filesystem::path& run, ReportContents& contents) {
+  std::error_code unknown;
+  if (!std::filesystem::is_directory(run, unknown)) {
+    return;
+  }
+  std::vector<std::filesystem::path> paths;
+  for (const std::filesystem::path& folder : {run, run / "figures"}) {
+    for (std::filesystem::directory_iterator entry(folder, unknown), end; !unknown && entry != end;
+         entry.increment(unknown)) {
+      const std::string name = entry->path().filename().string();
+      if (entry->path().extension() == ".svg" && name.starts_with("interval-")) {
+        paths.push_back(entry->path());
+      }
+    }
+  }
+  std::sort(paths.begin(), paths.end());
+  for (const std::filesystem::path& path : paths) {
+    auto picture = read_picture(path);
+    if (picture) {
+      contents.pictures.push_back(std::move(*picture));
+    } else {
+      contents.left_out.push_back(picture.error().message);
+    }
+  }
+}
+
+Expected<void> add_laboratory(const ReportRequest& request, ReportContents& contents) {
+  if (!request.laboratory.empty()) {
+    auto laboratory = read_laboratory_file(request.laboratory);
+    if (!laboratory) {
+      return fail(laboratory.error());
+    }
+    contents.laboratory = std::move(*laboratory);
+  }
+  if (!request.sensor.empty()) {
+    auto sensor = read_sensor_file(request.sensor);
+    if (!sensor) {
+      return fail(sensor.error());
+    }
+    contents.sensor = std::move(*sensor);
+  }
+  return {};
+}
+
+// Texts that stand at the edges of every page.
+std::string running_texts(const ReportContents& contents) {
+  const std::string foot =
+      contents.laboratory && !contents.laboratory->letterhead.footer.empty()
+          ? contents.laboratory->letterhead.footer
+          : fmt::format("result file {}...", contents.result.sha256.substr(0, 16));
+  return element("div", issuer_of(contents), "running issuer-text") +
+         element("div", fmt::format("{}, run {}", title_of(contents), contents.result.run),
+                 "running subject-text") +
+         element("div", foot, "running foot-text");
+}
+
+std::string body_of(const ReportContents& contents) {
+  std::string html =
+      running_texts(contents) + letterhead(contents) + warnings(contents) + summary(contents);
+  for (std::size_t i = 0; i < contents.channels.size(); ++i) {
+    html += channel_section(contents, contents.channels[i], i + 1);
+  }
+  html += flag_section(contents) + conditions_section(contents) + losses_section(contents) +
+          clock_section(contents) + remarks(contents) + signatures(contents);
+  html += other_channels(contents) + devices_section(contents) + software_section(contents) +
+          single_results(contents) + recipe_section(contents);
+  return html;
+}
+
+} // namespace
+
+Expected<ReportContents> gather_report(const ReportRequest& request) {
+  ReportContents contents;
+  auto result = read_stored_result(request.run);
+  if (!result) {
+    return fail(result.error());
+  }
+  contents.result = std::move(*result);
+  auto channels = chosen_channels(contents.result, request.channels);
+  if (!channels) {
+    return fail(channels.error());
+  }
+  contents.channels = std::move(*channels);
+  if (const auto added = add_laboratory(request, contents); !added) {
+    return fail(added.error());
+  }
+  add_pictures(request.run, contents);
+  contents.issued = today();
+  contents.software = software_version();
+  return contents;
+}
+
+Expected<std::string> report_html(const ReportContents& contents) {
+  std::string body;
+  try {
+    body = body_of(contents);
+  } catch (const BadKey& bad) {
+    return fail(ErrorCode::bad_file,
+                fmt::format("{}: {}", contents.result.file.string(), bad.sentence));
+  }
+  // The policy forbids a browser to fetch or run anything, whatever a text might hold.
+  return fmt::format("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+                     "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
+                     "img-src data:; style-src 'unsafe-inline'\">\n"
+                     "<meta name=\"viewport\" content=\"width=device-width\">\n"
+                     "<meta name=\"author\" content=\"{}\">\n<meta name=\"generator\" "
+                     "content=\"{}\">\n<title>{}</title>\n<style>{}</style>\n</head>\n"
+                     "<body>\n<main>\n{}</main>\n</body>\n</html>\n",
+                     escaped(issuer_of(contents)), escaped(contents.software),
+                     escaped(title_of(contents) + ", run " + contents.result.run), report_style(),
+                     body);
+}
+
+} // namespace dyncal::services

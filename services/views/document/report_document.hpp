@@ -1,0 +1,35 @@
+// The report of a run as one HTML file that needs nothing else: no network, no script, no font; its
+// figures are drawn by services/views/figures and stand in it as SVG. The PDF is made of the same
+// file (pdf.hpp).
+//
+// In order: letterhead and summary, values with U and k, figures, flags, uncertainty budget,
+// conditions, losses, sample clock, signatures; annexes: devices, corrections, software and hashes,
+// single results, recipe. Whatever comes from a file is escaped.
+//
+// Fails (bad_file) when the result file lacks a key; (bad_argument) when a channel that was asked
+// for has no value. Any thread.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "services/base/error.hpp"
+#include "services/views/document/report_contents.hpp"
+
+namespace dyncal::services {
+
+struct ReportRequest {
+  std::filesystem::path run;         // a run folder or a result file
+  std::filesystem::path laboratory;  // empty: no letterhead
+  std::filesystem::path sensor;      // empty: what the run knows of it
+  std::vector<std::string> channels; // empty: all that respond
+};
+
+// Reads all files that a report is made of.
+[[nodiscard]] Expected<ReportContents> gather_report(const ReportRequest& request);
+
+[[nodiscard]] Expected<std::string> report_html(const ReportContents& contents);
+
+} // namespace dyncal::services

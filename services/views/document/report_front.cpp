@@ -1,0 +1,222 @@
+#include "services/views/document/report_front.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "services/views/document/html.hpp"
+#include "services/views/report/stated_value.hpp"
+
+namespace dyncal::services {
+namespace {
+
+std::vector<std::string> address_lines(const Contact& contact) {
+  std::vector<std::string> lines;
+  const auto add = [&](const std::string& a, const std::string& b) {
+    const std::string line = a.empty() || b.empty() ? a + b : a + " " + b;
+    if (!line.empty()) {
+      lines.push_back(line);
+    }
+  };
+  add(contact.street, contact.street_number);
+  add(contact.country + (contact.post_code.empty() ? "" : "-" + contact.post_code), contact.city);
+  add(contact.email, "");
+  add(contact.phone, "");
+  add(contact.web, "");
+  return lines;
+}
+
+std::string address_html(const std::vector<std::string>& lines) {
+  std::string html;
+  for (const std::string& line : lines) {
+    html += escaped(line) + "<br>";
+  }
+  return html;
+}
+
+std::string joined_texts(const std::vector<std::string>& texts) {
+  std::vector<std::string> filled;
+  std::copy_if(texts.begin(), texts.end(), std::back_inserter(filled),
+               [](const std::string& text) { return !text.empty(); });
+  return fmt::format("{}", fmt::join(filled, ", "));
+}
+
+// As the source of the channel under calibration described itself.
+std::string described_sensor(const ReportContents& contents) {
+  const std::string& channel = contents.channels.front();
+  const std::string name = channel.substr(0, channel.find('/'));
+  for (const CheckedJson& source : contents.result.root().nodes("sources")) {
+    if (source.text("source") == name) {
+      const std::string serial = source.text_or("serial", "");
+      return joined_texts({source.text_or("device", ""), serial.empty() ? "" : "serial " + serial});
+    }
+  }
+  return "";
+}
+
+std::string sensor_text(const ReportContents& contents) {
+  if (!contents.sensor) {
+    return described_sensor(contents);
+  }
+  const SensorFile& sensor = *contents.sensor;
+  return joined_texts({sensor.name, sensor.manufacturer, sensor.model, "serial " + sensor.serial,
+                       sensor.firmware.empty() ? "" : "firmware " + sensor.firmware,
+                       sensor.owner_identification});
+}
+
+std::string customer_text(const ReportContents& contents) {
+  const Contact* customer = nullptr;
+  if (contents.sensor && contents.sensor->customer) {
+    customer = &*contents.sensor->customer;
+  } else if (contents.laboratory && contents.laboratory->customer) {
+    customer = &*contents.laboratory->customer;
+  }
+  if (customer == nullptr) {
+    return "";
+  }
+  std::vector<std::string> lines = address_lines(*customer);
+  lines.insert(lines.begin(), customer->name);
+  return joined_texts(lines);
+}
+
+std::string reference_text(const ReportContents& contents) {
+  if (!contents.laboratory || !contents.laboratory->reference) {
+    return "";
+  }
+  const ReferenceStandard& reference = *contents.laboratory->reference;
+  return joined_texts({reference.equipment.name, reference.equipment.manufacturer,
+                       reference.equipment.model, "serial " + reference.equipment.serial}) +
+         fmt::format("; certificate {} of {}{}. {}", reference.certificate, reference.issued_by,
+                     reference.issued.empty() ? "" : ", " + reference.issued,
+                     reference.traceability);
+}
+
+// "2026-03-01 12:00:05 UTC"
+std::string readable_instant(const std::string& utc) {
+  return utc.size() < 19 ? utc : fmt::format("{} {} UTC", utc.substr(0, 10), utc.substr(11, 8));
+}
+
+std::string period(const StoredResult& result) {
+  return result.began_utc.empty() ? std::string("not known: no stamps in UTC")
+                                  : fmt::format("{} to {}", readable_instant(result.began_utc),
+                                                readable_instant(result.ended_utc));
+}
+
+} // namespace
+
+std::string title_of(const ReportContents& contents) {
+  return contents.laboratory && !contents.laboratory->letterhead.title.empty()
+             ? contents.laboratory->letterhead.title
+             : "Calibration report";
+}
+
+std::string issuer_of(const ReportContents& contents) {
+  return contents.laboratory ? contents.laboratory->laboratory.name
+                             : "bench " + contents.result.bench;
+}
+
+std::string letterhead(const ReportContents& contents) {
+  std::string html = "<header>\n<div class=\"issuer\">\n";
+  if (contents.laboratory) {
+    const LaboratoryFile& file = *contents.laboratory;
+    if (file.logo) {
+      html +=
+          fmt::format("<img class=\"logo\" src=\"{}\" alt=\"\">\n", escaped(file.logo->data_uri()));
+    }
+    html += element("p", file.laboratory.name, "name");
+    std::vector<std::string> lines = file.letterhead.lines;
+    const std::vector<std::string> address = address_lines(file.laboratory);
+    lines.insert(lines.end(), address.begin(), address.end());
+    if (!file.accreditation.empty()) {
+      lines.push_back("Accreditation " + file.accreditation);
+    }
+    html += "<p class=\"address\">" + address_html(lines) + "</p>\n";
+  }
+  html += "</div>\n<div class=\"title\">\n" + element("h1", title_of(contents));
+  std::vector<std::string> lines;
+  if (contents.sensor && !contents.sensor->certificate_number.empty()) {
+    lines.push_back("No. " + contents.sensor->certificate_number);
+  }
+  lines.push_back("Run " + contents.result.run);
+  lines.push_back("Issued " + contents.issued);
+  return html + "<p class=\"address\">" + address_html(lines) + "</p>\n</div>\n</header>\n";
+}
+
+std::string warnings(const ReportContents& contents) {
+  const StoredResult& result = contents.result;
+  std::string html;
+  if (result.interrupted) {
+    html += element("p", "The run was interrupted: not every planned step was measured.");
+  }
+  if (!result.problem.empty()) {
+    html += element("p", "The run ended early: " + result.problem);
+  }
+  const auto invalid =
+      std::count_if(result.points.begin(), result.points.end(), [&](const StoredPoint& point) {
+        return !point.valid && std::find(contents.channels.begin(), contents.channels.end(),
+                                         point.channel) != contents.channels.end();
+      });
+  if (invalid > 0) {
+    html += element("p", fmt::format("{} single results have no value; the reasons stand below "
+                                     "the tables.",
+                                     invalid));
+  }
+  if (!result.flags.empty()) {
+    html += element(
+        "p",
+        fmt::format("Some values have flags (F1{}), which are explained below.",
+                    result.flags.size() > 1 ? fmt::format(" to F{}", result.flags.size()) : ""));
+  }
+  return html.empty() ? "" : "<aside>\n" + html + "</aside>\n";
+}
+
+std::string summary(const ReportContents& contents) {
+  const StoredResult& result = contents.result;
+  DefinitionTable table;
+  table.add("Object", sensor_text(contents));
+  table.add("Channels", fmt::format("{}", fmt::join(contents.channels, ", ")));
+  table.add("Customer", customer_text(contents));
+  table.add("Measured", period(result));
+  table.add("Bench, run", fmt::format("{}, {}", result.bench, result.run));
+  table.add("Excitation", fmt::format("sinusoidal, {}; {} steps planned",
+                                      frequency_range(result.values_of(contents.channels.front())),
+                                      result.planned_steps));
+  table.add("Method", fmt::format("{}: {}", result.method, method_description(result.method)));
+  table.add("Reference", reference_text(contents));
+  table.add("Phase", sign_convention());
+  table.add("Uncertainty", "JCGM 100:2008 (GUM). " + rounding_rule());
+  return "<h2>Summary</h2>\n" + table.finish();
+}
+
+std::string remarks(const ReportContents& contents) {
+  if (!contents.laboratory || contents.laboratory->letterhead.remarks.empty()) {
+    return "";
+  }
+  std::string html = "<h2>Remarks</h2>\n";
+  for (const std::string& text : contents.laboratory->letterhead.remarks) {
+    html += element("p", text);
+  }
+  return html;
+}
+
+std::string signatures(const ReportContents& contents) {
+  std::vector<Person> persons;
+  if (contents.laboratory) {
+    persons = contents.laboratory->persons;
+  }
+  if (persons.empty()) {
+    persons.push_back({"", "Calibrated by", false});
+  }
+  std::string html = "<section class=\"signatures\">\n";
+  html += element(
+      "p", contents.laboratory ? contents.laboratory->laboratory.city + ", " : "Date: ", "place");
+  html += "<div class=\"signers\">\n";
+  for (const Person& person : persons) {
+    html += fmt::format("<div class=\"signer\"><div class=\"line\"></div>{}{}</div>\n",
+                        element("p", person.name, "name"), element("p", person.role));
+  }
+  return html + "</div>\n</section>\n";
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,37 @@
+#include "services/views/figures/figure.hpp"
+
+#include <algorithm>
+
+#include <fmt/core.h>
+
+#include "services/base/output_file.hpp"
+
+namespace dyncal::services::figures {
+
+Expected<std::vector<std::filesystem::path>> write(const Figure& figure,
+                                                   const std::filesystem::path& folder) {
+  if (const auto possible = check_output_folder(folder); !possible) {
+    return fail(possible.error());
+  }
+  const std::vector<std::filesystem::path> paths = {folder / (figure.name + ".svg"),
+                                                    folder / (figure.name + ".csv")};
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    if (auto written = write_output_file(paths[i], i == 0 ? figure.svg() : figure.csv); !written) {
+      return fail(written.error());
+    }
+  }
+  return paths;
+}
+
+std::string csv_comment(const std::string& text) {
+  std::string line = "# " + text + "\n";
+  std::replace_if(
+      line.begin(), line.end() - 1, [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  return line;
+}
+
+std::string csv_number(double value) {
+  return fmt::format("{:.17g}", value);
+}
+
+} // namespace dyncal::services::figures

@@ -1,0 +1,235 @@
+#include "services/views/figures/transfer_function.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <numbers>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace dyncal::services::figures {
+namespace {
+
+constexpr double panel_height = 270;
+
+// With its error bar.
+using Quantity = Point (*)(const ValueOverFrequency&, ErrorBars);
+
+Point magnitude(const ValueOverFrequency& point, ErrorBars bars) {
+  return {point.frequency_hz, point.value.magnitude, half_magnitude_bar(point, bars)};
+}
+Point phase(const ValueOverFrequency& point, ErrorBars bars) {
+  return {point.frequency_hz, point.value.phase_rad, half_phase_bar(point, bars)};
+}
+
+// The phase plus as many whole turns as bring it next to the mean of the same frequency.
+ValueOverFrequency in_turn_of_mean(ValueOverFrequency point, const TransferFunctionData& data) {
+  const ValueOverFrequency* mean = mean_of(point, data);
+  if (mean == nullptr) {
+    return point;
+  }
+  constexpr double turn = 2 * std::numbers::pi;
+  point.value.phase_rad +=
+      turn * std::round((mean->value.phase_rad - point.value.phase_rad) / turn);
+  return point;
+}
+
+std::vector<Series> repetition_series(const TransferFunctionData& data, Quantity quantity) {
+  const ErrorBars bars = data.means_are_plain ? data.error_bars : ErrorBars::none;
+  std::map<std::uint32_t, std::vector<Point>> by_repetition;
+  for (const RepetitionPoint& one : data.repetitions) {
+    Point point = quantity(in_turn_of_mean(one.point, data), bars);
+    point.step = one.step;
+    by_repetition[one.repetition].push_back(point);
+  }
+  std::vector<Series> series;
+  for (auto& [repetition, points] : by_repetition) {
+    const auto index = series.size();
+    // Markers of different size, because repetitions of a good sensor lie on top of each other.
+    series.push_back({.label = repetition_label(repetition, bars),
+                      .points = std::move(points),
+                      .colour = series_colour(index),
+                      .marker = series_marker(index),
+                      .radius = 6.0 - 1.2 * static_cast<double>(index % 3)});
+  }
+  return series;
+}
+
+std::string mean_label(const TransferFunctionData& data) {
+  if (data.means_are_plain) {
+    return "mean so far";
+  }
+  return data.error_bars == ErrorBars::none ? "mean"
+                                            : fmt::format("mean ± {}", symbol_of(data.error_bars));
+}
+
+Series mean_series(const TransferFunctionData& data, Quantity quantity) {
+  const ErrorBars bars = data.means_are_plain ? ErrorBars::none : data.error_bars;
+  Series series{.label = mean_label(data), .colour = "#222222", .joined = true, .line_width = 1.1};
+  for (const auto& point : data.mean) {
+    series.points.push_back(quantity(point, bars));
+  }
+  std::sort(series.points.begin(), series.points.end(),
+            [](const auto& a, const auto& b) { return a.x < b.x; });
+  return series;
+}
+
+// A ring around every mean that has a flag.
+Series flagged_series(const TransferFunctionData& data, Quantity quantity) {
+  Series series{
+      .label = "flagged, see below", .colour = "#CC0000", .marker = Marker::circle, .radius = 9};
+  for (const auto& point : data.mean) {
+    if (!point.flags.empty()) {
+      series.points.push_back(quantity(point, ErrorBars::none));
+    }
+  }
+  return series;
+}
+
+// The straight line of the phase, which the logarithmic axis bends.
+Series group_delay_series(const TransferFunctionData& data, const analysis::GroupDelay& delay) {
+  Range frequencies(Scale::logarithmic);
+  for (const auto& point : data.mean) {
+    frequencies.include(point.frequency_hz);
+  }
+  Series series{.label = fmt::format("group delay {:.4g} ms", 1e3 * delay.delay_s),
+                .colour = "#999999",
+                .joined = true,
+                .dashes = "6 4",
+                .in_enlargement = false};
+  constexpr int steps = 100;
+  for (int i = 0; i <= steps && !frequencies.empty(); ++i) {
+    const double frequency = frequencies.low() * std::pow(frequencies.high() / frequencies.low(),
+                                                          static_cast<double>(i) / steps);
+    series.points.push_back(
+        {frequency, delay.intercept_rad - 2 * std::numbers::pi * frequency * delay.delay_s});
+  }
+  return series;
+}
+
+Panel quantity_panel(const TransferFunctionData& data, Quantity quantity) {
+  Panel panel;
+  panel.x_label = "frequency in Hz";
+  panel.x_scale = Scale::logarithmic;
+  panel.enlarges_low_x = true;
+  panel.series = repetition_series(data, quantity);
+  if (!data.mean.empty()) {
+    panel.series.insert(panel.series.begin(), mean_series(data, quantity));
+  }
+  if (Series flagged = flagged_series(data, quantity); !flagged.points.empty()) {
+    panel.series.push_back(std::move(flagged));
+  }
+  return panel;
+}
+
+std::string csv_of(const TransferFunctionData& data) {
+  const auto unit = data.unit.empty() ? std::string("a unit that is not known") : data.unit;
+  auto csv = csv_comment(data.title);
+  csv += csv_comment(fmt::format("magnitude in {}; phase: lead, rad (ISO 2041), a delay has "
+                                 "negative phase; u: standard uncertainty; U: expanded, 95.45 %, "
+                                 "of means",
+                                 unit));
+  if (data.group_delay) {
+    csv += csv_comment(fmt::format(
+        "group delay {} s, u {} s, intercept {} rad", csv_number(data.group_delay->delay_s),
+        csv_number(data.group_delay->u_delay_s), csv_number(data.group_delay->intercept_rad)));
+  }
+  if (!data.subtitle.empty()) {
+    csv += csv_comment(data.subtitle);
+  }
+  csv += csv_comment("phase_rad of the means is continuous over frequency, of repetitions in (-pi, "
+                     "pi]");
+  for (const std::string& line : data.legend) {
+    csv += csv_comment("flag " + line);
+  }
+  csv += "repetition,frequency_hz,magnitude,u_magnitude,phase_rad,u_phase_rad,flags,U_magnitude,"
+         "U_phase_rad\n";
+  const auto add = [&](const std::string& repetition, const ValueOverFrequency& p) {
+    fmt::format_to(std::back_inserter(csv), "{},{},{},{},{},{},{},{},{}\n", repetition,
+                   csv_number(p.frequency_hz), csv_number(p.value.magnitude),
+                   csv_number(p.value.u_magnitude), csv_number(p.value.phase_rad),
+                   csv_number(p.value.u_phase_rad), p.flags,
+                   repetition == "mean" ? csv_number(p.expanded_magnitude) : "",
+                   repetition == "mean" ? csv_number(p.expanded_phase_rad) : "");
+  };
+  for (const RepetitionPoint& one : data.repetitions) {
+    add(std::to_string(one.repetition), one.point);
+  }
+  for (const auto& point : data.mean) {
+    add("mean", point);
+  }
+  return csv;
+}
+
+} // namespace
+
+const char* symbol_of(ErrorBars bars) {
+  switch (bars) {
+  case ErrorBars::standard:
+    return "u";
+  case ErrorBars::expanded:
+    return "U";
+  case ErrorBars::none:
+    break;
+  }
+  return "";
+}
+
+double half_magnitude_bar(const ValueOverFrequency& value, ErrorBars bars) {
+  switch (bars) {
+  case ErrorBars::standard:
+    return value.value.u_magnitude;
+  case ErrorBars::expanded:
+    return value.expanded_magnitude;
+  case ErrorBars::none:
+    break;
+  }
+  return 0.0;
+}
+
+double half_phase_bar(const ValueOverFrequency& value, ErrorBars bars) {
+  switch (bars) {
+  case ErrorBars::standard:
+    return value.value.u_phase_rad;
+  case ErrorBars::expanded:
+    return value.expanded_phase_rad;
+  case ErrorBars::none:
+    break;
+  }
+  return 0.0;
+}
+
+std::string repetition_label(std::uint32_t repetition, ErrorBars bars) {
+  return bars == ErrorBars::none ? fmt::format("#{}", repetition)
+                                 : fmt::format("#{} ± {}", repetition, symbol_of(bars));
+}
+
+const ValueOverFrequency* mean_of(const ValueOverFrequency& repetition,
+                                  const TransferFunctionData& data) {
+  const auto same = std::find_if(data.mean.begin(), data.mean.end(), [&](const auto& mean) {
+    return mean.level_m_s2 == repetition.level_m_s2 &&
+           std::abs(mean.frequency_hz - repetition.frequency_hz) <= 1e-6 * mean.frequency_hz;
+  });
+  return same == data.mean.end() ? nullptr : &*same;
+}
+
+Figure transfer_function_figure(const TransferFunctionData& data, const std::string& name) {
+  Picture picture{.title = {data.title, data.subtitle},
+                  .panels = {quantity_panel(data, magnitude), quantity_panel(data, phase)},
+                  .below = data.legend,
+                  .panel_height = panel_height};
+  Panel& magnitudes = picture.panels.front();
+  magnitudes.y_label =
+      data.unit.empty() ? "magnitude (unit not known)" : "magnitude in " + data.unit;
+  magnitudes.x_tick_labels = false;
+  Panel& phases = picture.panels.back();
+  phases.y_label = "phase (lead) in rad";
+  if (data.group_delay) {
+    phases.series.insert(phases.series.begin(), group_delay_series(data, *data.group_delay));
+  }
+  return {name, std::move(picture), csv_of(data)};
+}
+
+} // namespace dyncal::services::figures

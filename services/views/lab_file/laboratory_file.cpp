@@ -1,0 +1,148 @@
+#include "services/views/lab_file/laboratory_file.hpp"
+
+#include <fmt/core.h>
+#include <toml++/toml.h>
+
+#include "services/bench/file/toml_text.hpp"
+#include "services/views/report/stored_result.hpp"
+
+namespace dyncal::services {
+namespace {
+
+constexpr std::uintmax_t max_file_bytes = 1U << 20U;
+
+// The tables [[key]], each read by `read` and finished.
+template <class Item>
+std::vector<Item> read_tables_of(TomlTable& table, const std::string& key, const std::string& file,
+                                 BenchProblems& problems, Item (*read)(TomlTable&)) {
+  std::vector<Item> items;
+  const toml::node* node = table.node(key);
+  if (node == nullptr) {
+    return items;
+  }
+  const toml::array* list = node->as_array();
+  if (list == nullptr || !list->is_homogeneous(toml::node_type::table)) {
+    table.refuse(key, "must be a list of tables, each begun by [[" + key + "]]");
+    return items;
+  }
+  for (const toml::node& one : *list) {
+    TomlTable inner(*one.as_table(), key, file, problems);
+    items.push_back(read(inner));
+    inner.finish();
+  }
+  return items;
+}
+
+Person read_person(TomlTable& table) {
+  return {.name = required_line(table, "name"),
+          .role = line_of(table, "role"),
+          .main_signer = table.yes_no("main_signer", false)};
+}
+
+std::string standard_of(TomlTable& table) {
+  return table.one_of("standard", {"ISO 16063-11", "ISO 16063-21"}, "");
+}
+
+ReferenceStandard read_reference(TomlTable& table) {
+  ReferenceStandard reference{.equipment = read_equipment(table),
+                              .standard = table.has("standard") ? standard_of(table) : "",
+                              .certificate = required_line(table, "certificate"),
+                              .issued_by = required_line(table, "issued_by"),
+                              .issued = date_of(table, "issued"),
+                              .traceability = required_line(table, "traceability")};
+  if (reference.equipment.serial.empty()) {
+    table.refuse("serial", "is missing");
+  }
+  return reference;
+}
+
+Letterhead read_letterhead(TomlTable& table) {
+  return {.title = line_of(table, "title"),
+          .lines = lines_of(table, "lines"),
+          .remarks = lines_of(table, "remarks"),
+          .footer = line_of(table, "footer")};
+}
+
+struct ReadTables {
+  LaboratoryFile file;
+  std::string logo; // as the file names it
+};
+
+void read_laboratory(TomlTable& root, ReadTables& read) {
+  auto laboratory = root.table("laboratory");
+  if (!laboratory) {
+    root.refuse("laboratory", "is missing: the table [laboratory] with name, city and country");
+    return;
+  }
+  read.file.laboratory = read_contact(*laboratory);
+  read.file.accreditation = line_of(*laboratory, "accreditation");
+  read.logo = line_of(*laboratory, "logo");
+  laboratory->finish();
+}
+
+void read_optional_tables(TomlTable& root, LaboratoryFile& file) {
+  if (auto letterhead = root.table("letterhead")) {
+    file.letterhead = read_letterhead(*letterhead);
+    letterhead->finish();
+  }
+  if (auto customer = root.table("customer")) {
+    file.customer = read_contact(*customer);
+    customer->finish();
+  }
+  if (auto reference = root.table("reference")) {
+    file.reference = read_reference(*reference);
+    reference->finish();
+  }
+  if (auto conditions = root.table("conditions")) {
+    file.conditions = read_conditions(*conditions);
+    conditions->finish();
+  }
+}
+
+ReadTables read_tables(const toml::table& parsed, const std::filesystem::path& path,
+                       BenchProblems& problems) {
+  ReadTables read;
+  read.file.path = path;
+  TomlTable root(parsed, "", path.string(), problems);
+  read_laboratory(root, read);
+  read_optional_tables(root, read.file);
+  read.file.persons = read_tables_of(root, "person", path.string(), problems, read_person);
+  read.file.equipment = read_tables_of(root, "equipment", path.string(), problems, read_equipment);
+  read.file.statements = lines_of(root, "statements");
+  root.finish();
+  return read;
+}
+
+} // namespace
+
+Expected<LaboratoryFile> parse_laboratory_file(std::string_view text,
+                                               const std::filesystem::path& path) {
+  const auto parsed = parse_toml(text, path);
+  if (!parsed) {
+    return fail(ErrorCode::bad_file, parsed.error().text());
+  }
+  BenchProblems problems;
+  ReadTables read = read_tables(*parsed, path, problems);
+  if (!problems.empty()) {
+    return fail(ErrorCode::bad_file, problems.front().text());
+  }
+  if (!read.logo.empty()) {
+    auto logo = read_picture(path.parent_path() / read.logo);
+    if (!logo) {
+      return fail(ErrorCode::bad_file, fmt::format("{}: key 'laboratory.logo': {}", path.string(),
+                                                   logo.error().message));
+    }
+    read.file.logo = std::move(*logo);
+  }
+  return read.file;
+}
+
+Expected<LaboratoryFile> read_laboratory_file(const std::filesystem::path& path) {
+  const auto text = read_whole_file(path, max_file_bytes);
+  if (!text) {
+    return fail(text.error());
+  }
+  return parse_laboratory_file(*text, path);
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,76 @@
+#include "services/views/lab_file/sensor_file.hpp"
+
+#include <fmt/core.h>
+#include <toml++/toml.h>
+
+#include "services/bench/file/toml_text.hpp"
+#include "services/views/report/stored_result.hpp"
+
+namespace dyncal::services {
+namespace {
+
+constexpr std::uintmax_t max_file_bytes = 1U << 20U;
+
+void read_sensor(TomlTable& root, SensorFile& file) {
+  auto sensor = root.table("sensor");
+  if (!sensor) {
+    root.refuse("sensor",
+                "is missing: the table [sensor] with name, manufacturer, model and serial");
+    return;
+  }
+  file.name = required_line(*sensor, "name");
+  file.manufacturer = required_line(*sensor, "manufacturer");
+  file.model = required_line(*sensor, "model");
+  file.serial = required_line(*sensor, "serial");
+  file.firmware = line_of(*sensor, "firmware");
+  file.owner_identification = line_of(*sensor, "owner_identification");
+  file.received = date_of(*sensor, "received");
+  sensor->finish();
+}
+
+SensorFile read_tables(const toml::table& parsed, const std::filesystem::path& path,
+                       BenchProblems& problems) {
+  SensorFile file;
+  file.path = path;
+  TomlTable root(parsed, "", path.string(), problems);
+  read_sensor(root, file);
+  if (auto certificate = root.table("certificate")) {
+    file.certificate_number = required_line(*certificate, "number");
+    certificate->finish();
+  }
+  if (auto customer = root.table("customer")) {
+    file.customer = read_contact(*customer);
+    customer->finish();
+  }
+  if (auto conditions = root.table("conditions")) {
+    file.conditions = read_conditions(*conditions);
+    conditions->finish();
+  }
+  root.finish();
+  return file;
+}
+
+} // namespace
+
+Expected<SensorFile> parse_sensor_file(std::string_view text, const std::filesystem::path& path) {
+  const auto parsed = parse_toml(text, path);
+  if (!parsed) {
+    return fail(ErrorCode::bad_file, parsed.error().text());
+  }
+  BenchProblems problems;
+  SensorFile file = read_tables(*parsed, path, problems);
+  if (!problems.empty()) {
+    return fail(ErrorCode::bad_file, problems.front().text());
+  }
+  return file;
+}
+
+Expected<SensorFile> read_sensor_file(const std::filesystem::path& path) {
+  const auto text = read_whole_file(path, max_file_bytes);
+  if (!text) {
+    return fail(text.error());
+  }
+  return parse_sensor_file(*text, path);
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,35 @@
+// SENSOR.toml: the sensor under calibration, and what only this calibration has: the number of its
+// certificate, its customer and its conditions, in place of those of the laboratory file.
+//
+// Fails (bad_file) with file, line and key, as the laboratory file does. Any thread.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "services/base/error.hpp"
+#include "services/views/lab_file/contact_table.hpp"
+
+namespace dyncal::services {
+
+struct SensorFile {
+  std::filesystem::path path;
+  std::string name; // "digital accelerometer"
+  std::string manufacturer;
+  std::string model;
+  std::string serial;
+  std::string firmware;             // may be empty
+  std::string owner_identification; // the customer's own number; may be empty
+  std::string certificate_number;   // may be empty
+  std::string received;             // YYYY-MM-DD; may be empty
+  std::optional<Contact> customer;
+  Conditions conditions;
+};
+
+[[nodiscard]] Expected<SensorFile> read_sensor_file(const std::filesystem::path& path);
+[[nodiscard]] Expected<SensorFile> parse_sensor_file(std::string_view text,
+                                                     const std::filesystem::path& path);
+
+} // namespace dyncal::services

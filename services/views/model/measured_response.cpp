@@ -1,0 +1,353 @@
+#include "services/views/model/measured_response.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <map>
+#include <optional>
+#include <set>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "services/base/byte_count.hpp"
+#include "services/evaluation/shared_phase_uncertainty.hpp"
+#include "services/views/model/result_reader.hpp"
+
+namespace dyncal::services {
+namespace {
+
+constexpr double max_u_phase_rad = 0.5;
+constexpr double max_u_magnitude_rel = 0.3;
+
+// All that is known of one value of the transfer function before what is common is told apart.
+struct RawValue {
+  MeasuredValue value;
+  const TransferValue* transfer = nullptr;
+  std::vector<const SinglePoint*> repetitions;
+};
+
+std::optional<std::string> reason_to_leave_out(const TransferValue& value,
+                                               const ResponseSelection& selection) {
+  if (!std::isfinite(value.magnitude) || !std::isfinite(value.phase_rad) ||
+      !(value.magnitude > 0.0)) {
+    return "it has no value";
+  }
+  if (value.expanded_phase_rad > 2.0 * max_u_phase_rad ||
+      value.expanded_magnitude > 2.0 * max_u_magnitude_rel * value.magnitude) {
+    return "its u is too large to be of use";
+  }
+  if (!selection.include_flagged) {
+    for (const std::string& flag : value.flag_names) {
+      if (makes_unusable(flag)) {
+        return fmt::format("flag {}", flag);
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+Expected<void> check_uncertainty(const ResultContents& contents, const TransferValue& value) {
+  const auto wrong = [&](const char* key, double u) {
+    return fail(ErrorCode::bad_file,
+                fmt::format("{}: {} at {} Hz has {} = {}; a fit weighs with it, so it must be "
+                            "above 0: state the uncertainties in the bench file and evaluate again",
+                            contents.file, value.channel, value.frequency_text_hz, key,
+                            std::isfinite(u) ? fmt::format("{:g}", u) : "null"));
+  };
+  if (!(value.expanded_magnitude > 0.0)) {
+    return wrong("U_magnitude", value.expanded_magnitude);
+  }
+  if (!(value.expanded_phase_rad > 0.0)) {
+    return wrong("U_phase_rad", value.expanded_phase_rad);
+  }
+  if (!(value.frequency_hz > 0.0)) {
+    return wrong("frequency_hz", value.frequency_hz);
+  }
+  return {};
+}
+
+RawValue raw_value(const ResultContents& contents, const TransferValue& transfer) {
+  RawValue raw;
+  raw.transfer = &transfer;
+  raw.value.file = contents.file;
+  raw.value.frequency_text_hz = transfer.frequency_text_hz;
+  raw.value.point.frequency_hz = transfer.frequency_hz;
+  raw.value.point.h = std::polar(transfer.magnitude, transfer.phase_rad);
+  raw.value.u_magnitude_rel = 0.5 * transfer.expanded_magnitude / transfer.magnitude;
+  raw.value.u_phase_rad = 0.5 * transfer.expanded_phase_rad;
+  raw.value.flag_names = transfer.flag_names;
+  for (const SinglePoint& point : contents.points) {
+    if (point.channel == transfer.channel && point.frequency_hz == transfer.frequency_hz &&
+        point.level_m_s2 == transfer.level_m_s2 && !point.budget.empty()) {
+      raw.repetitions.push_back(&point);
+    }
+  }
+  return raw;
+}
+
+// U / 2 of each mean's magnitude without what repeats.
+std::vector<double> drawn_anew_magnitude_rel(const std::vector<RawValue>& raw) {
+  std::vector<analysis::RepeatedFrequency> repeated;
+  for (const RawValue& one : raw) {
+    repeated.push_back({one.value.point.frequency_hz, {}});
+    for (const SinglePoint* point : one.repetitions) {
+      analysis::Repetition repetition =
+          analysis::make_repetition(std::polar(point->magnitude, point->phase_rad), point->budget);
+      repetition.u_common_magnitude_rel = repetition.u_common_phase_rad = 0.0;
+      repeated.back().repetitions.push_back(repetition);
+    }
+  }
+  const auto means = analysis::means_of_repetitions(repeated);
+  std::vector<double> result;
+  result.reserve(raw.size());
+  for (std::size_t i = 0; i < raw.size(); ++i) {
+    result.push_back(means[i] ? means[i]->u_magnitude / means[i]->magnitude
+                              : raw[i].value.u_magnitude_rel);
+  }
+  return result;
+}
+
+// What a value has beyond what is independent: of the reference, and of the rest. Squares.
+struct RepeatingMagnitude {
+  double reference2 = 0.0;
+  double other2 = 0.0;
+};
+
+RepeatingMagnitude repeating_magnitude(const RawValue& raw) {
+  RepeatingMagnitude result;
+  for (const analysis::Contribution& row : raw.repetitions.front()->budget) {
+    if (row.repeats == analysis::Repeats::anew) {
+      result.other2 += std::pow(row.u_lasting_magnitude_rel, 2);
+    } else if (row.kind == analysis::ContributionKind::reference) {
+      result.reference2 += std::pow(row.u_magnitude_rel, 2);
+    } else {
+      result.other2 += std::pow(row.u_magnitude_rel, 2);
+    }
+  }
+  return result;
+}
+
+void divide_magnitudes(std::vector<RawValue>& raw, MeasuredResponse& response) {
+  const std::vector<double> anew = drawn_anew_magnitude_rel(raw);
+  std::vector<RepeatingMagnitude> repeating;
+  double gain2 = std::numeric_limits<double>::infinity();
+  for (const RawValue& one : raw) {
+    repeating.push_back(repeating_magnitude(one));
+    gain2 = std::min(gain2, repeating.back().reference2);
+  }
+  response.common.gain_rel = std::sqrt(gain2);
+  for (std::size_t i = 0; i < raw.size(); ++i) {
+    const double beyond2 = repeating[i].other2 + repeating[i].reference2 - gain2;
+    raw[i].value.point.u_magnitude_rel = std::sqrt(anew[i] * anew[i] + std::max(0.0, beyond2));
+  }
+}
+
+void divide_phases(std::vector<RawValue>& raw, MeasuredResponse& response) {
+  std::vector<BudgetAtFrequency> budgets;
+  budgets.reserve(raw.size());
+  for (const RawValue& one : raw) {
+    budgets.push_back({one.value.point.frequency_hz, one.repetitions.front()->budget});
+  }
+  const SharedPhaseUncertainty shared = shared_phase_uncertainty(budgets);
+  response.common.delay_s = shared.common.delay_s;
+  response.common.phase_rad = shared.common.phase_rad;
+  for (std::size_t i = 0; i < raw.size(); ++i) {
+    const double anew = raw[i].transfer->u_independent_phase_rad;
+    raw[i].value.point.u_phase_rad =
+        std::hypot(std::isfinite(anew) ? anew : raw[i].value.u_phase_rad, shared.beyond_rad[i]);
+  }
+}
+
+void divide_uncertainties(std::vector<RawValue>& raw, MeasuredResponse& response) {
+  response.has_budgets = std::all_of(raw.begin(), raw.end(),
+                                     [](const RawValue& one) { return !one.repetitions.empty(); });
+  if (response.has_budgets) {
+    divide_magnitudes(raw, response);
+    divide_phases(raw, response);
+  }
+  for (RawValue& one : raw) {
+    analysis::ResponsePoint& point = one.value.point;
+    if (!(point.u_magnitude_rel > 0.0)) { // no budget, or nothing in it that is independent
+      point.u_magnitude_rel = one.value.u_magnitude_rel;
+    }
+    if (!(point.u_phase_rad > 0.0)) {
+      point.u_phase_rad = one.value.u_phase_rad;
+    }
+    response.values.push_back(std::move(one.value));
+  }
+}
+
+Expected<void> check_units(const MeasuredResponse& response, const std::string& first_file,
+                           const ResultContents& contents, const TransferValue& value) {
+  if (value.unit == response.unit) {
+    return {};
+  }
+  return fail(
+      ErrorCode::bad_file,
+      fmt::format("{}: {} is in '{}' but in '{}' in {}; values in different units cannot "
+                  "be fitted together: state the units in the bench file and evaluate again",
+                  contents.file, value.channel, value.unit, response.unit, first_file));
+}
+
+Expected<MeasuredResponse> read_channel(const std::vector<ResultContents>& files,
+                                        const std::string& channel,
+                                        const ResponseSelection& selection) {
+  MeasuredResponse response;
+  response.channel = channel;
+  std::vector<RawValue> raw;
+  const ResultContents* first = nullptr;
+  for (const ResultContents& contents : files) {
+    for (const TransferValue& value : contents.values) {
+      if (value.channel != channel) {
+        continue;
+      }
+      if (first == nullptr) {
+        first = &contents;
+        response.unit = value.unit;
+      }
+      if (auto checked = check_units(response, first->file, contents, value); !checked) {
+        return fail(checked.error());
+      }
+      if (const auto reason = reason_to_leave_out(value, selection)) {
+        response.left_out.push_back({contents.file, value.frequency_text_hz, *reason});
+        continue;
+      }
+      if (auto checked = check_uncertainty(contents, value); !checked) {
+        return fail(checked.error());
+      }
+      raw.push_back(raw_value(contents, value));
+    }
+    for (const auto& [source, rate_hz] : contents.source_rates_hz) {
+      if (channel.starts_with(source + "/") && rate_hz > 0.0 && response.sample_rate_hz == 0.0) {
+        response.sample_rate_hz = rate_hz;
+      }
+    }
+  }
+  divide_uncertainties(raw, response);
+  return response;
+}
+
+// In the order of the files.
+std::vector<std::string> channels_of(const std::vector<ResultContents>& files) {
+  std::vector<std::string> channels;
+  for (const ResultContents& contents : files) {
+    for (const std::string& channel : contents.channels_that_respond) {
+      if (std::find(channels.begin(), channels.end(), channel) == channels.end()) {
+        channels.push_back(channel);
+      }
+    }
+  }
+  return channels;
+}
+
+std::string file_names(const std::vector<ResultContents>& files) {
+  std::vector<std::string> names;
+  std::transform(files.begin(), files.end(), std::back_inserter(names),
+                 [](const ResultContents& contents) { return contents.file; });
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+Expected<void> check_channels(const std::vector<ResultContents>& files,
+                              const std::vector<std::string>& asked) {
+  std::vector<std::string> known;
+  for (const ResultContents& contents : files) {
+    for (const TransferValue& value : contents.values) {
+      if (std::find(known.begin(), known.end(), value.channel) == known.end()) {
+        known.push_back(value.channel);
+      }
+    }
+  }
+  for (const std::string& channel : asked) {
+    if (std::find(known.begin(), known.end(), channel) == known.end()) {
+      return fail(ErrorCode::bad_argument,
+                  fmt::format("{}: there is no channel '{}'; the channels are: {}",
+                              file_names(files), channel, fmt::join(known, ", ")));
+    }
+  }
+  return {};
+}
+
+} // namespace
+
+std::vector<analysis::ResponsePoint> MeasuredResponse::points() const {
+  std::vector<analysis::ResponsePoint> result;
+  std::transform(values.begin(), values.end(), std::back_inserter(result),
+                 [](const MeasuredValue& value) { return value.point; });
+  return result;
+}
+
+bool makes_unusable(const std::string& flag_name) {
+  // What u holds, and what concerns a whole channel. All others, and those that a newer version
+  // may have added, say that a value may be wrong beyond u.
+  constexpr std::array usable{"samples_lost",
+                              "stamps_not_trusted",
+                              "values_not_measured",
+                              "shorter_than_planned",
+                              "clock_uncertainty_unknown",
+                              "excitation_broken_off",
+                              "level_off_plan",
+                              "settling_not_found",
+                              "shots_missing",
+                              "shots_left_out",
+                              "records_lost",
+                              "start_undecided",
+                              "trigger_phase_not_corrected",
+                              "no_monte_carlo_check",
+                              "polarity_inverted",
+                              "answers_before_excitation",
+                              "adc_not_calibrated",
+                              "reference_uncertainty_not_stated",
+                              "disturbance_cut_out",
+                              "stamps_scatter",
+                              "trigger_delay_not_stated",
+                              "acs_delay_not_stated",
+                              "group_delay_ambiguous",
+                              "group_delay_not_constant"};
+  return std::find(usable.begin(), usable.end(), flag_name) == usable.end();
+}
+
+Expected<std::vector<MeasuredResponse>>
+read_responses(const std::vector<std::filesystem::path>& files, const ResponseSelection& selection,
+               const SharedWorkCount& count) {
+  ByteCount bytes(count, "reading", bytes_of_files(files));
+  std::vector<ResultContents> contents;
+  std::set<std::filesystem::path> read;
+  for (const std::filesystem::path& file : files) {
+    std::error_code ignored;
+    if (!read.insert(std::filesystem::weakly_canonical(file, ignored)).second) {
+      return fail(
+          ErrorCode::bad_argument,
+          fmt::format("{}: this result is given twice, and would count twice", file.string()));
+    }
+    auto one = read_result(file, bytes);
+    if (!one) {
+      return fail(one.error());
+    }
+    contents.push_back(std::move(*one));
+  }
+  if (auto checked = check_channels(contents, selection.channels); !checked) {
+    return fail(checked.error());
+  }
+  const std::vector<std::string> channels =
+      selection.channels.empty() ? channels_of(contents) : selection.channels;
+  if (channels.empty()) {
+    return fail(ErrorCode::bad_file,
+                fmt::format("{}: no channel responds to the excitation; --channel names one that "
+                            "is fitted anyway",
+                            file_names(contents)));
+  }
+  std::vector<MeasuredResponse> responses;
+  for (const std::string& channel : channels) {
+    auto response = read_channel(contents, channel, selection);
+    if (!response) {
+      return fail(response.error());
+    }
+    responses.push_back(std::move(*response));
+  }
+  return responses;
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,104 @@
+#include "services/views/report/flag_legend.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace dyncal::services {
+namespace {
+
+void append(const std::vector<Flag>& from, std::vector<Flag>& to) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+void add_once(std::vector<std::string>& texts, const std::string& text) {
+  if (std::find(texts.begin(), texts.end(), text) == texts.end()) {
+    texts.push_back(text);
+  }
+}
+
+} // namespace
+
+std::vector<FlagMeaning> flag_legend(const std::vector<Flag>& flags) {
+  std::map<ResultFlag, FlagMeaning> by_kind;
+  for (const Flag& flag : flags) {
+    FlagMeaning& meaning = by_kind[flag.kind];
+    meaning.name = name_of(flag.kind);
+    meaning.explanation = explanation_of(flag.kind);
+    add_once(meaning.sentences, flag.sentence);
+  }
+  std::vector<FlagMeaning> legend;
+  for (auto& [kind, meaning] : by_kind) {
+    legend.push_back(std::move(meaning));
+  }
+  return legend;
+}
+
+std::string legend_line(const FlagMeaning& meaning) {
+  constexpr std::size_t max_sentences = 3;
+  std::vector<std::string> sentences = meaning.sentences;
+  if (sentences.size() > max_sentences) {
+    const std::size_t others = sentences.size() - max_sentences;
+    sentences.resize(max_sentences);
+    sentences.push_back(fmt::format("and {} more", others));
+  }
+  return fmt::format("{} ({}): {}", meaning.name, fmt::join(sentences, "; "), meaning.explanation);
+}
+
+std::vector<Flag> flags_of(const RunOutcome& outcome) {
+  std::vector<Flag> flags;
+  for (const StepResult& result : outcome.results) {
+    append(result.flags, flags);
+  }
+  for (const TransferFunction& function : outcome.transfer_functions) {
+    append(function.flags, flags);
+  }
+  for (const ClockReport& report : outcome.clock_reports) {
+    append(report.flags, flags);
+  }
+  return flags;
+}
+
+std::vector<Flag> flags_of(const RunOutcome& outcome, const TransferFunction& function) {
+  std::vector<Flag> flags = function.flags;
+  for (const StepResult& result : outcome.results) {
+    if (result.valid && result.channel == function.channel) {
+      append(result.flags, flags);
+    }
+  }
+  return flags;
+}
+
+std::vector<Flag> flags_of(const RunOutcome& outcome, const std::string& channel,
+                           const FrequencyPoint& point) {
+  std::vector<Flag> flags;
+  for (const StepResult& result : outcome.results) {
+    if (result.valid && result.channel == channel && result.frequency_hz == point.frequency_hz &&
+        result.level_m_s2 == point.level_m_s2) {
+      append(result.flags, flags);
+    }
+  }
+  return flags;
+}
+
+std::vector<Flag> flags_once(const std::vector<Flag>& flags) {
+  std::vector<Flag> once;
+  for (const Flag& flag : flags) {
+    if (std::find(once.begin(), once.end(), flag) == once.end()) {
+      once.push_back(flag);
+    }
+  }
+  return once;
+}
+
+std::string flag_names(const std::vector<Flag>& flags) {
+  std::vector<std::string> names;
+  for (const Flag& flag : flags) {
+    add_once(names, std::string(name_of(flag.kind)));
+  }
+  return fmt::format("{}", fmt::join(names, " "));
+}
+
+} // namespace dyncal::services

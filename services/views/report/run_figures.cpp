@@ -1,0 +1,87 @@
+#include "services/views/report/run_figures.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "services/contract/run_identity.hpp"
+#include "services/views/figures/deviation.hpp"
+#include "services/views/figures/sample_clock.hpp"
+#include "services/views/report/result_table.hpp"
+#include "services/views/report/transfer_data.hpp"
+
+namespace dyncal::services {
+namespace {
+
+std::string file_name(const std::string& what, std::string of) {
+  std::replace(of.begin(), of.end(), '/', '-');
+  return what + "-" + of;
+}
+
+std::string run_line(const RunOutcome& outcome) {
+  return fmt::format("bench {}, run {}", outcome.bench, RunIdentity::parse(outcome.run).name);
+}
+
+} // namespace
+
+std::vector<figures::Figure> channel_figures(const figures::TransferFunctionData& data,
+                                             const std::string& channel) {
+  return {figures::transfer_function_figure(data, file_name("transfer-function", channel)),
+          figures::deviation_figure(data, file_name("deviation", channel))};
+}
+
+std::vector<figures::Figure> clock_figures(const RunOutcome& outcome, const ClockReport& report) {
+  if (report.clock.intervals == 0) {
+    return {}; // series have no stamps
+  }
+  const std::string& source = report.source;
+  const std::string subtitle = run_line(outcome);
+  std::vector<figures::Figure> drawn{
+      figures::interval_histogram_figure({fmt::format("Sample intervals of {}", source)},
+                                         report.clock, file_name("interval-histogram", source)),
+      figures::interval_over_time_figure(
+          {fmt::format("Sample interval of {} over time", source), subtitle}, report.clock,
+          file_name("interval-over-time", source))};
+  if (!report.clock.scatter_temperature_degc.empty()) {
+    drawn.push_back(figures::interval_over_temperature_figure(
+        {fmt::format("Sample interval of {} over its temperature", source), subtitle}, report.clock,
+        file_name("interval-over-temperature", source)));
+  }
+  return drawn;
+}
+
+std::vector<figures::Figure> run_figures(const RunOutcome& outcome, figures::ErrorBars error_bars) {
+  std::vector<figures::Figure> drawn;
+  for (const TransferFunction& function : outcome.transfer_functions) {
+    if (responds(function)) {
+      figures::TransferFunctionData data = transfer_data(outcome, function);
+      data.error_bars = error_bars;
+      for (figures::Figure& figure : channel_figures(data, function.channel)) {
+        drawn.push_back(std::move(figure));
+      }
+    }
+  }
+  for (const ClockReport& report : outcome.clock_reports) {
+    for (figures::Figure& figure : clock_figures(outcome, report)) {
+      drawn.push_back(std::move(figure));
+    }
+  }
+  return drawn;
+}
+
+Expected<std::vector<std::filesystem::path>> write_figures(const RunOutcome& outcome,
+                                                           const std::filesystem::path& folder,
+                                                           figures::ErrorBars error_bars) {
+  std::vector<std::filesystem::path> paths;
+  for (const figures::Figure& figure : run_figures(outcome, error_bars)) {
+    const auto written = figures::write(figure, folder);
+    if (!written) {
+      return fail(written.error());
+    }
+    paths.insert(paths.end(), written->begin(), written->end());
+  }
+  return paths;
+}
+
+} // namespace dyncal::services

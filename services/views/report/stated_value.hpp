@@ -1,0 +1,44 @@
+// What a document states of a stored value, as text: U with two significant digits, the value
+// rounded to the same decimal place (GUM 7.2.6), k with two decimals. Report and certificate take
+// their digits from here, and `dyncal verify` compares with them.
+//
+// U = k u is taken from the doubles of the result file, then rounded once; rounding to two
+// significant digits moves U by at most 5 % (EA-4/02 M, 6.3 asks for rounding up beyond that).
+// Phase is lead, within (-pi, pi], and in degrees rounded by U in degrees. Plain functions, any
+// thread.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "services/views/report/stored_result.hpp"
+
+namespace dyncal::services {
+
+struct StatedValue {
+  std::string value;
+  std::string expanded; // U
+  std::string k;
+};
+
+[[nodiscard]] StatedValue stated_magnitude(const StoredValue& value);
+[[nodiscard]] StatedValue stated_phase_rad(const StoredValue& value);
+[[nodiscard]] StatedValue stated_phase_deg(const StoredValue& value);
+// Value and U are finite, and U and k are above 0: without these there is nothing to state.
+[[nodiscard]] bool can_be_stated(const StoredValue& value);
+
+// That of expanded_uncertainty.hpp, for the largest k of the values; empty where none is large.
+[[nodiscard]] std::string advice_on_repetitions(const std::vector<StoredValue>& values);
+
+// "95.45 %"
+[[nodiscard]] std::string coverage_percent(double probability);
+
+// Sentences that every document has.
+[[nodiscard]] std::string sign_convention();
+[[nodiscard]] std::string rounding_rule();
+// How a method links the sensor to the reference; the name itself for one that is not known.
+[[nodiscard]] std::string method_description(const std::string& method);
+// What the whole run was excited with: "17 frequencies from 10 Hz to 200 Hz".
+[[nodiscard]] std::string frequency_range(const std::vector<StoredValue>& values);
+
+} // namespace dyncal::services
