@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-#include "services/live/laboratory.hpp"
+#include "services/network/laboratory.hpp"
 
 namespace dyncal::services {
 

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "services/live/laboratory.hpp"
+#include "services/network/laboratory.hpp"
 
 namespace dyncal::services {
 

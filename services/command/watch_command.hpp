@@ -1,4 +1,4 @@
-// `dyncal watch`: what the bus shows now (services/live), again and again.
+// `dyncal watch`: what the bus shows now (services/network), again and again.
 //
 // On a terminal a table that is redrawn once a second and stays within the window
 // (laboratory_table.hpp); elsewhere every change is a line (laboratory_lines.hpp), or with --json

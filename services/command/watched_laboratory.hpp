@@ -1,5 +1,5 @@
 // A laboratory as a command sees it: a participant of the bus that only listens and asks for
-// clocks, and the state that services/live makes of what it hears. Belongs to one thread.
+// clocks, and the state that services/network makes of what it hears. Belongs to one thread.
 #pragma once
 
 #include <chrono>
@@ -7,8 +7,8 @@
 #include <string>
 
 #include "services/daemon/program/watched_network.hpp"
-#include "services/live/laboratory.hpp"
-#include "services/live/laboratory_readers.hpp"
+#include "services/network/laboratory.hpp"
+#include "services/network/laboratory_readers.hpp"
 
 namespace dyncal::services {
 

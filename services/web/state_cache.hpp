@@ -21,7 +21,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "services/live/laboratory.hpp"
+#include "services/network/laboratory.hpp"
 #include "services/views/figures/transfer_function.hpp"
 
 namespace dyncal::services::web {

@@ -4,7 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include "services/bus/host_network.hpp"
-#include "services/live/laboratory_readers.hpp"
+#include "services/network/laboratory_readers.hpp"
 #include "services/store/store.hpp"
 #include "services/views/signals/signal_tap.hpp"
 #include "services/web/access_token.hpp"

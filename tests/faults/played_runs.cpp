@@ -16,7 +16,7 @@
 #include "services/contract/topics.hpp"
 #include "services/evaluation/result/result_message.hpp"
 #include "services/evaluation/result/transfer_function_message.hpp"
-#include "tests/unit/services/live/messages.hpp"
+#include "tests/unit/services/network/messages.hpp"
 #include "tests/unit/services/views/report/example_outcome.hpp"
 
 namespace {

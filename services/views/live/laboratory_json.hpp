@@ -10,7 +10,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "services/live/laboratory.hpp"
+#include "services/network/laboratory.hpp"
 
 namespace dyncal::services::live {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "services/live/run.hpp"
+#include "services/network/run.hpp"
 #include "services/views/figures/transfer_function.hpp"
 
 namespace dyncal::services::live {

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "services/live/run.hpp"
+#include "services/network/run.hpp"
 
 namespace dyncal::services::live {
 

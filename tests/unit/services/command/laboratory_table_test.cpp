@@ -7,7 +7,7 @@
 #include "services/bus/memory/stepped_clock.hpp"
 #include "services/command/harmless_text.hpp"
 #include "services/command/laboratory_lines.hpp"
-#include "tests/unit/services/live/messages.hpp"
+#include "tests/unit/services/network/messages.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -7,7 +7,7 @@
 #include "services/web/laboratory_answers.hpp"
 #include "services/web/request_router.hpp"
 #include "tests/temporary_folder.hpp"
-#include "tests/unit/services/live/messages.hpp"
+#include "tests/unit/services/network/messages.hpp"
 #include "tests/unit/services/web/raw_visitor.hpp"
 
 namespace dyncal::services::web {

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "services/bus/memory/stepped_clock.hpp"
-#include "tests/unit/services/live/messages.hpp"
+#include "tests/unit/services/network/messages.hpp"
 
 namespace dyncal::services::web {
 namespace {

@@ -19,7 +19,7 @@
 #include "services/web/actions.hpp"
 #include "services/web/event_stream.hpp"
 #include "tests/temporary_folder.hpp"
-#include "tests/unit/services/live/messages.hpp"
+#include "tests/unit/services/network/messages.hpp"
 
 namespace dyncal::services::web {
 namespace {

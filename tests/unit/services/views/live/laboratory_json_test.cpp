@@ -8,7 +8,7 @@
 #include "services/base/json_text.hpp"
 #include "services/bus/memory/stepped_clock.hpp"
 #include "services/views/live/run_json.hpp"
-#include "tests/unit/services/live/messages.hpp"
+#include "tests/unit/services/network/messages.hpp"
 
 namespace dyncal::services::live {
 namespace {

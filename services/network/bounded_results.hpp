@@ -5,7 +5,7 @@
 #include "services/evaluation/result/clock_report.hpp"
 #include "services/evaluation/result/step_result.hpp"
 #include "services/evaluation/result/transfer_function.hpp"
-#include "services/live/limits.hpp"
+#include "services/network/limits.hpp"
 
 namespace dyncal::services::live {
 

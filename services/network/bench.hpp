@@ -9,9 +9,9 @@
 #include <string>
 
 #include "services/bus/clock.hpp"
-#include "services/live/condition.hpp"
-#include "services/live/run.hpp"
-#include "services/live/source.hpp"
+#include "services/network/condition.hpp"
+#include "services/network/run.hpp"
+#include "services/network/source.hpp"
 
 namespace dyncal::services::live {
 

@@ -1,12 +1,12 @@
-#include "services/live/laboratory.hpp"
+#include "services/network/laboratory.hpp"
 
 #include <gtest/gtest.h>
 
 #include "services/base/printable_text.hpp"
 #include "services/bus/memory/memory_network.hpp"
 #include "services/contract/topics.hpp"
-#include "services/live/laboratory_readers.hpp"
-#include "tests/unit/services/live/messages.hpp"
+#include "services/network/laboratory_readers.hpp"
+#include "tests/unit/services/network/messages.hpp"
 
 namespace dyncal::services::live {
 namespace {

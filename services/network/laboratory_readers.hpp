@@ -12,7 +12,7 @@
 #include "services/bus/clock.hpp"
 #include "services/bus/host_clocks/clock_asker.hpp"
 #include "services/contract/program_identity.hpp"
-#include "services/live/laboratory.hpp"
+#include "services/network/laboratory.hpp"
 
 namespace dyncal::services::live {
 

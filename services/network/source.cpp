@@ -1,4 +1,4 @@
-#include "services/live/source.hpp"
+#include "services/network/source.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "services/live/bench.hpp"
+#include "services/network/bench.hpp"
 
 #include <fmt/core.h>
 

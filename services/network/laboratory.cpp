@@ -1,4 +1,4 @@
-#include "services/live/laboratory.hpp"
+#include "services/network/laboratory.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,8 @@
 #include "services/evaluation/result/clock_report_message.hpp"
 #include "services/evaluation/result/result_message.hpp"
 #include "services/evaluation/result/transfer_function_message.hpp"
-#include "services/live/bounded_results.hpp"
-#include "services/live/changes.hpp"
+#include "services/network/bounded_results.hpp"
+#include "services/network/changes.hpp"
 
 namespace dyncal::services::live {
 namespace {

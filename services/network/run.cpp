@@ -1,4 +1,4 @@
-#include "services/live/run.hpp"
+#include "services/network/run.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "services/live/condition.hpp"
+#include "services/network/condition.hpp"
 
 namespace dyncal::services::live {
 

@@ -1,4 +1,4 @@
-#include "services/live/laboratory_readers.hpp"
+#include "services/network/laboratory_readers.hpp"
 
 #include "services/contract/topics.hpp"
 

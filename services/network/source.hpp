@@ -11,8 +11,8 @@
 #include "idl/dyncal.h"
 #include "services/bus/clock.hpp"
 #include "services/contract/source_kind.hpp"
-#include "services/live/condition.hpp"
-#include "services/live/limits.hpp"
+#include "services/network/condition.hpp"
+#include "services/network/limits.hpp"
 
 namespace dyncal::services::live {
 

@@ -1,4 +1,4 @@
-#include "services/live/bounded_results.hpp"
+#include "services/network/bounded_results.hpp"
 #include "services/base/printable_text.hpp"
 
 namespace dyncal::services::live {

@@ -1,4 +1,4 @@
-#include "services/live/changes.hpp"
+#include "services/network/changes.hpp"
 
 #include <fmt/core.h>
 

@@ -22,8 +22,8 @@
 #include "idl/dyncal.h"
 #include "services/bus/clock.hpp"
 #include "services/bus/host_clocks/clock_asker.hpp"
-#include "services/live/bench.hpp"
-#include "services/live/limits.hpp"
+#include "services/network/bench.hpp"
+#include "services/network/limits.hpp"
 
 namespace dyncal::services::live {
 
