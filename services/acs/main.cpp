@@ -4,8 +4,8 @@
 
 #include <fmt/core.h>
 
-#include "services/acs/played_source.hpp"
 #include "services/daemon/program/bench_program.hpp"
+#include "services/instruments/played_source.hpp"
 #include "services/stream/run_sources.hpp"
 
 namespace {

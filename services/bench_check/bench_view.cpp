@@ -5,7 +5,7 @@
 #include "drivers/can/dbc/dbc.hpp"
 #include "drivers/can/sensor_layout.hpp"
 #include "services/bench/file/adc_file.hpp"
-#include "services/can/stream_settings.hpp"
+#include "services/instruments/stream_settings.hpp"
 #include "services/replay/file_input.hpp"
 #include "services/replay/shot_files.hpp"
 

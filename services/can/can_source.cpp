@@ -9,7 +9,7 @@
 #include "drivers/can/bus/socketcan_source.hpp"
 #include "drivers/can/dbc/dbc.hpp"
 #include "services/can/can_status.hpp"
-#include "services/can/stream_settings.hpp"
+#include "services/instruments/stream_settings.hpp"
 #include "services/stream/play_of_run.hpp"
 
 namespace dyncal::services::can {

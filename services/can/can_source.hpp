@@ -18,7 +18,7 @@
 #include "drivers/can/sensor_stream.hpp"
 #include "services/base/error.hpp"
 #include "services/bench/file/source_settings.hpp"
-#include "services/can/stream_settings.hpp"
+#include "services/instruments/stream_settings.hpp"
 #include "services/stream/source_publisher.hpp"
 
 namespace dyncal::services::can {

@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "services/acs/played_source.hpp"
 #include "services/base/version.hpp"
 #include "services/command/analyse_recording.hpp"
 #include "services/command/run_command.hpp"
@@ -13,6 +12,7 @@
 #include "services/evaluation/run_evaluator.hpp"
 #include "services/evaluation/step_survey.hpp"
 #include "services/exchange/opened_recording.hpp"
+#include "services/instruments/played_source.hpp"
 #include "services/replay/file_input.hpp"
 #include "services/replay/sample_memory.hpp"
 #include "services/replay/shot_files.hpp"

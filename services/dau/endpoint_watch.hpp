@@ -11,7 +11,7 @@
 #include <string>
 
 #include "drivers/smartup/reception_observer.hpp"
-#include "services/dau/listening_plan.hpp"
+#include "services/instruments/listening_plan.hpp"
 #include "services/stream/source_publisher.hpp"
 
 namespace dyncal::services::dau {

@@ -8,7 +8,7 @@
 #include "drivers/smartup/receiver.hpp"
 #include "services/daemon/program/bench_program.hpp"
 #include "services/dau/endpoint_watch.hpp"
-#include "services/dau/listening_plan.hpp"
+#include "services/instruments/listening_plan.hpp"
 #include "services/stream/source_service.hpp"
 #include "services/stream/supervised.hpp"
 

@@ -11,7 +11,7 @@
 #include "drivers/utc_clock.hpp"
 #include "services/contract/session_number.hpp"
 #include "services/contract/topics.hpp"
-#include "services/dso/series_channels.hpp"
+#include "services/instruments/series_channels.hpp"
 
 namespace dyncal::services::dso {
 namespace {

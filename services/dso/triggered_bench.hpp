@@ -29,7 +29,7 @@
 #include "services/base/error.hpp"
 #include "services/bench/file/bench_file.hpp"
 #include "services/bus/bus.hpp"
-#include "services/dso/shot_device.hpp"
+#include "services/instruments/shot_device.hpp"
 #include "services/stream/source_service.hpp"
 
 #include "idl/dyncal.h"

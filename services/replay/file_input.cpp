@@ -5,8 +5,8 @@
 #include <fmt/core.h>
 
 #include "drivers/can/log_player.hpp"
-#include "services/acs/played_source.hpp"
-#include "services/can/stream_settings.hpp"
+#include "services/instruments/played_source.hpp"
+#include "services/instruments/stream_settings.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -11,8 +11,8 @@
 #include <fmt/core.h>
 
 #include "drivers/tss/series.hpp"
-#include "services/dso/series_channels.hpp"
 #include "services/evaluation/record/shot_record.hpp"
+#include "services/instruments/series_channels.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -1,4 +1,4 @@
-#include "services/dau/listening_plan.hpp"
+#include "services/instruments/listening_plan.hpp"
 
 #include <algorithm>
 

@@ -20,7 +20,7 @@
 #include "drivers/tss/series_source.hpp"
 #include "services/base/error.hpp"
 #include "services/bench/file/source_settings.hpp"
-#include "services/dso/trigger_count.hpp"
+#include "services/instruments/trigger_count.hpp"
 
 namespace dyncal::services::dso {
 

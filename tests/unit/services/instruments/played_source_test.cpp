@@ -1,4 +1,4 @@
-#include "services/acs/played_source.hpp"
+#include "services/instruments/played_source.hpp"
 
 #include <deque>
 #include <functional>

@@ -1,4 +1,4 @@
-#include "services/dso/trigger_count.hpp"
+#include "services/instruments/trigger_count.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "services/dso/shot_device.hpp"
+#include "services/instruments/shot_device.hpp"
 
 #include <algorithm>
 

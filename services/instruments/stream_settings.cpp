@@ -1,4 +1,4 @@
-#include "services/can/stream_settings.hpp"
+#include "services/instruments/stream_settings.hpp"
 
 #include "drivers/can/time/system_clock.hpp"
 

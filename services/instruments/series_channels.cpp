@@ -1,4 +1,4 @@
-#include "services/dso/series_channels.hpp"
+#include "services/instruments/series_channels.hpp"
 
 #include <algorithm>
 
