@@ -6,8 +6,8 @@
 #include "drivers/can/sensor_layout.hpp"
 #include "services/bench/file/adc_file.hpp"
 #include "services/instruments/stream_settings.hpp"
-#include "services/replay/file_input.hpp"
-#include "services/replay/shot_files.hpp"
+#include "services/records/replay/file_input.hpp"
+#include "services/records/replay/shot_files.hpp"
 
 namespace dyncal::services::bench_check {
 namespace {

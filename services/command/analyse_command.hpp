@@ -16,7 +16,7 @@
 namespace dyncal::services {
 
 struct AnalyseCommand {
-  std::filesystem::path bench_file; // or a run folder (services/run_folder), or a recording
+  std::filesystem::path bench_file; // or a run folder (services/records/run_folder), or a recording
                                     // (analyse_recording.hpp)
   std::string run;                  // of the recording; empty: the only one
   std::optional<std::filesystem::path> recipe; // bench file to evaluate the recording by

@@ -4,8 +4,8 @@
 #include <spdlog/spdlog.h>
 
 #include "services/command/run_command.hpp"
-#include "services/exchange/opened_recording.hpp"
-#include "services/replay/recorded_run.hpp"
+#include "services/records/exchange/opened_recording.hpp"
+#include "services/records/replay/recorded_run.hpp"
 #include "services/run/run_plan.hpp"
 
 namespace dyncal::services {

@@ -1,5 +1,6 @@
 // `dyncal analyse RECORDING`: the results of the live run from its recording, or from an export of
-// it (services/exchange/opened_recording.hpp), or by another bench file. Belongs to one thread.
+// it (services/records/exchange/opened_recording.hpp), or by another bench file. Belongs to one
+// thread.
 #pragma once
 
 #include <stop_token>

@@ -9,7 +9,7 @@
 #include "services/command/share_line.hpp"
 #include "services/command/work_progress.hpp"
 #include "services/daemon/program/program.hpp"
-#include "services/exchange/export_recording.hpp"
+#include "services/records/exchange/export_recording.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -1,5 +1,5 @@
 // `dyncal export SOURCE --to TARGET`: a recording in a format of other programs
-// (services/exchange/export_recording.hpp). Belongs to one thread.
+// (services/records/exchange/export_recording.hpp). Belongs to one thread.
 #pragma once
 
 #include <filesystem>

@@ -20,7 +20,7 @@
 #include "services/base/printable_text.hpp"
 #include "services/command/work_progress.hpp"
 #include "services/daemon/program/program.hpp"
-#include "services/replay/series_file.hpp"
+#include "services/records/replay/series_file.hpp"
 #include "services/views/report/rounding.hpp"
 
 namespace dyncal::services {

@@ -13,7 +13,7 @@
 #include "services/command/work_progress.hpp"
 #include "services/contract/unit.hpp"
 #include "services/daemon/program/program.hpp"
-#include "services/store/history.hpp"
+#include "services/records/store/history.hpp"
 #include "services/views/figures/drift.hpp"
 #include "services/views/report/rounding.hpp"
 

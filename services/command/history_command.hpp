@@ -1,5 +1,5 @@
 // `dyncal history SENSOR`: the drift of a sensor over its calibrations in the store
-// (services/store/history.hpp), as tables, JSON and figures. Belongs to one thread.
+// (services/records/store/history.hpp), as tables, JSON and figures. Belongs to one thread.
 #pragma once
 
 #include <filesystem>

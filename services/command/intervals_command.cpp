@@ -10,7 +10,7 @@
 #include "services/base/json_text.hpp"
 #include "services/command/work_progress.hpp"
 #include "services/daemon/program/program.hpp"
-#include "services/replay/series_file.hpp"
+#include "services/records/replay/series_file.hpp"
 
 namespace dyncal::services {
 namespace {

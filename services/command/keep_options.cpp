@@ -2,7 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "services/run_folder/run_folder.hpp"
+#include "services/records/run_folder/run_folder.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -7,7 +7,7 @@
 #include "services/bench/file/named_files.hpp"
 #include "services/command/own_recording.hpp"
 #include "services/contract/run_identity.hpp"
-#include "services/store/store.hpp"
+#include "services/records/store/store.hpp"
 #include "services/views/report/show_outcome.hpp"
 #include "services/views/report/stored_result.hpp"
 

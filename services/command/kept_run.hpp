@@ -1,5 +1,6 @@
-// What is kept of a run while it goes on and when it is over: its folder (services/run_folder) with
-// results, log and recording (services/recording), and its entry in the store (services/store).
+// What is kept of a run while it goes on and when it is over: its folder
+// (services/records/run_folder) with results, log and recording (services/records/mcap), and its
+// entry in the store (services/records/store).
 //
 // The folder is made and the disk looked at before the first step; a run that is refused before it
 // leaves no folder. A store that cannot be written costs no run: the message says how to add it
@@ -15,9 +16,9 @@
 #include "services/bench/file/bench_file.hpp"
 #include "services/bus/bus.hpp"
 #include "services/daemon/program/log_file.hpp"
-#include "services/recording/recorder.hpp"
+#include "services/records/capture/recorder.hpp"
+#include "services/records/run_folder/run_folder.hpp"
 #include "services/run/run_controller.hpp"
-#include "services/run_folder/run_folder.hpp"
 
 namespace dyncal::services {
 

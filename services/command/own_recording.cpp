@@ -8,8 +8,8 @@
 #include <fmt/core.h>
 
 #include "services/evaluation/outcome_agreement.hpp"
-#include "services/exchange/opened_recording.hpp"
-#include "services/replay/recorded_run.hpp"
+#include "services/records/exchange/opened_recording.hpp"
+#include "services/records/replay/recorded_run.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -11,8 +11,8 @@
 #include "services/base/version.hpp"
 #include "services/command/work_progress.hpp"
 #include "services/daemon/program/program.hpp"
-#include "services/recording/recording_reader.hpp"
-#include "services/recording/repair.hpp"
+#include "services/records/mcap/recording_reader.hpp"
+#include "services/records/mcap/repair.hpp"
 
 namespace dyncal::services {
 namespace {

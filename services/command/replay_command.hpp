@@ -1,12 +1,12 @@
-// `dyncal replay RECORDING`: puts a recording back on DDS (services/replay/recording_player.hpp).
-// Belongs to one thread.
+// `dyncal replay RECORDING`: puts a recording back on DDS
+// (services/records/replay/recording_player.hpp). Belongs to one thread.
 #pragma once
 
 #include <stop_token>
 #include <string>
 
 #include "services/daemon/program/program.hpp"
-#include "services/replay/recording_player.hpp"
+#include "services/records/replay/recording_player.hpp"
 
 namespace dyncal::services {
 

@@ -19,10 +19,10 @@
 #include "services/daemon/program/bench_program.hpp"
 #include "services/daemon/program/watched_network.hpp"
 #include "services/doctor/unheard_analysis.hpp"
+#include "services/records/run_folder/run_folder.hpp"
 #include "services/run/bench_queue.hpp"
 #include "services/run/guard_watch.hpp"
 #include "services/run/run_plan.hpp"
-#include "services/run_folder/run_folder.hpp"
 #include "services/views/report/show_outcome.hpp"
 
 namespace dyncal::services {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "services/store/store.hpp"
+#include "services/records/store/store.hpp"
 
 namespace dyncal::services {
 

@@ -25,7 +25,7 @@
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
 #include "services/daemon/supervision/daemon_metrics.hpp"
-#include "services/recording/recorder.hpp"
+#include "services/records/capture/recorder.hpp"
 
 namespace dyncal::services {
 

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "services/base/json_text.hpp"
-#include "services/store/history.hpp"
-#include "services/store/store.hpp"
+#include "services/records/store/history.hpp"
+#include "services/records/store/store.hpp"
 #include "services/views/report/json_number.hpp"
 #include "services/web/request_router.hpp"
 

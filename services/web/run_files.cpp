@@ -6,7 +6,7 @@
 
 #include <fmt/core.h>
 
-#include "services/run_folder/run_folder.hpp"
+#include "services/records/run_folder/run_folder.hpp"
 
 namespace dyncal::services::web {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "services/bus/host_network.hpp"
 #include "services/network/laboratory_readers.hpp"
-#include "services/store/store.hpp"
+#include "services/records/store/store.hpp"
 #include "services/views/signals/signal_tap.hpp"
 #include "services/web/access_token.hpp"
 #include "services/web/actions.hpp"

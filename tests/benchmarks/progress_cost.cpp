@@ -34,7 +34,7 @@
 #include "analysis/sine/extended_sine_fit.hpp"
 #include "services/base/counted_file.hpp"
 #include "services/command/work_progress.hpp"
-#include "services/replay/series_file.hpp"
+#include "services/records/replay/series_file.hpp"
 
 namespace {
 

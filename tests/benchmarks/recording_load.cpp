@@ -15,8 +15,8 @@
 #include <unistd.h>
 
 #include "services/bus/memory/memory_network.hpp"
-#include "services/recording/recorder.hpp"
-#include "services/recording/recording_thread.hpp"
+#include "services/records/capture/recorder.hpp"
+#include "services/records/capture/recording_thread.hpp"
 
 namespace {
 

@@ -4,8 +4,8 @@
 #include <iterator>
 #include <string>
 
-#include "services/recording/recording_writer.hpp"
-#include "services/recording/text_crc.hpp"
+#include "services/records/mcap/recording_writer.hpp"
+#include "services/records/mcap/text_crc.hpp"
 
 namespace {
 

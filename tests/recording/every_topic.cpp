@@ -4,8 +4,8 @@
 #include <limits>
 #include <string>
 
-#include "services/recording/recorded_topics.hpp"
-#include "services/recording/recording_writer.hpp"
+#include "services/records/capture/recorded_topics.hpp"
+#include "services/records/mcap/recording_writer.hpp"
 
 namespace {
 

@@ -9,9 +9,9 @@
 #include <gtest/gtest.h>
 
 #include "services/contract/source_block.hpp"
-#include "services/recording/recorded_topics.hpp"
-#include "services/recording/recording_reader.hpp"
-#include "services/recording/recording_writer.hpp"
+#include "services/records/capture/recorded_topics.hpp"
+#include "services/records/mcap/recording_reader.hpp"
+#include "services/records/mcap/recording_writer.hpp"
 #include "tests/system/live_bench.hpp"
 
 namespace dyncal::tests {

@@ -1,9 +1,9 @@
 // The files that a bench file names: where they are, and which they are.
 //
 // A name is resolved from the bench file's folder; an absolute one stands for itself. A run folder
-// (services/run_folder) holds copies of them. There a name has the same place as beside the bench
-// file where that is possible; names that lead out of the folder, or that a run folder has for its
-// own files, are below `outside/`:
+// (services/records/run_folder) holds copies of them. There a name has the same place as beside the
+// bench file where that is possible; names that lead out of the folder, or that a run folder has
+// for its own files, are below `outside/`:
 //
 //   calibration/adc.json  calibration/adc.json       ../adc.json       outside/up/adc.json
 //   /lab/adc.json         outside/root/lab/adc.json  ./result.json     outside/here/result.json

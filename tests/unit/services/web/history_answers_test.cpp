@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/temporary_folder.hpp"
-#include "tests/unit/services/store/silent_server.hpp"
+#include "tests/unit/services/records/store/silent_server.hpp"
 
 namespace dyncal::services::web {
 namespace {

@@ -1,0 +1,115 @@
+#include "services/records/capture/source_gaps.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include <fmt/core.h>
+
+namespace dyncal::recording {
+namespace {
+
+constexpr std::size_t max_waiting = 16; // requests; an answer goes up to the newest message
+
+} // namespace
+
+bool SourceGaps::note(std::uint64_t session, std::uint64_t number) {
+  const auto [found, is_new] = had_.try_emplace(session);
+  if (is_new) {
+    sessions_.push_back(session);
+    if (sessions_.size() > max_sessions) {
+      had_.erase(sessions_.front());
+      sessions_.pop_front();
+    }
+  }
+  Stretches& had = found->second;
+  const auto behind = had.upper_bound(number);
+  const auto before = behind == had.begin() ? had.end() : std::prev(behind);
+  if (before != had.end() && before->second >= number) {
+    return false;
+  }
+  std::uint64_t first = number;
+  std::uint64_t last = number;
+  if (before != had.end() && before->second + 1 == number) {
+    first = before->first;
+  }
+  if (behind != had.end() && behind->first == number + 1) {
+    last = behind->second;
+    had.erase(behind);
+  }
+  had[first] = last;
+  ++messages_;
+  return true;
+}
+
+void SourceGaps::ask(std::uint64_t session, std::uint64_t number, Instant now) {
+  Request request{fmt::format("{} {}", asker_, ++requests_), session, number};
+  if (!active_) {
+    active_ = Active{std::move(request), now, now, std::nullopt};
+  } else if (waiting_.size() < max_waiting) {
+    waiting_.push_back(std::move(request));
+  }
+}
+
+bool SourceGaps::take_live(std::uint64_t session, std::uint64_t number, Instant now) {
+  if (!note(session, number)) {
+    return false;
+  }
+  const bool jumps = newest_ && newest_->first == session && number > newest_->second + 1;
+  const bool begins_late = newest_ && newest_->first != session && number > 1;
+  if (jumps || begins_late) {
+    ask(newest_->first, newest_->second, now);
+  }
+  if (!newest_ || newest_->first != session || number > newest_->second) {
+    newest_ = {session, number};
+  }
+  return true;
+}
+
+bool SourceGaps::take_again(std::uint64_t session, std::uint64_t number, Instant now) {
+  if (!active_) {
+    return false;
+  }
+  active_->heard = now;
+  const bool is_new = note(session, number);
+  recovered_ += is_new ? 1 : 0;
+  return is_new;
+}
+
+void SourceGaps::end_of_answer(const std::string& request) {
+  if (active_ && active_->request.name == request) {
+    active_.reset();
+  }
+}
+
+void SourceGaps::ask_for_all(Instant now) {
+  ask(0, 0, now);
+}
+
+std::optional<SourceGaps::Request> SourceGaps::due(Instant now) {
+  if (active_ && now - active_->heard.value_or(active_->began) >
+                     (active_->heard ? stall_limit : answer_limit)) {
+    active_.reset();
+  }
+  if (!active_ && !waiting_.empty()) {
+    active_ = Active{std::move(waiting_.front()), now, now, std::nullopt};
+    waiting_.pop_front();
+  }
+  if (!active_ || active_->heard || now < active_->next_write) {
+    return std::nullopt;
+  }
+  active_->next_write = now + request_interval;
+  return active_->request;
+}
+
+std::uint64_t SourceGaps::missing() const {
+  std::uint64_t missing = 0;
+  for (const auto& [session, had] : had_) {
+    for (auto stretch = had.begin(); stretch != had.end() && std::next(stretch) != had.end();
+         ++stretch) {
+      missing += std::next(stretch)->first - stretch->second - 1;
+    }
+  }
+  return missing;
+}
+
+} // namespace dyncal::recording

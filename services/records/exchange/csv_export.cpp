@@ -1,0 +1,98 @@
+#include <cmath>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "services/base/output_stream.hpp"
+#include "services/records/exchange/row_formats.hpp"
+
+namespace dyncal::services {
+namespace {
+
+// A field of a line; quoted where it would be taken for several.
+std::string field(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) {
+    return text;
+  }
+  std::string quoted = "\"";
+  for (const char c : text) {
+    quoted += c == '"' ? "\"\"" : std::string(1, c);
+  }
+  return quoted + "\"";
+}
+
+std::string first_line(const RowTable& table) {
+  std::string line;
+  for (const RowColumn& column : table.columns()) {
+    const bool has_unit = column.is_channel && !column.unit.empty();
+    line += line.empty() ? "" : ",";
+    line += field(has_unit ? fmt::format("{} [{}]", column.name, column.unit) : column.name);
+  }
+  return line + "\n";
+}
+
+void append_number(std::string& text, double value) {
+  if (std::isnan(value)) {
+    text += "nan";
+  } else {
+    fmt::format_to(std::back_inserter(text), "{}", value); // the shortest with the same bits
+  }
+}
+template <class Integer>
+void append_number(std::string& text, Integer value) {
+  fmt::format_to(std::back_inserter(text), "{}", value);
+}
+
+std::string lines_of(const Rows& rows) {
+  std::string text;
+  for (std::size_t row = 0; row < rows.count; ++row) {
+    for (std::size_t column = 0; column < rows.columns.size(); ++column) {
+      if (column > 0) {
+        text += ',';
+      }
+      std::visit([&](const auto& values) { append_number(text, values[row]); },
+                 rows.columns[column]);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+Expected<void> write_table(const RowTable& table, const std::filesystem::path& path,
+                           RowProgress& progress) {
+  auto file = OutputStream::create(path);
+  if (!file) {
+    return fail(file.error());
+  }
+  return file->write(first_line(table))
+      .and_then([&] {
+        return progress.for_each(table,
+                                 [&](const Rows& rows) { return file->write(lines_of(rows)); });
+      })
+      .and_then([&] { return file->finish(); });
+}
+
+} // namespace
+
+Expected<void> export_csv(const RowExport& wanted) {
+  auto folder = OutputFolder::create(wanted.to);
+  if (!folder) {
+    return fail(folder.error());
+  }
+  RowProgress progress(wanted);
+  for (const RowTable& table : wanted.tables) {
+    const auto path = folder->unfinished_path() / (table.source().name + ".csv");
+    if (auto written = write_table(table, path, progress); !written) {
+      return written;
+    }
+  }
+  auto contents = OutputStream::create(folder->unfinished_path() / "contents.json");
+  if (!contents) {
+    return fail(contents.error());
+  }
+  return contents->write(wanted.contents)
+      .and_then([&] { return contents->finish(); })
+      .and_then([&] { return folder->finish(); });
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,99 @@
+#include "services/records/run_folder/result_keeper.hpp"
+
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "services/evaluation/transfer_summary.hpp"
+#include "services/views/report/result_json.hpp"
+#include "services/views/report/show_outcome.hpp"
+
+namespace dyncal::services {
+namespace {
+
+constexpr const char* not_ended = "the run has not ended, or its program ended before it";
+
+void complete(RunOutcome& so_far) {
+  sort_outcome(so_far);
+  so_far.problem = not_ended;
+  if (!so_far.recipe || !so_far.transfer_functions.empty()) {
+    return;
+  }
+  TransferSummary summary(*so_far.recipe);
+  for (const StepResult& result : so_far.results) {
+    summary.add(result);
+  }
+  so_far.transfer_functions = summary.transfer_functions();
+}
+
+} // namespace
+
+ResultKeeper::ResultKeeper(std::filesystem::path path)
+    : path_(std::move(path)), thread_([this](const std::stop_token& stop) { write_newest(stop); }) {
+}
+
+ResultKeeper::~ResultKeeper() {
+  stop();
+}
+
+Expected<void> ResultKeeper::begin(RunOutcome planned) {
+  complete(planned);
+  const std::lock_guard writing(writing_);
+  if (results_kept() > planned.results.size()) {
+    return {}; // of a resumed run: more has come meanwhile
+  }
+  return write_json(path_, result_json(planned));
+}
+
+void ResultKeeper::keep(RunOutcome so_far) {
+  {
+    const std::lock_guard lock(mutex_);
+    newest_ = std::move(so_far);
+  }
+  changed_.notify_one();
+}
+
+std::size_t ResultKeeper::results_kept() const {
+  const std::lock_guard lock(mutex_);
+  return results_kept_;
+}
+
+std::optional<Error> ResultKeeper::problem() const {
+  const std::lock_guard lock(mutex_);
+  return problem_;
+}
+
+void ResultKeeper::write_newest(const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  while (changed_.wait(lock, stop, [&] { return newest_.has_value(); })) {
+    RunOutcome state = *std::exchange(newest_, std::nullopt);
+    lock.unlock();
+    complete(state);
+    const std::lock_guard writing(writing_);
+    const auto written = write_json(path_, result_json(state));
+    lock.lock();
+    problem_ = written ? std::nullopt : std::optional(written.error());
+    results_kept_ = written ? state.results.size() : results_kept_;
+    if (stop.stop_requested()) {
+      return; // the final state follows
+    }
+  }
+}
+
+void ResultKeeper::stop() {
+  thread_.request_stop();
+  if (thread_.joinable()) {
+    thread_.join();
+  }
+}
+
+Expected<void> ResultKeeper::finish(const RunOutcome& outcome) {
+  stop();
+  auto written = write_results(outcome, path_);
+  if (written) {
+    results_kept_ = outcome.results.size();
+  }
+  return written;
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,92 @@
+#include "services/records/store/migrations.hpp"
+
+#include <fmt/core.h>
+
+namespace dyncal::services {
+namespace {
+
+using Change = std::vector<std::string>; // statements
+
+const std::vector<Change>& changes() {
+  static const std::vector<Change> all{
+      {"CREATE TABLE results ("
+       "result_sha256 TEXT PRIMARY KEY, content_sha256 TEXT NOT NULL, recipe_sha256 TEXT NOT NULL, "
+       "bench TEXT NOT NULL, run TEXT NOT NULL, state TEXT NOT NULL, method TEXT NOT NULL, "
+       "began_utc TEXT NOT NULL, ended_utc TEXT NOT NULL, software TEXT NOT NULL, "
+       "planned_steps BIGINT NOT NULL, measured_steps BIGINT NOT NULL, problem TEXT NOT NULL, "
+       "recipe TEXT NOT NULL, folder TEXT NOT NULL, added_utc TEXT NOT NULL, "
+       "document TEXT NOT NULL)",
+       "CREATE INDEX results_by_run ON results (bench, run)",
+       "CREATE TABLE sources ("
+       "result_sha256 TEXT NOT NULL REFERENCES results (result_sha256), source TEXT NOT NULL, "
+       "device TEXT NOT NULL, serial TEXT NOT NULL, firmware TEXT NOT NULL, "
+       "software TEXT NOT NULL, PRIMARY KEY (result_sha256, source))",
+       "CREATE TABLE points ("
+       "result_sha256 TEXT NOT NULL REFERENCES results (result_sha256), source TEXT NOT NULL, "
+       "channel TEXT NOT NULL, frequency_text_hz TEXT NOT NULL, "
+       "frequency_hz DOUBLE PRECISION NOT NULL, level_m_s2 DOUBLE PRECISION, unit TEXT NOT NULL, "
+       "magnitude DOUBLE PRECISION, u_magnitude DOUBLE PRECISION, k_magnitude DOUBLE PRECISION, "
+       "expanded_magnitude DOUBLE PRECISION, phase_rad DOUBLE PRECISION, "
+       "u_phase_rad DOUBLE PRECISION, k_phase DOUBLE PRECISION, "
+       "expanded_phase_rad DOUBLE PRECISION, flags TEXT NOT NULL)",
+       "CREATE INDEX points_of_result ON points (result_sha256)"},
+      {"CREATE TABLE samples ("
+       "result_sha256 TEXT NOT NULL REFERENCES results (result_sha256), channel TEXT NOT NULL, "
+       "step BIGINT NOT NULL, repetition BIGINT NOT NULL, data_sha256 TEXT NOT NULL)",
+       "CREATE INDEX samples_of_result ON samples (result_sha256)"},
+  };
+  return all;
+}
+
+Expected<int> version_of(Database& database) {
+  const auto made =
+      database.execute("CREATE TABLE IF NOT EXISTS store_version (version BIGINT NOT NULL)");
+  if (!made) {
+    return fail(made.error());
+  }
+  const auto rows = database.execute("SELECT MAX(version) FROM store_version");
+  if (!rows) {
+    return fail(rows.error());
+  }
+  return rows->empty() ? 0 : static_cast<int>(integer_of(rows->front().front()));
+}
+
+Expected<void> apply(Database& database, int change) {
+  for (const std::string& statement : changes()[static_cast<std::size_t>(change) - 1]) {
+    if (const auto done = database.execute(statement); !done) {
+      return fail(done.error());
+    }
+  }
+  const auto noted =
+      database.execute("INSERT INTO store_version (version) VALUES ($1)", {std::int64_t{change}});
+  return noted ? Expected<void>{} : fail(noted.error());
+}
+
+} // namespace
+
+int newest_store_version() {
+  return static_cast<int>(changes().size());
+}
+
+Expected<void> migrate(Database& database, int version) {
+  return database.transaction([&]() -> Expected<void> {
+    const auto now = version_of(database);
+    if (!now) {
+      return fail(now.error());
+    }
+    if (*now > newest_store_version()) {
+      return fail(ErrorCode::bad_file,
+                  fmt::format("the store is of version {}, made by a newer dyncal; this one knows "
+                              "versions to {}: use the newer one",
+                              *now, newest_store_version()));
+    }
+    for (int change = *now + 1; change <= version; ++change) {
+      if (auto applied = apply(database, change); !applied) {
+        return applied;
+      }
+    }
+    return {};
+  });
+}
+
+} // namespace dyncal::services

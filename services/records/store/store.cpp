@@ -1,0 +1,324 @@
+#include "services/records/store/store.hpp"
+
+#include <algorithm>
+#include <array>
+#include <ctime>
+
+#include <fmt/core.h>
+
+#include "services/records/store/migrations.hpp"
+
+namespace dyncal::services {
+namespace {
+
+// What `dyncal analyse` calls a run of files: the name says nothing, the time of the records does.
+constexpr const char* run_of_files = "files";
+
+std::string now_utc() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text.data();
+}
+
+// The store knows no NaN.
+DatabaseValue value(double number) {
+  return number == number ? DatabaseValue(number) : DatabaseValue(std::monostate{});
+}
+
+StoredRun run_of(const DatabaseRow& row) {
+  return {.bench = text_of(row[0]),
+          .run = text_of(row[1]),
+          .state = text_of(row[2]),
+          .began_utc = text_of(row[3]),
+          .ended_utc = text_of(row[4]),
+          .method = text_of(row[5]),
+          .software = text_of(row[6]),
+          .recipe_sha256 = text_of(row[7]),
+          .result_sha256 = text_of(row[8]),
+          .planned_steps = integer_of(row[9]),
+          .measured_steps = integer_of(row[10]),
+          .problem = text_of(row[11]),
+          .folder = text_of(row[12]),
+          .sources = {}};
+}
+
+constexpr const char* select_runs =
+    "SELECT bench, run, state, began_utc, ended_utc, method, software, recipe_sha256, "
+    "result_sha256, planned_steps, measured_steps, problem, folder FROM results "
+    "ORDER BY began_utc, added_utc, result_sha256";
+
+bool is_sensor(const RecordedInstrument& source, const std::string& sensor) {
+  return source.serial == sensor || source.device == sensor || source.source == sensor;
+}
+
+// Of texts "2026-11-22T10:15:30.125Z", compared as far as the filter goes.
+bool is_within(const std::string& began_utc, const RunFilter& filter) {
+  return (filter.since.empty() || began_utc >= filter.since) &&
+         (filter.until.empty() || began_utc.substr(0, filter.until.size()) <= filter.until);
+}
+
+bool passes(const StoredRun& run, const RunFilter& filter) {
+  const bool has_sensor =
+      filter.sensor.empty() ||
+      std::any_of(run.sources.begin(), run.sources.end(), [&](const RecordedInstrument& source) {
+        return is_sensor(source, filter.sensor);
+      });
+  return has_sensor && is_within(run.began_utc, filter) &&
+         (filter.bench.empty() || run.bench == filter.bench) &&
+         (filter.state.empty() || run.state == filter.state);
+}
+
+Error other_result(const ResultRecord& record, const DatabaseRow& known) {
+  return {
+      ErrorCode::bad_file,
+      fmt::format("{}: the store has another result of run '{}' of bench '{}' by the same "
+                  "recipe: {} from {}, this one is {}; a result is not replaced: find out which "
+                  "is right",
+                  record.folder, record.run, record.bench, text_of(known[0]).substr(0, 12),
+                  text_of(known[4]), record.result_sha256.substr(0, 12))};
+}
+
+} // namespace
+
+std::string store_place(const std::string& option, const std::filesystem::path& runs_folder) {
+  if (option == "none") {
+    return "";
+  }
+  return option.empty() ? (runs_folder / "dyncal.sqlite").string() : option;
+}
+
+Expected<std::unique_ptr<Store>> Store::open(const std::string& place) {
+  auto database = is_server(place) ? open_postgres(place) : open_sqlite(place);
+  if (!database) {
+    return fail(database.error());
+  }
+  if (const auto ready = migrate(**database); !ready) {
+    return fail(ready.error().code,
+                fmt::format("{}: {}", without_password(place), ready.error().message));
+  }
+  return std::unique_ptr<Store>(new Store(std::move(*database)));
+}
+
+Expected<std::unique_ptr<Store>> Store::open_existing(const std::string& place) {
+  if (!is_server(place) && !std::filesystem::exists(place)) {
+    return fail(ErrorCode::bad_file,
+                fmt::format("{}: there is no store yet; 'dyncal run' makes it, or 'dyncal store "
+                            "add'; name another with --store",
+                            place));
+  }
+  return open(place);
+}
+
+Expected<StoreAddition> Store::add(const std::filesystem::path& path) {
+  const auto record = read_result_record(path);
+  if (!record) {
+    return fail(record.error());
+  }
+  StoreAddition addition = StoreAddition::added;
+  const auto written = database_->transaction([&]() -> Expected<void> {
+    const auto way = make_way(*record);
+    if (!way) {
+      return fail(way.error());
+    }
+    addition = *way;
+    return addition == StoreAddition::already_there ? Expected<void>{} : insert(*record);
+  });
+  if (!written) {
+    return fail(written.error());
+  }
+  return addition;
+}
+
+// What becomes of the record, beside those of its run that are there.
+Expected<StoreAddition> Store::make_way(const ResultRecord& record) {
+  const auto rows = database_->execute(
+      "SELECT result_sha256, content_sha256, recipe_sha256, state, folder, began_utc "
+      "FROM results WHERE bench = $1 AND run = $2",
+      {record.bench, record.run});
+  if (!rows) {
+    return fail(rows.error());
+  }
+  for (const DatabaseRow& row : *rows) {
+    if (text_of(row[0]) == record.result_sha256 || text_of(row[1]) == record.content_sha256) {
+      return StoreAddition::already_there;
+    }
+  }
+  for (const DatabaseRow& row : *rows) {
+    const bool other_files = record.run == run_of_files && text_of(row[5]) != record.began_utc;
+    if (text_of(row[2]) != record.recipe_sha256 || other_files) {
+      continue;
+    }
+    if (text_of(row[3]) != to_string(RunCompletion::unfinished)) {
+      return fail(other_result(record, row));
+    }
+    if (const auto removed = remove(text_of(row[0])); !removed) {
+      return fail(removed.error());
+    }
+    return StoreAddition::replaced_unfinished;
+  }
+  return StoreAddition::added;
+}
+
+Expected<void> Store::insert(const ResultRecord& record) {
+  const auto done = database_->execute(
+      "INSERT INTO results (result_sha256, content_sha256, recipe_sha256, bench, run, state, "
+      "method, began_utc, ended_utc, software, planned_steps, measured_steps, problem, recipe, "
+      "folder, added_utc, document) "
+      "VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16, $17)",
+      {record.result_sha256, record.content_sha256, record.recipe_sha256, record.bench, record.run,
+       to_string(record.state), record.method, record.began_utc, record.ended_utc, record.software,
+       record.planned_steps, record.measured_steps, record.problem, record.recipe, record.folder,
+       now_utc(), record.document});
+  if (!done) {
+    return fail(done.error());
+  }
+  for (const RecordedInstrument& source : record.sources) {
+    const auto inserted = database_->execute(
+        "INSERT INTO sources (result_sha256, source, device, serial, firmware, software) "
+        "VALUES ($1, $2, $3, $4, $5, $6)",
+        {record.result_sha256, source.source, source.device, source.serial, source.firmware,
+         source.software});
+    if (!inserted) {
+      return fail(inserted.error());
+    }
+  }
+  return insert_values(record);
+}
+
+Expected<void> Store::insert_values(const ResultRecord& record) {
+  for (const RecordedPoint& point : record.points) {
+    const auto inserted = database_->execute(
+        "INSERT INTO points (result_sha256, source, channel, frequency_text_hz, frequency_hz, "
+        "level_m_s2, unit, magnitude, u_magnitude, k_magnitude, expanded_magnitude, phase_rad, "
+        "u_phase_rad, k_phase, expanded_phase_rad, flags) "
+        "VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16)",
+        {record.result_sha256, point.source, point.channel, point.frequency_text_hz,
+         point.frequency_hz, value(point.level_m_s2), point.unit, value(point.magnitude),
+         value(point.u_magnitude), value(point.k_magnitude), value(point.expanded_magnitude),
+         value(point.phase_rad), value(point.u_phase_rad), value(point.k_phase),
+         value(point.expanded_phase_rad), point.flags});
+    if (!inserted) {
+      return fail(inserted.error());
+    }
+  }
+  for (const RecordedSamples& samples : record.samples) {
+    const auto inserted = database_->execute(
+        "INSERT INTO samples (result_sha256, channel, step, repetition, data_sha256) "
+        "VALUES ($1, $2, $3, $4, $5)",
+        {record.result_sha256, samples.channel, samples.step, samples.repetition, samples.sha256});
+    if (!inserted) {
+      return fail(inserted.error());
+    }
+  }
+  return {};
+}
+
+Expected<void> Store::remove(const std::string& result_sha256) {
+  for (const char* table : {"samples", "points", "sources", "results"}) {
+    const auto removed = database_->execute(
+        fmt::format("DELETE FROM {} WHERE result_sha256 = $1", table), {result_sha256});
+    if (!removed) {
+      return fail(removed.error());
+    }
+  }
+  return {};
+}
+
+Expected<std::vector<StoredRun>> Store::runs(const RunFilter& filter,
+                                             const SharedWorkCount& count) {
+  const auto rows = database_->execute(select_runs);
+  if (!rows) {
+    return fail(rows.error());
+  }
+  begin_work(count, "looking through the store", "runs", rows->size());
+  std::vector<StoredRun> found;
+  for (const DatabaseRow& row : *rows) {
+    StoredRun run = run_of(row);
+    auto sources = sources_of(run.result_sha256);
+    if (!sources) {
+      return fail(sources.error());
+    }
+    run.sources = std::move(*sources);
+    if (passes(run, filter)) {
+      found.push_back(std::move(run));
+    }
+    add_done(count);
+  }
+  return found;
+}
+
+Expected<std::vector<RecordedInstrument>> Store::sources_of(const std::string& result_sha256) {
+  const auto rows = database_->execute(
+      "SELECT source, device, serial, firmware, software FROM sources WHERE result_sha256 = $1 "
+      "ORDER BY source",
+      {result_sha256});
+  if (!rows) {
+    return fail(rows.error());
+  }
+  std::vector<RecordedInstrument> sources;
+  for (const DatabaseRow& row : *rows) {
+    sources.push_back(
+        {text_of(row[0]), text_of(row[1]), text_of(row[2]), text_of(row[3]), text_of(row[4])});
+  }
+  return sources;
+}
+
+Expected<std::vector<RecordedPoint>> Store::points_of(const std::string& result_sha256,
+                                                      const std::string& source) {
+  const auto rows = database_->execute(
+      "SELECT channel, frequency_text_hz, frequency_hz, level_m_s2, unit, magnitude, u_magnitude, "
+      "k_magnitude, expanded_magnitude, phase_rad, u_phase_rad, k_phase, expanded_phase_rad, flags "
+      "FROM points WHERE result_sha256 = $1 AND source = $2 ORDER BY channel, frequency_hz",
+      {result_sha256, source});
+  if (!rows) {
+    return fail(rows.error());
+  }
+  std::vector<RecordedPoint> points;
+  for (const DatabaseRow& row : *rows) {
+    points.push_back({.source = source,
+                      .channel = text_of(row[0]),
+                      .frequency_text_hz = text_of(row[1]),
+                      .frequency_hz = number_of(row[2]),
+                      .level_m_s2 = number_of(row[3]),
+                      .unit = text_of(row[4]),
+                      .magnitude = number_of(row[5]),
+                      .u_magnitude = number_of(row[6]),
+                      .k_magnitude = number_of(row[7]),
+                      .expanded_magnitude = number_of(row[8]),
+                      .phase_rad = number_of(row[9]),
+                      .u_phase_rad = number_of(row[10]),
+                      .k_phase = number_of(row[11]),
+                      .expanded_phase_rad = number_of(row[12]),
+                      .flags = text_of(row[13])});
+  }
+  return points;
+}
+
+Expected<std::vector<Calibration>> Store::calibrations(const std::string& sensor,
+                                                       const SharedWorkCount& count) {
+  auto runs_with_sensor = runs({.sensor = sensor}, count);
+  if (!runs_with_sensor) {
+    return fail(runs_with_sensor.error());
+  }
+  begin_work(count, "reading", "calibrations", runs_with_sensor->size());
+  std::vector<Calibration> calibrations;
+  for (const StoredRun& run : *runs_with_sensor) {
+    for (const RecordedInstrument& source : run.sources) {
+      auto points = is_sensor(source, sensor) ? points_of(run.result_sha256, source.source)
+                                              : Expected<std::vector<RecordedPoint>>{};
+      if (!points) {
+        return fail(points.error());
+      }
+      if (!points->empty()) {
+        calibrations.push_back({run, source.source, std::move(*points)});
+      }
+    }
+    add_done(count);
+  }
+  return calibrations;
+}
+
+} // namespace dyncal::services

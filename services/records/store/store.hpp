@@ -1,0 +1,93 @@
+// The results of all runs of a laboratory, each with recipe, software and hashes, in one database.
+//
+// A result is known by bench, run and recipe. Adding it again does nothing; a second, different
+// result of the same identity is refused, naming both. One exception: the result of a run that had
+// not ended gives way to a later one of that run. The same run evaluated by another recipe stands
+// beside.
+//
+// The store is an index: the run folders are the truth, and from them it can be rebuilt. Fails
+// (bad_file, bad_argument) as databases and result files do. Belongs to one thread.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "services/base/error.hpp"
+#include "services/base/work_count.hpp"
+#include "services/records/store/database.hpp"
+#include "services/records/store/result_record.hpp"
+
+namespace dyncal::services {
+
+// `option`: what the user gave, a place as is_server() knows it; "none": no store, returned as "";
+// "": dyncal.sqlite in the folder of all runs.
+[[nodiscard]] std::string store_place(const std::string& option,
+                                      const std::filesystem::path& runs_folder);
+
+enum class StoreAddition { added, already_there, replaced_unfinished };
+
+struct StoredRun {
+  std::string bench;
+  std::string run;
+  std::string state; // to_string(RunCompletion)
+  std::string began_utc;
+  std::string ended_utc;
+  std::string method;
+  std::string software;
+  std::string recipe_sha256;
+  std::string result_sha256;
+  std::int64_t planned_steps = 0;
+  std::int64_t measured_steps = 0;
+  std::string problem;
+  std::string folder;
+  std::vector<RecordedInstrument> sources;
+};
+
+struct RunFilter { // empty: any
+  std::string bench{};
+  std::string sensor{}; // serial number, device or name of a source
+  std::string since{};  // "2026-11-22", or longer; of the begin, in UTC
+  std::string until{};  // the whole day, if it is one
+  std::string state{};
+};
+
+// What one run says of one sensor.
+struct Calibration {
+  StoredRun run;
+  std::string source; // the sensor's, in the run
+  std::vector<RecordedPoint> points;
+};
+
+class Store {
+public:
+  // Makes it if there is none.
+  [[nodiscard]] static Expected<std::unique_ptr<Store>> open(const std::string& place);
+  // Fails (bad_file) if there is none, for those who only look something up.
+  [[nodiscard]] static Expected<std::unique_ptr<Store>> open_existing(const std::string& place);
+
+  // A result file or a run folder.
+  [[nodiscard]] Expected<StoreAddition> add(const std::filesystem::path& path);
+  // By time.
+  [[nodiscard]] Expected<std::vector<StoredRun>> runs(const RunFilter& filter,
+                                                      const SharedWorkCount& count = nullptr);
+  // Of a sensor by serial number, device or name of its source; by time.
+  [[nodiscard]] Expected<std::vector<Calibration>>
+  calibrations(const std::string& sensor, const SharedWorkCount& count = nullptr);
+
+private:
+  explicit Store(std::unique_ptr<Database> database) : database_(std::move(database)) {}
+  Expected<StoreAddition> make_way(const ResultRecord& record);
+  Expected<void> insert(const ResultRecord& record);
+  Expected<void> insert_values(const ResultRecord& record);
+  Expected<void> remove(const std::string& result_sha256);
+  Expected<std::vector<RecordedInstrument>> sources_of(const std::string& result_sha256);
+  Expected<std::vector<RecordedPoint>> points_of(const std::string& result_sha256,
+                                                 const std::string& source);
+
+  std::unique_ptr<Database> database_;
+};
+
+} // namespace dyncal::services

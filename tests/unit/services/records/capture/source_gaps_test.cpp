@@ -1,0 +1,67 @@
+#include "services/records/capture/source_gaps.hpp"
+
+#include <gtest/gtest.h>
+
+namespace dyncal::recording {
+namespace {
+
+using namespace std::chrono_literals;
+
+const SourceGaps::Instant start{std::chrono::hours(1)};
+
+TEST(SourceGaps, AskForWhatAJumpLeftOut) {
+  SourceGaps gaps("me");
+  EXPECT_TRUE(gaps.take_live(7, 0, start));
+  EXPECT_TRUE(gaps.take_live(7, 1, start));
+  EXPECT_FALSE(gaps.due(start));
+  EXPECT_TRUE(gaps.take_live(7, 5, start));
+  EXPECT_EQ(gaps.missing(), 3U);
+  const auto request = gaps.due(start);
+  ASSERT_TRUE(request);
+  EXPECT_EQ(request->session, 7U);
+  EXPECT_EQ(request->number, 1U);
+  EXPECT_FALSE(gaps.due(start + 100ms)) << "asked again only after a while";
+  EXPECT_TRUE(gaps.due(start + 600ms));
+  EXPECT_TRUE(gaps.take_again(7, 2, start + 1s));
+  EXPECT_TRUE(gaps.take_again(7, 3, start + 1s));
+  EXPECT_TRUE(gaps.take_again(7, 4, start + 1s));
+  EXPECT_FALSE(gaps.take_again(7, 5, start + 1s)) << "it is there";
+  gaps.end_of_answer(request->name);
+  EXPECT_EQ(gaps.missing(), 0U);
+  EXPECT_EQ(gaps.recovered(), 3U);
+  EXPECT_EQ(gaps.messages(), 6U);
+  EXPECT_FALSE(gaps.due(start + 10s));
+}
+
+TEST(SourceGaps, CountAsMissingWhatTheSourceDoesNotGive) {
+  SourceGaps gaps("me");
+  gaps.take_live(7, 0, start);
+  gaps.take_live(7, 10, start);
+  EXPECT_TRUE(gaps.due(start));
+  EXPECT_FALSE(gaps.due(start + SourceGaps::answer_limit + 1s));
+  EXPECT_EQ(gaps.missing(), 9U);
+}
+
+TEST(SourceGaps, StoreNoMessageTwice) {
+  SourceGaps gaps("me");
+  EXPECT_TRUE(gaps.take_live(7, 3, start));
+  EXPECT_FALSE(gaps.take_live(7, 3, start));
+  EXPECT_TRUE(gaps.take_live(8, 3, start));
+}
+
+TEST(SourceGaps, AskForTheBeginningOfARun) {
+  SourceGaps gaps("me");
+  gaps.take_live(7, 100, start);
+  gaps.ask_for_all(start);
+  const auto request = gaps.due(start);
+  ASSERT_TRUE(request);
+  EXPECT_EQ(request->session, 0U);
+  for (std::uint64_t number = 90; number < 100; ++number) {
+    EXPECT_TRUE(gaps.take_again(7, number, start));
+  }
+  EXPECT_EQ(gaps.missing(), 0U);
+  EXPECT_EQ(gaps.recovered(), 10U);
+}
+
+} // namespace
+} // namespace dyncal::recording
