@@ -7,8 +7,8 @@
 #include "drivers/generator/left_over_state.hpp"
 #include "drivers/link/scpi_answer.hpp"
 #include "services/base/json_text.hpp"
-#include "services/bench_check/checks.hpp"
-#include "services/bench_check/report.hpp"
+#include "services/checks/bench_check/checks.hpp"
+#include "services/checks/bench_check/report.hpp"
 #include "services/command/work_progress.hpp"
 
 namespace dyncal::services {

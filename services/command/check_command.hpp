@@ -1,6 +1,6 @@
 // `dyncal check BENCH.toml...`: all that is wrong with bench files, and with them together
-// (services/bench_check); nothing is driven, and no network is used. The exit status is 0 without
-// errors, 1 with some. Belongs to one thread.
+// (services/checks/bench_check); nothing is driven, and no network is used. The exit status is 0
+// without errors, 1 with some. Belongs to one thread.
 #pragma once
 
 #include <filesystem>

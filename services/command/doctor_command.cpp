@@ -7,11 +7,11 @@
 #include <nlohmann/json.hpp>
 
 #include "services/base/json_text.hpp"
+#include "services/checks/doctor/checks.hpp"
+#include "services/checks/doctor/report.hpp"
+#include "services/checks/doctor/unheard_analysis.hpp"
 #include "services/command/laboratory_look.hpp"
 #include "services/daemon/program/bench_program.hpp"
-#include "services/doctor/checks.hpp"
-#include "services/doctor/report.hpp"
-#include "services/doctor/unheard_analysis.hpp"
 
 namespace dyncal::services {
 namespace {

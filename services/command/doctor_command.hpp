@@ -1,5 +1,5 @@
 // `dyncal doctor`: who is on the network, what does not fit together, and what to do about it
-// (services/doctor). Works where nothing is on the network, too.
+// (services/checks/doctor). Works where nothing is on the network, too.
 //
 // The exit status is for monitoring: 0 nothing is wrong, 1 warnings, 2 problems, 3 it could not
 // look. Belongs to one thread.

@@ -5,9 +5,9 @@
 #include "services/base/version.hpp"
 #include "services/bus/host_clocks/clock_messages.hpp"
 #include "services/bus/host_network.hpp"
-#include "services/doctor/announcement_listener.hpp"
-#include "services/doctor/laboratory_watch.hpp"
-#include "services/doctor/unheard_analysis.hpp"
+#include "services/checks/doctor/announcement_listener.hpp"
+#include "services/checks/doctor/laboratory_watch.hpp"
+#include "services/checks/doctor/unheard_analysis.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -5,10 +5,10 @@
 #include <stop_token>
 #include <string>
 
+#include "services/checks/doctor/finding.hpp"
+#include "services/checks/doctor/host_view.hpp"
+#include "services/checks/doctor/laboratory_view.hpp"
 #include "services/daemon/program/program.hpp"
-#include "services/doctor/finding.hpp"
-#include "services/doctor/host_view.hpp"
-#include "services/doctor/laboratory_view.hpp"
 
 namespace dyncal::services {
 

@@ -11,8 +11,8 @@
 #include "services/bench/draft/bench_text.hpp"
 #include "services/bench/draft/draft_questions.hpp"
 #include "services/bench/draft/new_file.hpp"
-#include "services/bench_check/checks.hpp"
-#include "services/bench_check/report.hpp"
+#include "services/checks/bench_check/checks.hpp"
+#include "services/checks/bench_check/report.hpp"
 #include "services/command/draft_options.hpp"
 #include "services/daemon/program/program.hpp"
 

@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "services/bench_check/checks.hpp"
-#include "services/bench_check/report.hpp"
+#include "services/checks/bench_check/checks.hpp"
+#include "services/checks/bench_check/report.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace dyncal::services::bench_draft {

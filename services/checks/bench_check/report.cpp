@@ -1,0 +1,60 @@
+#include "services/checks/bench_check/report.hpp"
+
+#include <algorithm>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "services/base/printable_text.hpp"
+
+namespace dyncal::services::bench_check {
+namespace {
+
+std::size_t count(const Findings& findings, Severity severity) {
+  return static_cast<std::size_t>(std::ranges::count(findings, severity, &Finding::severity));
+}
+
+std::string counted(std::size_t number, const char* what) {
+  return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
+}
+
+} // namespace
+
+int exit_status(const Findings& findings) {
+  return count(findings, Severity::error) > 0 ? 1 : 0;
+}
+
+std::string as_text(const Findings& findings) {
+  std::string text;
+  for (const Finding& finding : findings) {
+    const BenchProblem problem{finding.file, finding.line, finding.key, finding.sentence};
+    text += fmt::format("{}\n", one_line(problem.text(to_string(finding.severity))));
+  }
+  return text + fmt::format("{}, {}, {}\n", counted(count(findings, Severity::error), "error"),
+                            counted(count(findings, Severity::warning), "warning"),
+                            counted(count(findings, Severity::note), "note"));
+}
+
+nlohmann::ordered_json as_json(const Findings& findings, std::span<const BenchView> views) {
+  using Json = nlohmann::ordered_json;
+  Json benches = Json::array();
+  for (const BenchView& view : views) {
+    benches.push_back({{"file", view.bench.path.string()},
+                       {"bench", view.bench.bench},
+                       {"sha256", view.bench.sha256}});
+  }
+  Json list = Json::array();
+  for (const Finding& finding : findings) {
+    list.push_back({{"severity", to_string(finding.severity)},
+                    {"file", finding.file},
+                    {"line", finding.line},
+                    {"key", finding.key},
+                    {"sentence", finding.sentence}});
+  }
+  const auto worst = std::ranges::max_element(findings, {}, &Finding::severity);
+  return {{"status", worst == findings.end() ? "ok" : to_string(worst->severity)},
+          {"benches", std::move(benches)},
+          {"findings", std::move(list)}};
+}
+
+} // namespace dyncal::services::bench_check

@@ -1,0 +1,213 @@
+#include <cmath>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "services/checks/doctor/checks.hpp"
+#include "services/contract/bench_file_origin.hpp"
+
+namespace dyncal::services::doctor {
+namespace {
+
+constexpr double full_buffer = 0.5;
+// The rate of a status is counted over a second or so, in blocks.
+constexpr double rate_tolerance_rel = 0.1;
+
+using SourceKey = LaboratoryView::SourceKey;
+
+std::string name_of(const SourceKey& key) {
+  return key.first + "/" + key.second;
+}
+
+std::string host_of(const ObservedSource& source) {
+  const bool known = source.description && !source.description->host().empty();
+  return known ? " on " + source.description->host() : "";
+}
+
+// The sentence that the source gives itself, if it gives one.
+std::string reason_of(const ObservedSource& source) {
+  return source.status && !source.status->message().empty() ? ": " + source.status->message() : "";
+}
+
+Finding check_state(const SourceKey& key, const ObservedSource& source) {
+  const std::string subject = "source " + name_of(key) + host_of(source);
+  if (!source.status) {
+    return {Severity::problem, "sources",
+            subject + " has described itself, but no status comes; does its service still run?"};
+  }
+  switch (source.status->state()) {
+  case wire::SOURCE_STARTING:
+    return {Severity::warning, "sources",
+            subject + " has received nothing yet" + reason_of(source)};
+  case wire::SOURCE_RUNNING:
+    return {Severity::ok, "sources",
+            fmt::format("{} is running, {:.1f} samples a second, {} readers{}", subject,
+                        source.status->rate_hz(), source.status->matched_readers(),
+                        reason_of(source))};
+  case wire::SOURCE_SILENT:
+    return {Severity::problem, "sources",
+            subject + " is silent; is its instrument on and connected?" + reason_of(source)};
+  case wire::SOURCE_ENDED:
+    return {Severity::ok, "sources",
+            subject + " has come to its end, as a recording does" + reason_of(source)};
+  case wire::SOURCE_FAILED:
+    break;
+  }
+  return {Severity::problem, "sources", subject + " has failed" + reason_of(source)};
+}
+
+void add_loss(const std::string& subject, std::uint64_t before, std::uint64_t now,
+              const std::string& what, const std::string& advice, Findings& findings) {
+  if (now > before) {
+    findings.push_back(
+        {Severity::problem, "losses",
+         fmt::format("{}: {} samples {} while I looked; {}", subject, now - before, what, advice)});
+  } else if (now > 0) {
+    findings.push_back({Severity::warning, "losses",
+                        fmt::format("{}: {} samples {} since its service was started, none while I "
+                                    "looked",
+                                    subject, now, what)});
+  }
+}
+
+Findings check_losses(const SourceKey& key, const ObservedSource& source) {
+  Findings findings;
+  if (!source.status || !source.first_status) {
+    return findings;
+  }
+  const wire::SourceStatus& before = *source.first_status;
+  const wire::SourceStatus& now = *source.status;
+  const std::string subject = name_of(key) + host_of(source);
+  add_loss(subject, before.lost_in_transit(), now.lost_in_transit(),
+           "were lost between device and service",
+           "look at the network between them, and at 'buffers' of that host", findings);
+  add_loss(subject, before.lost_in_device(), now.lost_in_device(), "were lost in the device",
+           "reported by the device: lower its rate or see its manual", findings);
+  add_loss(subject, before.dropped_in_service(), now.dropped_in_service(),
+           "were dropped because the network did not take them",
+           "a reader hangs or the network is slower than the source", findings);
+  if (now.buffer_fill() > full_buffer) {
+    findings.push_back({Severity::warning, "losses",
+                        fmt::format("{}: its buffer is {:.0f} % full; a reader hangs or the "
+                                    "network is slower than the source",
+                                    subject, now.buffer_fill() * 100.0)});
+  }
+  return findings;
+}
+
+Findings check_twins(const SourceKey& key, const ObservedSource& source) {
+  if (!source.twins && source.writers.size() < 2) {
+    return {};
+  }
+  return {{source.twins ? Severity::problem : Severity::warning, "twins",
+           fmt::format("two services publish source {}{}{}; end one of them, or give it another "
+                       "name",
+                       name_of(key), source.writers.empty() ? "" : ": ",
+                       fmt::join(source.writers, " and "))}};
+}
+
+void append(Findings& findings, const Findings& more) {
+  findings.insert(findings.end(), more.begin(), more.end());
+}
+
+// Frequencies are held against half of the stated rate before a run.
+Findings check_rate(const SourceKey& key, const ObservedSource& source,
+                    const SourceSettings& settings) {
+  const bool is_running = source.status && source.status->state() == wire::SOURCE_RUNNING;
+  const double stated_hz = settings.nominal_rate_hz.value_or(0.0);
+  const double rate_hz = is_running ? source.status->rate_hz() : 0.0;
+  if (!(stated_hz > 0.0) || !(rate_hz > 0.0) ||
+      std::abs(rate_hz / stated_hz - 1.0) < rate_tolerance_rel) {
+    return {};
+  }
+  return {
+      {Severity::warning, "bench file",
+       fmt::format("source {} sends {:.4g} samples a second, but its nominal_rate_hz is {:.6g}: "
+                   "'dyncal check' holds the frequencies against that",
+                   name_of(key), rate_hz, stated_hz)}};
+}
+
+// Against the file at hand.
+Findings check_against(const BenchFile& bench, const LaboratoryView& view) {
+  Findings findings;
+  for (const SourceSettings& settings : bench.sources) {
+    const SourceKey key{bench.bench, settings.name};
+    const auto found = view.sources.find(key);
+    if (found == view.sources.end()) {
+      findings.push_back({Severity::problem, "bench file",
+                          fmt::format("source {} of {} is not on the network; is its service "
+                                      "running with this bench file, in DDS domain {}?",
+                                      name_of(key), bench.path.string(), view.domain)});
+      continue;
+    }
+    append(findings, check_rate(key, found->second, settings));
+    if (!found->second.description) {
+      continue;
+    }
+    const wire::SourceDescription& description = *found->second.description;
+    if (const auto difference =
+            settings_difference(description.settings(), settings.origin.settings)) {
+      findings.push_back({Severity::problem, "bench file",
+                          refusal(*difference, key.first, key.second, description.host())});
+    } else if (!description.bench_file_sha256().empty() &&
+               description.bench_file_sha256() != bench.sha256) {
+      findings.push_back({Severity::ok, "bench file",
+                          fmt::format("the service of {}{} has read another bench file, which says "
+                                      "the same of this source",
+                                      name_of(key), host_of(found->second))});
+    }
+  }
+  if (findings.empty()) {
+    findings.push_back({Severity::ok, "bench file",
+                        fmt::format("all sources of {} are there, and their services have read "
+                                    "this file",
+                                    bench.path.string())});
+  }
+  return findings;
+}
+
+// Services of one bench against each other.
+Findings check_files_of_benches(const LaboratoryView& view) {
+  std::map<std::string, std::map<std::string, std::string>> files; // bench -> sha256 -> source
+  for (const auto& [key, source] : view.sources) {
+    if (source.description && !source.description->bench_file_sha256().empty()) {
+      files[key.first].emplace(source.description->bench_file_sha256(), name_of(key));
+    }
+  }
+  Findings findings;
+  for (const auto& [bench, sources] : files) {
+    if (sources.size() > 1) {
+      findings.push_back(
+          {Severity::warning, "bench file",
+           fmt::format("the services of bench {} have read different bench files "
+                       "(those of {} and {}); restart them with the same",
+                       bench, sources.begin()->second, std::next(sources.begin())->second)});
+    }
+  }
+  return findings;
+}
+
+} // namespace
+
+Findings check_sources(const LaboratoryView& view, const std::optional<BenchFile>& bench) {
+  Findings findings;
+  Findings losses;
+  for (const auto& [key, source] : view.sources) {
+    findings.push_back(check_state(key, source));
+    append(losses, check_losses(key, source));
+    append(losses, check_twins(key, source));
+  }
+  if (findings.empty()) {
+    findings.push_back({Severity::warning, "sources", "no source is there"});
+  } else if (losses.empty()) {
+    losses.push_back({Severity::ok, "losses", "no source has lost anything"});
+  }
+  append(findings, losses);
+  append(findings, check_files_of_benches(view));
+  if (bench) {
+    append(findings, check_against(*bench, view));
+  }
+  return findings;
+}
+
+} // namespace dyncal::services::doctor

@@ -1,0 +1,48 @@
+// The judges: what was observed becomes findings. Each looks at one thing and always gives at least
+// one finding, so that a report shows what was looked at. Plain functions, any thread.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "services/bench/file/bench_file.hpp"
+#include "services/checks/doctor/finding.hpp"
+#include "services/checks/doctor/host_view.hpp"
+#include "services/checks/doctor/laboratory_view.hpp"
+
+namespace dyncal::services::doctor {
+
+// Who is there: programs and an analysis service, versions of software and contract, clocks.
+[[nodiscard]] Findings check_programs(const LaboratoryView& view);
+
+// Every source: state, losses, buffer, twins, and whether its service has read the same bench file
+// as the others of its bench and as `bench`, if one is given.
+[[nodiscard]] Findings check_sources(const LaboratoryView& view,
+                                     const std::optional<BenchFile>& bench);
+
+// The guards of exciters: whether one is there that has the address of the generator of `bench`,
+// if one is given, and whether an output may be on that a guard cannot switch off.
+[[nodiscard]] Findings check_guards(const LaboratoryView& view,
+                                    const std::optional<BenchFile>& bench);
+
+// Writers and readers of the contract's topics that have one another's topic and do not match, and
+// why: type, QoS (qos_mismatch.hpp), partition.
+[[nodiscard]] Findings check_endpoints(const LaboratoryView& view,
+                                       const std::vector<std::string>& benches);
+
+// What the network between the hosts lets through, as far as it shows: multicast, unicast of
+// discovery, samples.
+[[nodiscard]] Findings check_network(const LaboratoryView& view);
+
+// What is lost on the way to every program that answers, and back.
+[[nodiscard]] Findings check_loss(const LaboratoryView& view);
+
+// This host: buffers, MTU, sockets, room for results.
+[[nodiscard]] Findings check_host(const HostView& host, int domain);
+
+// Whether a partition's name, which may be a pattern, matches that of the other side. Two patterns
+// do not match.
+[[nodiscard]] bool partitions_match(const std::string& first, const std::string& second);
+
+} // namespace dyncal::services::doctor

@@ -1,0 +1,56 @@
+// Listens on the bus and gives what was observed, LaboratoryView. It asks every program for its
+// clock and sends it probes, and writes nothing else. Belongs to one thread.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "services/base/error.hpp"
+#include "services/bus/bus.hpp"
+#include "services/bus/clock.hpp"
+#include "services/bus/host_clocks/clock_asker.hpp"
+#include "services/bus/host_clocks/link_meter.hpp"
+#include "services/checks/doctor/laboratory_view.hpp"
+#include "services/contract/duplicate_source_detector.hpp"
+
+namespace dyncal::services::doctor {
+
+class LaboratoryWatch {
+public:
+  // `participant` and `clock` outlive the object. Fails (network) as readers and writers do.
+  [[nodiscard]] static Expected<std::unique_ptr<LaboratoryWatch>>
+  open(bus::Participant& participant, const ProgramIdentity& own, bus::Clock& clock);
+
+  // Takes what has come and asks when it is time; waits for 200 ms at most.
+  void work();
+  // Of everything since open(); announcements by multicast are left to the caller.
+  [[nodiscard]] LaboratoryView view() const;
+
+private:
+  struct Readers {
+    bus::Reader<wire::SourceDescription> descriptions;
+    bus::Reader<wire::SourceStatus> statuses;
+    bus::Reader<wire::ServiceStatus> analyses;
+  };
+
+  LaboratoryWatch(bus::Participant& participant, ProgramIdentity own, bus::Clock& clock,
+                  std::shared_ptr<bus::WakeUp> wake_up, Readers readers, ClockAsker asker,
+                  LinkMeter meter)
+      : participant_(participant), clock_(clock), wake_up_(std::move(wake_up)),
+        readers_(std::move(readers)), asker_(std::move(asker)), meter_(std::move(meter)) {
+    view_.own = std::move(own);
+  }
+  void take();
+
+  bus::Participant& participant_;
+  bus::Clock& clock_;
+  std::shared_ptr<bus::WakeUp> wake_up_;
+  Readers readers_;
+  ClockAsker asker_;
+  LinkMeter meter_;
+  LaboratoryView view_;
+  std::map<LaboratoryView::SourceKey, DuplicateSourceDetector> turns_;
+};
+
+} // namespace dyncal::services::doctor

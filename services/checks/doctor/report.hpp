@@ -1,0 +1,27 @@
+// Findings for people and for programs that watch, and the exit status that goes with them. Plain
+// functions, any thread.
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "services/checks/doctor/finding.hpp"
+#include "services/checks/doctor/laboratory_view.hpp"
+
+namespace dyncal::services::doctor {
+
+// The gravest of all.
+[[nodiscard]] Severity worst(const Findings& findings);
+
+// 0 nothing is wrong, 1 warnings, 2 problems.
+[[nodiscard]] int exit_status(const Findings& findings);
+
+// One line a finding, in their order, and a last line with what came of all.
+[[nodiscard]] std::string as_text(const Findings& findings);
+
+// "status", "findings", and what was observed: "programs", "clocks", "losses", "sources",
+// "participants".
+[[nodiscard]] nlohmann::ordered_json as_json(const Findings& findings, const LaboratoryView& view);
+
+} // namespace dyncal::services::doctor
