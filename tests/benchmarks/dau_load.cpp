@@ -27,7 +27,7 @@
 #include "tests/udp_port.hpp"
 #include "tests/unit/drivers/smartup/datagram_writer.hpp"
 #include "tests/unit/drivers/smartup/udp_sender.hpp"
-#include "tests/unit/services/dau/bench_text.hpp"
+#include "tests/unit/services/programs/dau/bench_text.hpp"
 
 namespace {
 

@@ -1,7 +1,7 @@
-// What showing progress costs (services/command/work_progress.hpp): the same work, counted and
-// shown on a terminal from its beginning, and without, in turns: pieces of work, a CSV file that is
-// read, JSON that is parsed, a fit with harmonics. Compared is the processor time, which other
-// programs of the machine hardly change; the ratio is that of the medians.
+// What showing progress costs (services/programs/command/work_progress.hpp): the same work, counted
+// and shown on a terminal from its beginning, and without, in turns: pieces of work, a CSV file
+// that is read, JSON that is parsed, a fit with harmonics. Compared is the processor time, which
+// other programs of the machine hardly change; the ratio is that of the medians.
 //
 //   progress_cost [--rounds 7] [--pieces 2000] [--max-ratio 1.1]
 //
@@ -33,7 +33,7 @@
 
 #include "analysis/sine/extended_sine_fit.hpp"
 #include "services/base/counted_file.hpp"
-#include "services/command/work_progress.hpp"
+#include "services/programs/command/work_progress.hpp"
 #include "services/records/replay/series_file.hpp"
 
 namespace {

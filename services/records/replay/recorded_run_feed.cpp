@@ -21,7 +21,8 @@ namespace {
 
 namespace topics = bus::topics;
 
-// A source that has restarted is waited with for so long (services/analysis/source_streams.hpp).
+// A source that has restarted is waited with for so long
+// (services/programs/analysis/source_streams.hpp).
 constexpr std::uint64_t session_limit_ns = 5'000'000'000;
 
 void collect(const Recipe& recipe, EvaluationOutput output, RunOutcome& outcome) {

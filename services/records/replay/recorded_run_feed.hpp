@@ -51,7 +51,8 @@ private:
     drivers::SourceDescription first{};       // what the run began with
     std::deque<WaitingBlock> waiting{};
     std::uint64_t waiting_since = 0;
-    // Its session: the run cannot go by what it describes (services/analysis/source_streams.hpp).
+    // Its session: the run cannot go by what it describes
+    // (services/programs/analysis/source_streams.hpp).
     bool is_unfit = false;
   };
 

@@ -1,6 +1,6 @@
-// The state of a laboratory as JSON, for pages and programs (services/web/PROTOCOL.md describes
-// each member): SI units, null for what is not known, counters as texts where doubles do not hold
-// them, instants as milliseconds since 1970 UTC.
+// The state of a laboratory as JSON, for pages and programs (services/programs/web/PROTOCOL.md
+// describes each member): SI units, null for what is not known, counters as texts where doubles do
+// not hold them, instants as milliseconds since 1970 UTC.
 //
 // Texts are as the network brought them: write them with json_text() (services/base/json_text.hpp),
 // which replaces what is not UTF-8. Plain functions; the thread of the laboratory.

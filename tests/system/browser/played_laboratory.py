@@ -16,7 +16,7 @@ import played_figures
 import played_state as state
 
 TOP = pathlib.Path(__file__).resolve().parents[3]
-PAGE = TOP / "services/web/page"
+PAGE = TOP / "services/programs/web/page"
 JAVASCRIPT = pathlib.Path("/usr/share/javascript")
 TYPES = {".html": "text/html", ".css": "text/css", ".js": "text/javascript",
          ".svg": "image/svg+xml", ".json": "application/json"}

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/unit/services/dau/bench_text.hpp"
+#include "tests/unit/services/programs/dau/bench_text.hpp"
 
 namespace dyncal::services::dau {
 namespace {

@@ -1,0 +1,404 @@
+#include "services/programs/analysis/source_streams.hpp"
+
+#include <algorithm>
+
+#include <fmt/core.h>
+
+#include "services/contract/bench_file_origin.hpp"
+#include "services/contract/session_number.hpp"
+#include "services/contract/source_block.hpp"
+#include "services/contract/source_description.hpp"
+#include "services/contract/source_kind.hpp"
+#include "services/contract/topics.hpp"
+#include "services/contract/triggered_record.hpp"
+
+namespace dyncal::services {
+SourceStreams::SourceStreams(bus::Participant& participant, std::shared_ptr<bus::WakeUp> wake_up,
+                             std::string bench, std::string run, RunEvaluator& evaluator,
+                             Begin begin)
+    : participant_(participant), wake_up_(std::move(wake_up)), bench_(std::move(bench)),
+      run_(std::move(run)), asker_(fmt::format("catch-up/{:016x}", random_session())),
+      evaluator_(evaluator), begin_(begin) {
+  for (const std::string& source : evaluator_.recipe().sources()) {
+    streams_.emplace(source, Stream{});
+  }
+}
+
+Expected<void> SourceStreams::take_descriptions(const KnownSources& known, Instant now) {
+  for (auto& [name, stream] : streams_) {
+    const auto source = known.find(name);
+    if (source != known.end()) {
+      stream.service = service_of(source->second.description);
+      stream.service_before = service_of(source->second.before());
+    }
+    if (source == known.end() || !source->second.description ||
+        *source->second.description ==
+            (stream.unfit ? stream.unfit->description : stream.description)) {
+      continue;
+    }
+    if (auto described = describe(name, stream, *source->second.description, now); !described) {
+      return described;
+    }
+  }
+  return {};
+}
+
+Expected<void> SourceStreams::describe(const std::string& name, Stream& stream,
+                                       const wire::SourceDescription& description, Instant now) {
+  if (stream.description && has_answered(stream)) { // from then on its samples are the run's
+    std::string other =
+        device_difference(name, from_message(*stream.description), from_message(description));
+    if (!other.empty()) {
+      stream.unfit = {description, std::move(other), true};
+      return {};
+    }
+  }
+  const bool same_session = stream.description &&
+                            stream.description->session() == description.session() &&
+                            !is_triggered(stream);
+  if (same_session) {
+    take_description(stream, description);
+    return {}; // what its samples mean was known from the beginning
+  }
+  if (stream.description || begin_ == Begin::behind) {
+    if (std::string why = rejection_reason(name, description); !why.empty()) {
+      stream.unfit = {description, std::move(why), false};
+      return {};
+    }
+  } else if (auto accepted = evaluator_.describe(name, from_message(description)); !accepted) {
+    return accepted;
+  }
+  take_description(stream, description);
+  const bool triggered = services::is_triggered(from_wire(description.kind()));
+  if (!stream.follower) {
+    stream.follower.emplace(make_follower(name, triggered));
+    if (begin_ == Begin::behind) {
+      std::visit([&](auto& follower) { follower.start_by_catching_up(now); }, *stream.follower);
+    }
+  }
+  return triggered ? open_reader(record_readers_, description.kind())
+                   : open_reader(block_readers_, description.kind());
+}
+
+std::string SourceStreams::rejection_reason(const std::string& name,
+                                            const wire::SourceDescription& description) {
+  const auto& settings = evaluator_.recipe().source_settings;
+  if (const auto difference = settings_difference(description.settings(), settings, name)) {
+    return refusal(*difference, bench_, name, description.host());
+  }
+  const auto accepted = evaluator_.describe(name, from_message(description));
+  return accepted ? "" : accepted.error().message;
+}
+
+void SourceStreams::take_description(Stream& stream, const wire::SourceDescription& description) {
+  stream.description = description;
+  stream.described.add(description.session());
+  replace_unfit(stream);
+}
+
+// Who comes late is sent the samples of a session whose description the source has replaced.
+bool SourceStreams::is_described(const Stream& stream, std::uint64_t session) const {
+  return stream.described.contains(session) || (begin_ == Begin::behind && stream.description);
+}
+
+bool SourceStreams::is_unfit(const Stream& stream, std::uint64_t session) {
+  return stream.unfit && stream.unfit->description.session() == session;
+}
+
+// Samples of a session that was never described as anything else, or of another instrument, mean
+// nothing to the run.
+void SourceStreams::replace_unfit(Stream& stream) {
+  const auto unfit = std::exchange(stream.unfit, std::nullopt);
+  if (unfit &&
+      (unfit->is_other_device || unfit->description.session() != stream.description->session())) {
+    stream.waiting.leave_out_session(unfit->description.session());
+  }
+}
+
+SourceStreams::Follower SourceStreams::make_follower(const std::string& name, bool triggered) {
+  if (triggered) {
+    return StreamFollower<wire::TriggeredRecord>(
+        run_, asker_, [this, name](const wire::TriggeredRecord& record) {
+          Stream& stream = streams_.at(name);
+          if (record.run() != run_ || is_unfit(stream, record.session())) {
+            return;
+          }
+          stream.is_undescribed = !is_described(stream, record.session());
+          if (!stream.is_undescribed) {
+            evaluator_.add(name, from_message(record));
+          }
+        });
+  }
+  return StreamFollower<wire::SampleBlock>(
+      run_, asker_,
+      [this, name](const wire::SampleBlock& block) { hand_over(name, streams_.at(name), block); });
+}
+
+void SourceStreams::hand_over(const std::string& name, Stream& stream,
+                              const wire::SampleBlock& block) {
+  if (!stream.waiting.empty() || is_unfit(stream, block.session()) ||
+      !is_described(stream, block.session()) || !evaluator_.is_ready_for(name, block.session())) {
+    stream.waiting.add(block);
+  } else {
+    stream.is_undescribed = false;
+    add(name, block);
+  }
+}
+
+// What waited was heard before: it tells less about the clock of its source, and nothing wrong.
+void SourceStreams::add(const std::string& name, const wire::SampleBlock& block) {
+  evaluator_.add(name, view_block(block),
+                 BlockTimes{block.received_utc_ns(), heard_.time_since_epoch().count()});
+}
+
+void SourceStreams::hand_over_waiting(const std::string& name, Stream& stream, Instant now) {
+  if (stream.waiting.empty()) {
+    stream.waiting_since = now;
+    return;
+  }
+  const bool overdue = now - stream.waiting_since > session_limit;
+  while (!stream.waiting.empty()) {
+    const wire::SampleBlock& block = stream.waiting.oldest();
+    const bool is_undescribed = !is_described(stream, block.session());
+    if (is_undescribed && overdue && !is_unfit(stream, block.session())) {
+      stream.is_undescribed = true;
+      stream.waiting.leave_out_session(block.session());
+      continue;
+    }
+    if (is_undescribed || is_unfit(stream, block.session()) ||
+        (!overdue && !evaluator_.is_ready_for(name, block.session()))) {
+      return;
+    }
+    stream.is_undescribed = false;
+    add(name, block);
+    stream.waiting.take_off_oldest();
+  }
+}
+
+template <class Message>
+Expected<void> SourceStreams::open_reader(std::map<wire::SourceKind, bus::Reader<Message>>& readers,
+                                          wire::SourceKind kind) {
+  if (readers.contains(kind)) {
+    return {};
+  }
+  auto reader = participant_.reader<Message>(sample_topic(from_wire(kind)),
+                                             bus::Profile::live_samples, bench_, wake_up_);
+  if (!reader) {
+    return fail(reader.error());
+  }
+  readers.emplace(kind, std::move(*reader));
+  return {};
+}
+
+Expected<void> SourceStreams::open_answer_readers() {
+  auto blocks = participant_.reader(bus::topics::catch_up_samples, asker_, wake_up_);
+  auto records = participant_.reader(bus::topics::catch_up_records, asker_, wake_up_);
+  if (auto error = first_error(blocks, records)) {
+    return fail(*error);
+  }
+  answer_readers_.emplace(AnswerReaders{std::move(*blocks), std::move(*records)});
+  return {};
+}
+
+void SourceStreams::take_samples(Instant now) {
+  heard_ = now;
+  for (auto& [name, stream] : streams_) {
+    hand_over_waiting(name, stream, now);
+  }
+  const auto live = [&](Stream& stream, const auto& message, auto& follower) {
+    stream.twins.add(message.session());
+    follower.take_live(message, now);
+  };
+  const auto again = [&](Stream& /*stream*/, const auto& message, auto& follower) {
+    follower.take_again(message, now);
+  };
+  if (answer_readers_) {
+    take(answer_readers_->blocks, again);
+    take(answer_readers_->records, again);
+  }
+  for (auto& [kind, reader] : block_readers_) {
+    take(reader, live);
+  }
+  for (auto& [kind, reader] : record_readers_) {
+    take(reader, live);
+  }
+}
+
+template <class Message, class Take>
+void SourceStreams::take(bus::Reader<Message>& reader, Take take) {
+  reader.take([&](const Message& message) {
+    // What is given again comes in a partition of this run's own, regardless of who writes there.
+    const auto found =
+        message.bench() == bench_ ? streams_.find(message.source().to_string()) : streams_.end();
+    if (found == streams_.end() || !found->second.follower) {
+      return;
+    }
+    if (auto* follower = std::get_if<StreamFollower<Message>>(&*found->second.follower)) {
+      take(found->second, message, *follower);
+    }
+  });
+}
+
+Expected<std::vector<SourceStreams::Request>> SourceStreams::requests_due(Instant now) {
+  std::vector<Request> due;
+  for (auto& [name, stream] : streams_) {
+    if (!stream.follower) {
+      continue;
+    }
+    if (auto what = std::visit([&](auto& one) { return one.due(now); }, *stream.follower)) {
+      due.push_back({name, std::move(*what)});
+    }
+  }
+  if (!due.empty() && !answer_readers_) {
+    if (auto opened = open_answer_readers(); !opened) {
+      return fail(opened.error());
+    }
+  }
+  return due;
+}
+
+bool SourceStreams::is_triggered(const Stream& stream) {
+  return stream.follower &&
+         std::holds_alternative<StreamFollower<wire::TriggeredRecord>>(*stream.follower);
+}
+
+bool SourceStreams::has_answered(const Stream& stream) {
+  return stream.follower &&
+         std::visit([](const auto& one) { return one.answered(); }, *stream.follower);
+}
+
+bool SourceStreams::is_catching_up() const {
+  return std::any_of(streams_.begin(), streams_.end(), [](const auto& stream) {
+    const auto& follower = stream.second.follower;
+    return follower && std::visit([](const auto& one) { return one.catching_up(); }, *follower);
+  });
+}
+
+bool SourceStreams::is_held_up(Instant now) const {
+  return std::any_of(streams_.begin(), streams_.end(), [&](const auto& one) {
+    const Stream& stream = one.second;
+    const auto silent = [&](const auto& follower) { return follower.silent(now); };
+    return !stream.follower || stream.unfit || !stream.waiting.empty() ||
+           std::visit(silent, *stream.follower);
+  });
+}
+
+std::string SourceStreams::lost_beginning() const {
+  for (const auto& [name, stream] : streams_) {
+    if (stream.follower &&
+        std::visit([](const auto& one) { return one.lacks_beginning(); }, *stream.follower)) {
+      return fmt::format("source '{}' of bench '{}' no longer has what it sent at the beginning of "
+                         "the run, or nothing was measured, so it cannot be taken over: begin a "
+                         "new run; what was measured before is kept",
+                         name, bench_);
+    }
+  }
+  return "";
+}
+
+std::uint64_t SourceStreams::recovered() const {
+  std::uint64_t messages = 0;
+  for (const auto& [name, stream] : streams_) {
+    messages += stream.follower
+                    ? std::visit([](const auto& one) { return one.recovered(); }, *stream.follower)
+                    : 0;
+  }
+  return messages;
+}
+
+std::vector<std::string> SourceStreams::unanswered() const {
+  std::vector<std::string> names;
+  for (const auto& [name, stream] : streams_) {
+    if (stream.follower && !has_answered(stream)) {
+      names.push_back(name);
+    }
+  }
+  return names;
+}
+
+std::optional<SourceStreams::Missing>
+SourceStreams::what_is_missing(const KnownSources& known) const {
+  for (const auto& [name, stream] : streams_) {
+    const auto found = known.find(name);
+    if (found == known.end()) {
+      return Missing{
+          fmt::format("source '{}' of bench '{}' is not on the network; is its service running "
+                      "with this bench file, in the same DDS domain?",
+                      name, bench_)};
+    }
+    const KnownSource& source = found->second;
+    if (source.says_that_it_is_silent()) {
+      return Missing{fmt::format("source '{}' of bench '{}' is silent{}", name, bench_,
+                                 source.reason_given())};
+    }
+    if (stream.twins.twins() || source.twins.twins()) {
+      return Missing{two_send_as(bench_, name, stream.service_before, stream.service)};
+    }
+    if (stream.unfit) {
+      return Missing{stream.unfit->why};
+    }
+    if (!stream.follower) {
+      return Missing{fmt::format("source '{}' of bench '{}' has not described its channels yet{}",
+                                 name, bench_, source.reason_given()),
+                     true, true};
+    }
+    if (!has_answered(stream)) {
+      return Missing{
+          fmt::format("source '{}' of bench '{}' does not answer in its sample stream; do "
+                      "samples get through from its host to this one?",
+                      name, bench_),
+          true};
+    }
+  }
+  return std::nullopt;
+}
+
+std::string
+SourceStreams::settings_mismatch(const std::map<std::string, std::string>& settings_of_run) const {
+  for (const auto& [name, stream] : streams_) {
+    if (!stream.description) {
+      continue;
+    }
+    if (const auto difference =
+            settings_difference(stream.description->settings(), settings_of_run, name)) {
+      return refusal(*difference, bench_, name, stream.description->host());
+    }
+  }
+  return "";
+}
+
+std::optional<LostSource> SourceStreams::lost_source(Instant now, Instant watched_from,
+                                                     std::chrono::seconds silence_limit,
+                                                     bool may_not_end) const {
+  for (const auto& [name, stream] : streams_) {
+    if (stream.twins.twins()) {
+      return LostSource{two_send_as(bench_, name, stream.service_before, stream.service), false};
+    }
+    if (stream.unfit) {
+      return LostSource{stream.unfit->why, true, stream.unfit->is_other_device};
+    }
+    if (stream.is_undescribed) {
+      return LostSource{fmt::format("source '{}' of bench '{}' sends samples of a session that it "
+                                    "has not described; they are left out: start its service "
+                                    "again",
+                                    name, bench_)};
+    }
+    if (!stream.follower) {
+      return LostSource{
+          fmt::format("source '{}' of bench '{}' is not on the network", name, bench_)};
+    }
+    const bool ended = std::visit([](const auto& one) { return one.ended(); }, *stream.follower);
+    const auto heard = std::visit([](const auto& one) { return one.heard(); }, *stream.follower);
+    if (ended && may_not_end) {
+      return LostSource{
+          fmt::format("source '{}' of bench '{}' has ended before the run", name, bench_)};
+    }
+    if (!ended && !is_triggered(stream) && now - std::max(heard, watched_from) > silence_limit) {
+      return LostSource{fmt::format("source '{}' of bench '{}' has sent nothing for {} s", name,
+                                    bench_, silence_limit.count())};
+    }
+  }
+  return std::nullopt;
+}
+
+} // namespace dyncal::services

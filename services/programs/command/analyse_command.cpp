@@ -1,0 +1,277 @@
+#include "services/programs/command/analyse_command.hpp"
+
+#include <algorithm>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "services/base/version.hpp"
+#include "services/evaluation/run_evaluator.hpp"
+#include "services/evaluation/step_survey.hpp"
+#include "services/instruments/played_source.hpp"
+#include "services/programs/command/analyse_recording.hpp"
+#include "services/programs/command/run_command.hpp"
+#include "services/programs/command/work_progress.hpp"
+#include "services/records/exchange/opened_recording.hpp"
+#include "services/records/replay/file_input.hpp"
+#include "services/records/replay/sample_memory.hpp"
+#include "services/records/replay/shot_files.hpp"
+#include "services/run/run_plan.hpp"
+#include "services/views/report/show_outcome.hpp"
+
+namespace dyncal::services {
+namespace {
+
+// At once, one a processor: a step takes longer than reading the next; each holds its samples.
+constexpr std::size_t max_evaluations = 4;
+
+using Inputs = std::vector<std::unique_ptr<FileInput>>;
+
+SourceKind kind_of(const BenchFile& bench, const std::string& name) {
+  const SourceSettings& source = *bench.source(name);
+  if (source.is<OscilloscopeSourceSettings>()) {
+    return SourceKind::dso;
+  }
+  return source.is<SeriesSourceSettings>() ? SourceKind::tss : acs::kind_of(bench.method, name);
+}
+
+void add_source(const BenchFile& bench, const std::string& name,
+                const drivers::SourceDescription& description, RunOutcome& outcome) {
+  outcome.sources.push_back({name, kind_of(bench, name), software_version(), description});
+}
+
+// All at once: a record of shots is small beside one of samples.
+Expected<void> take_shots(const BenchFile& bench, const std::string& source,
+                          RunEvaluator& evaluator, RunOutcome& outcome) {
+  auto files = read_shot_files(bench, source);
+  if (!files) {
+    return fail(files.error());
+  }
+  add_source(bench, source, files->description, outcome);
+  if (auto described = evaluator.describe(source, std::move(files->description)); !described) {
+    return described;
+  }
+  for (TriggeredRecord& record : files->records) {
+    evaluator.add(source, std::move(record));
+  }
+  return {};
+}
+
+Expected<Inputs> open_inputs(const BenchFile& bench, RunEvaluator& evaluator, RunOutcome& outcome) {
+  Inputs inputs;
+  for (const std::string& name : evaluator.recipe().sources()) {
+    const SourceSettings& source = *bench.source(name);
+    if (source.is<OscilloscopeSourceSettings>() || source.is<SeriesSourceSettings>()) {
+      if (const auto read = take_shots(bench, name, evaluator, outcome); !read) {
+        return fail(read.error());
+      }
+      continue;
+    }
+    auto input = FileInput::open(source);
+    if (!input) {
+      return fail(input.error());
+    }
+    add_source(bench, name, (*input)->description(), outcome);
+    if (const auto described = evaluator.describe(name, (*input)->description()); !described) {
+      return fail(described.error());
+    }
+    inputs.push_back(std::move(*input));
+  }
+  return inputs;
+}
+
+void collect(EvaluationOutput output, RunOutcome& outcome) {
+  std::move(output.results.begin(), output.results.end(), std::back_inserter(outcome.results));
+  for (StepResult& settled : output.settled) {
+    *std::find_if(outcome.results.begin(), outcome.results.end(), [&](const StepResult& one) {
+      return one.channel == settled.channel && one.step == settled.step &&
+             one.repetition == settled.repetition;
+    }) = std::move(settled);
+  }
+  std::move(output.transfer_functions.begin(), output.transfer_functions.end(),
+            std::back_inserter(outcome.transfer_functions));
+  std::move(output.clock_reports.begin(), output.clock_reports.end(),
+            std::back_inserter(outcome.clock_reports));
+}
+
+// Takes from the file that is behind in its own time, so that no record has to wait long for the
+// other.
+Expected<void> evaluate(Inputs inputs, RunEvaluator& evaluator, const std::stop_token& stop,
+                        RunOutcome& outcome) {
+  while (!evaluator.finished() && !inputs.empty() && !stop.stop_requested()) {
+    const auto behind =
+        std::min_element(inputs.begin(), inputs.end(), [](const auto& a, const auto& b) {
+          return a->reached_ns() < b->reached_ns();
+        });
+    const auto block = (*behind)->next();
+    if (!block) {
+      return fail(block.error());
+    }
+    evaluator.add((*behind)->source(), (*behind)->view(*block));
+    collect(evaluator.take_output(), outcome);
+    if (block->end_of_stream) {
+      inputs.erase(behind);
+    }
+    if (const auto source = evaluator.source_of_clock_alone()) {
+      std::erase_if(inputs, [&](const auto& input) { return input->source() != *source; });
+    }
+  }
+  outcome.interrupted = stop.stop_requested();
+  if (!evaluator.finished()) {
+    evaluator.end_of_excitation(outcome.interrupted);
+    evaluator.finish_now();
+    collect(evaluator.take_output(), outcome);
+  }
+  return {};
+}
+
+// Stamps before 2000 were not made by a clock that knows the time: the record begins at 0.
+constexpr std::int64_t min_utc_ns = 946'684'800'000'000'000;
+
+// The time of the run is that of its records, where a source has stamps in UTC.
+void add_recorded_time(RunOutcome& outcome) {
+  const auto has_utc_stamps = [&](const std::string& name) {
+    return std::any_of(outcome.sources.begin(), outcome.sources.end(), [&](const RunSource& one) {
+      return one.source == name && one.description.time_base == drivers::TimeBase::utc &&
+             !is_triggered(one.kind);
+    });
+  };
+  for (const StepResult& result : outcome.results) {
+    for (const SourceSamples& samples : result.samples) {
+      if (samples.used == 0 || samples.first_stamp_ns < min_utc_ns ||
+          !has_utc_stamps(samples.source)) {
+        continue;
+      }
+      const bool first = outcome.ended_utc_ns == 0;
+      outcome.began_utc_ns =
+          first ? samples.first_stamp_ns : std::min(outcome.began_utc_ns, samples.first_stamp_ns);
+      outcome.ended_utc_ns = std::max(outcome.ended_utc_ns, samples.last_stamp_ns);
+    }
+  }
+}
+
+// A run folder stands for the bench file in it, with its copies of the files.
+Expected<BenchFile> read_bench_or_folder(const std::filesystem::path& path) {
+  return std::filesystem::is_directory(path)
+             ? read_bench_file(path / copied_bench_file, NamedFiles::Place::copies)
+             : read_bench_file(path);
+}
+
+// Reads them once more, for all that they show of any step.
+Expected<std::shared_ptr<const RunSchedule>>
+look_at_all(const BenchFile& bench, const Recipe& recipe, const std::stop_token& stop) {
+  StepSurvey survey(recipe);
+  for (const std::string& name : recipe.sources()) {
+    if (!survey.looks_at(name)) {
+      continue;
+    }
+    auto input = FileInput::open(*bench.source(name));
+    if (!input) {
+      return fail(input.error());
+    }
+    survey.describe(name, (*input)->description());
+    for (bool ended = false; !ended && !stop.stop_requested();) {
+      const auto block = (*input)->next();
+      if (!block) {
+        return fail(block.error());
+      }
+      survey.add(name, (*input)->view(*block));
+      ended = block->end_of_stream;
+    }
+  }
+  return survey.schedule();
+}
+
+struct Evaluated {
+  RunOutcome outcome;
+  bool needs_survey = false;
+};
+
+Expected<Evaluated> evaluate_files(const BenchFile& bench, const Recipe& recipe,
+                                   const EvaluationLimits& limits, const std::stop_token& stop) {
+  Evaluated evaluated{.outcome = outcome_of(recipe)};
+  evaluated.outcome.adc_file = adc_file_of(bench);
+  RunEvaluator evaluator(recipe, limits);
+  auto inputs = open_inputs(bench, evaluator, evaluated.outcome);
+  if (!inputs) {
+    return fail(inputs.error());
+  }
+  if (const auto done = evaluate(std::move(*inputs), evaluator, stop, evaluated.outcome); !done) {
+    return fail(done.error());
+  }
+  evaluated.needs_survey = !evaluated.outcome.interrupted && evaluator.needs_survey();
+  return evaluated;
+}
+
+Expected<RunOutcome> analyse(const AnalyseCommand& command, const std::stop_token& stop) {
+  const WorkProgress progress("reading");
+  if (is_recording(command.bench_file)) {
+    return analyse_recording(command, stop, progress.count());
+  }
+  const auto suffix = command.bench_file.extension();
+  if (suffix == ".h5" || suffix == ".hdf5") {
+    return fail(
+        ErrorCode::bad_argument,
+        fmt::format("{}: an HDF5 file is not evaluated as a run: give the recording (.mcap) "
+                    "that it was exported from, or name it as the file of a source in a "
+                    "bench file",
+                    command.bench_file.string()));
+  }
+  if (command.recipe || !command.run.empty()) {
+    return fail(ErrorCode::bad_argument,
+                fmt::format("{}: --run and --recipe are for recordings (.mcap)",
+                            command.bench_file.string()));
+  }
+  const auto bench = read_bench_or_folder(command.bench_file);
+  if (!bench) {
+    return fail(bench.error());
+  }
+  const auto adc = read_adc_calibration(*bench);
+  if (!adc) {
+    return fail(adc.error());
+  }
+  const auto recipe = plan_recipe(*bench, "files", *adc);
+  if (!recipe) {
+    return fail(recipe.error());
+  }
+  EvaluationLimits limits{.evaluations_at_once = std::clamp<std::size_t>(
+                              std::thread::hardware_concurrency(), 1, max_evaluations),
+                          .clock_to_the_end = true,
+                          .count = progress.count()};
+  auto evaluated = evaluate_files(*bench, *recipe, limits, stop);
+  if (evaluated && evaluated->needs_survey) {
+    auto schedule = look_at_all(*bench, *recipe, stop);
+    if (!schedule) {
+      return fail(schedule.error());
+    }
+    limits.schedule = std::move(*schedule);
+    evaluated = evaluate_files(*bench, *recipe, limits, stop);
+  }
+  if (!evaluated) {
+    return fail(evaluated.error());
+  }
+  RunOutcome outcome = std::move(evaluated->outcome);
+  outcome.analysis_dds = "none";
+  outcome.analysis_software = software_version();
+  add_recorded_time(outcome);
+  return outcome;
+}
+
+} // namespace
+
+int run_analyse(const AnalyseCommand& command, const std::stop_token& stop) {
+  if (const auto possible = check_outputs(command.json, command.figures); !possible) {
+    return report_error(possible.error());
+  }
+  keep_memory_for_samples();
+  const auto outcome = analyse(command, stop);
+  if (!outcome) {
+    return report_error(outcome.error());
+  }
+  if (const auto shown = show_outcome(*outcome, command.json, command.figures); !shown) {
+    return report_error(shown.error());
+  }
+  return conclude(*outcome);
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,351 @@
+#include "services/programs/command/calibrate_adc_command.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <map>
+#include <numbers>
+
+#include <fmt/core.h>
+
+#include "analysis/instrument/adc_comparison.hpp"
+#include "drivers/utc_clock.hpp"
+#include "services/bench/file/adc_file_writer.hpp"
+#include "services/contract/digest.hpp"
+#include "services/contract/topics.hpp"
+#include "services/daemon/program/bench_program.hpp"
+#include "services/daemon/program/watched_network.hpp"
+#include "services/programs/command/progress_line.hpp"
+#include "services/programs/command/run_command.hpp"
+#include "services/views/report/show_outcome.hpp"
+
+namespace dyncal::services {
+namespace {
+
+using namespace std::chrono_literals;
+using Measurements = std::vector<analysis::AdcCalibrationPoint>;
+
+constexpr auto description_limit = 6s;
+constexpr double amplitude_tolerance =
+    0.1; // of the sync voltage asked for; cables and loads take a little
+constexpr double amplitude_spread = 0.05; // within one pass without a voltage asked for
+constexpr double max_adc_delay_s = 2e-5;  // more is a hint at something else
+
+Error refused(std::string message) {
+  return {ErrorCode::bad_argument, std::move(message)};
+}
+
+Error no_time_scale(const std::string& source) {
+  return refused(
+      fmt::format("source '{}' does not stamp in UTC: sync links unrelated clocks only up to a "
+                  "delay, and the phase of the ADC is a "
+                  "delay; let both sources stamp in UTC (time_base = \"utc\")",
+                  source));
+}
+
+// How the sources describe themselves, which takes precedence over the bench file.
+Expected<void> require_common_time_scale(bus::Participant& participant, const BenchFile& bench,
+                                         const std::stop_token& stop) {
+  const auto wake_up = std::make_shared<bus::WakeUp>();
+  auto descriptions = participant.reader(bus::topics::source_description, bench.bench, wake_up);
+  if (!descriptions) {
+    return fail(descriptions.error());
+  }
+  std::map<std::string, wire::TimeBase> time_bases;
+  const std::array<std::string, 2> sources{bench.method.sync_acs.source,
+                                           bench.method.sync_dau.source};
+  const auto deadline = std::chrono::steady_clock::now() + description_limit;
+  const auto missing = [&] {
+    return std::find_if(sources.begin(), sources.end(),
+                        [&](const std::string& source) { return time_bases.count(source) == 0; });
+  };
+  while (missing() != sources.end() && std::chrono::steady_clock::now() < deadline &&
+         !stop.stop_requested()) {
+    wake_up->wait_until(std::chrono::steady_clock::now() + 100ms);
+    descriptions->take([&](const wire::SourceDescription& description) {
+      time_bases[description.source().to_string()] = description.time_base();
+    });
+  }
+  if (stop.stop_requested()) {
+    return fail(ErrorCode::interrupted, "interrupted before the first step; nothing was excited");
+  }
+  if (const auto source = missing(); source != sources.end()) {
+    return fail(
+        ErrorCode::no_source,
+        fmt::format(
+            "source '{}' has not described itself; does its service run in the same DDS domain?",
+            *source));
+  }
+  for (const auto& source : sources) {
+    if (time_bases[source] != wire::TIME_BASE_UTC) {
+      return fail(no_time_scale(source));
+    }
+  }
+  return {};
+}
+
+analysis::SyncPhasor phasor_of(const analysis::ChannelFit& fit) {
+  return {fit.frequency.hz(),
+          fit.u_frequency_hz,
+          fit.phase_origin_ns,
+          fit.fit.sine,
+          fit.fit.cosine,
+          std::sqrt(fit.fit.covariance[0]),
+          std::sqrt(fit.fit.covariance[3])};
+}
+
+const analysis::ChannelFit* fit_of(const StepResult& result, const ChannelName& channel) {
+  for (const analysis::ChannelFit& fit : result.fits) {
+    if (fit.channel == channel.text()) {
+      return &fit;
+    }
+  }
+  return nullptr;
+}
+
+Expected<Measurements> measurements_of(const CalibrateAdcCommand& command, const BenchFile& bench,
+                                       const RunOutcome& outcome) {
+  Measurements measurements;
+  for (const StepResult& result : outcome.results) {
+    const analysis::ChannelFit* acs = fit_of(result, bench.method.sync_acs);
+    const analysis::ChannelFit* dau = fit_of(result, bench.method.sync_dau);
+    if (!result.valid || acs == nullptr || dau == nullptr) {
+      continue;
+    }
+    const auto compared =
+        analysis::compare_sync_adc(phasor_of(*acs), phasor_of(*dau), bench.excitation.duration_s,
+                                   {.time_scale_s = command.u_time_scale_s,
+                                    .acs_delay_s = bench.uncertainty.acs_delay_s,
+                                    .acs_gain_rel = command.u_acs_gain_rel});
+    if (!compared) {
+      return fail(ErrorCode::no_result,
+                  fmt::format("step {}, {} Hz: {}", result.step, result.frequency_text_hz,
+                              compared.error().message));
+    }
+    measurements.push_back(compared->point);
+    measurements.back().frequency_hz =
+        result.frequency_hz; // what was asked for; the clocks see it a little off
+  }
+  return measurements;
+}
+
+// Gives all measurements of a pass the one test amplitude that they stand for.
+Expected<void> name_amplitude(std::optional<double> asked_vpp, Measurements& measurements) {
+  const auto [low, high] = std::minmax_element(
+      measurements.begin(), measurements.end(),
+      [](const auto& a, const auto& b) { return a.test_amplitude_vpp < b.test_amplitude_vpp; });
+  const double lowest_vpp = low->test_amplitude_vpp;
+  const double highest_vpp = high->test_amplitude_vpp;
+  if (asked_vpp && (lowest_vpp < *asked_vpp * (1.0 - amplitude_tolerance) ||
+                    highest_vpp > *asked_vpp * (1.0 + amplitude_tolerance))) {
+    return fail(refused(fmt::format("sync has {:.4g} to {:.4g} V peak to peak at the ACS where the "
+                                    "generator was set to {:.4g} V: "
+                                    "--amplitudes needs the generator's output itself as sync",
+                                    lowest_vpp, highest_vpp, *asked_vpp)));
+  }
+  if (!asked_vpp && highest_vpp > lowest_vpp * (1.0 + amplitude_spread)) {
+    return fail(refused(fmt::format("sync ranges from {:.4g} to {:.4g} V peak to peak with "
+                                    "the bench's levels, but an ADC is calibrated at "
+                                    "one amplitude after the other: give --amplitudes",
+                                    lowest_vpp, highest_vpp)));
+  }
+  const double step = std::pow(10.0, std::floor(std::log10(highest_vpp)) - 2.0);
+  const double name_vpp =
+      asked_vpp.value_or(std::round(0.5 * (lowest_vpp + highest_vpp) / step) * step);
+  for (analysis::AdcCalibrationPoint& point : measurements) {
+    point.test_amplitude_vpp = name_vpp;
+  }
+  return {};
+}
+
+Expected<Measurements> measure_pass(const CalibrateAdcCommand& command, const BenchFile& bench,
+                                    const std::string& run, std::optional<double> amplitude_vpp,
+                                    bus::Participant& participant, const std::stop_token& stop) {
+  const BenchFile pass = bench_of_adc_pass(bench, amplitude_vpp);
+  ProgressLine progress(stderr);
+  RunController controller(participant, pass, run,
+                           [&](const RunProgress& state) { progress.show(state); });
+  auto outcome = controller.conduct({}, stop);
+  progress.end();
+  if (!outcome) {
+    return fail(outcome.error());
+  }
+  if (const auto ended = check_end(*outcome, "no file was written"); !ended) {
+    return fail(ended.error());
+  }
+  auto measurements = measurements_of(command, pass, *outcome);
+  if (!measurements) {
+    return measurements;
+  }
+  if (measurements->size() < outcome->planned_steps) {
+    return fail(
+        ErrorCode::no_result,
+        fmt::format(
+            "{} of {} steps have no result; the analysis service reports why (dyncal watch)",
+            outcome->planned_steps - measurements->size(), outcome->planned_steps));
+  }
+  if (const auto named = name_amplitude(amplitude_vpp, *measurements); !named) {
+    return fail(named.error());
+  }
+  return measurements;
+}
+
+std::string utc_text(std::int64_t utc_ns) {
+  const auto seconds = static_cast<std::time_t>(utc_ns / 1'000'000'000);
+  std::tm utc{};
+  gmtime_r(&seconds, &utc);
+  std::array<char, 32> text{};
+  return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%d %H:%M:%S", &utc)};
+}
+
+void print(const Measurements& measurements) {
+  fmt::print("{:>10} {:>9} {:>11} {:>10} {:>12} {:>10} {:>11} {:>9}\n", "Hz", "V pp", "gain", "u",
+             "lag in rad", "u", "delay in ns", "u");
+  for (const analysis::AdcCalibrationPoint& point :
+       analysis::adc_calibration_points(measurements)) {
+    const double w = 2.0 * std::numbers::pi * point.frequency_hz;
+    fmt::print("{:>10.4g} {:>9.4g} {:>11.7f} {:>10.1e} {:>12.3e} {:>10.1e} {:>11.1f} {:>9.1f}\n",
+               point.frequency_hz, point.test_amplitude_vpp, point.gain, point.u_gain,
+               point.phase_lag_rad, point.u_phase_lag_rad, 1e9 * point.phase_lag_rad / w,
+               1e9 * point.u_phase_lag_rad / w);
+    if (std::abs(point.phase_lag_rad) > w * max_adc_delay_s + 6.0 * point.u_phase_lag_rad) {
+      fmt::print("{:>10} implausible for an ADC: do both sources mark the instant of "
+                 "sampling in UTC? is a cable inverted?\n",
+                 "");
+    }
+  }
+}
+
+Expected<void> write(const CalibrateAdcCommand& command, const BenchFile& bench,
+                     const std::string& run, const Measurements& measurements) {
+  const auto* unit = bench.source(bench.method.sync_dau.source)->as<SmartupSourceSettings>();
+  AdcFileHead head;
+  head.channel = command.channel;
+  head.board = unit == nullptr ? 0 : unit->sensor & 0xffff0000U;
+  head.date = utc_text(utc_now_ns());
+  head.remarks = {{"Bench", bench.bench},
+                  {"Run", run},
+                  {"Path", "data-ready"},
+                  {"Reference", bench.method.sync_acs.text()},
+                  {"TimeScale", fmt::format("UTC, u {:.3g} s", command.u_time_scale_s)}};
+  return write_adc_file(command.output, head, measurements);
+}
+
+Expected<Measurements> measure(const CalibrateAdcCommand& command, const BenchFile& bench,
+                               const std::string& run, const std::stop_token& asked) {
+  NetworkOptions network = command.network;
+  add_network_settings(bench.network, network);
+  const auto joined = WatchedNetwork::join(network, "dyncal-calibrate", asked);
+  if (!joined) {
+    return fail(joined.error());
+  }
+  bus::Participant& participant = (*joined)->participant;
+  const std::stop_token stop = (*joined)->stop();
+  if (const auto common = require_common_time_scale(participant, bench, stop); !common) {
+    return fail(common.error());
+  }
+  std::vector<std::optional<double>> passes(command.amplitudes_vpp.begin(),
+                                            command.amplitudes_vpp.end());
+  if (passes.empty()) {
+    passes.emplace_back();
+  }
+  Measurements all;
+  for (std::size_t i = 0; i < passes.size(); ++i) {
+    if (passes[i]) {
+      fmt::print(stderr, "test amplitude {} V peak to peak, {} of {}\n", *passes[i], i + 1,
+                 passes.size());
+    }
+    const auto measured = measure_pass(command, bench, fmt::format("{}-{}", run, i + 1), passes[i],
+                                       participant, stop);
+    if (!measured) {
+      return measured;
+    }
+    all.insert(all.end(), measured->begin(), measured->end());
+  }
+  return all;
+}
+
+} // namespace
+
+Expected<void> check_bench_for_adc(const BenchFile& bench, bool sets_amplitude) {
+  if (bench.method.kind != EvaluationMethod::sample_timestamping) {
+    return fail(refused(fmt::format("{}: the sync ADC is calibrated on a bench of "
+                                    "method.kind = \"sample-timestamping\", whose DAU "
+                                    "records sync in the data-ready path",
+                                    bench.path.string())));
+  }
+  for (const ChannelName& role : {bench.method.sync_acs, bench.method.sync_dau}) {
+    const SourceSettings* source = bench.source(role.source);
+    if (source != nullptr && source->is<OscilloscopeSourceSettings>()) {
+      return fail(refused(
+          fmt::format("{}: source '{}' is an oscilloscope, whose record is placed in time by its "
+                      "trigger, and the DAU does "
+                      "not stamp that; calibrate the ADC against a system that stamps in UTC",
+                      bench.path.string(), role.source)));
+    }
+    const bool may_be_told_by_instrument = source != nullptr && source->is<SocketSourceSettings>();
+    if (source != nullptr && source->time_base != drivers::TimeBase::utc &&
+        !may_be_told_by_instrument) {
+      return fail(no_time_scale(role.source));
+    }
+  }
+  if (bench.excitation.repetitions < 2) {
+    return fail(refused(fmt::format("{}: excitation.repetitions must be at least 2: the "
+                                    "scatter of the calibration is found from them",
+                                    bench.path.string())));
+  }
+  if (sets_amplitude && bench.generator.driver == GeneratorDriver::none) {
+    return fail(refused(fmt::format("{}: --amplitudes sets the generator, but the bench has none",
+                                    bench.path.string())));
+  }
+  return {};
+}
+
+BenchFile bench_of_adc_pass(const BenchFile& bench, std::optional<double> amplitude_vpp) {
+  BenchFile pass = bench;
+  pass.method.reference = bench.method.sync_acs;
+  pass.method.dut = {bench.method.sync_dau};
+  pass.method.temperature.reset();
+  pass.corrections.adc.reset();
+  pass.generator.level_tolerance_rel.reset(); // the reference may be without excitation
+  pass.text += "\n# dyncal calibrate adc: reference = sync_acs, dut = sync_dau, no corrections";
+  if (amplitude_vpp) {
+    const double level = 0.5 * *amplitude_vpp * bench.generator.level_per_volt;
+    pass.excitation.levels_m_s2.assign(bench.excitation.frequencies_hz.size(), level);
+    pass.text += fmt::format(", sync {} V peak to peak", *amplitude_vpp);
+  }
+  pass.text += '\n';
+  pass.sha256 = sha256_hex(pass.text);
+  return pass;
+}
+
+int run_calibrate_adc(const CalibrateAdcCommand& command, const std::stop_token& stop) {
+  const auto bench = read_bench_file(command.bench_file);
+  if (!bench) {
+    return report_error(bench.error());
+  }
+  if (const auto possible = check_bench_for_adc(*bench, !command.amplitudes_vpp.empty());
+      !possible) {
+    return report_error(possible.error());
+  }
+  const std::string run = "adc-" + run_from_time();
+  const auto measurements = measure(command, *bench, run, stop);
+  if (!measurements) {
+    return report_error(measurements.error());
+  }
+  print(*measurements);
+  if (const auto written = write(command, *bench, run, *measurements); !written) {
+    return report_error(written.error());
+  }
+  fmt::print("wrote {}\nfor the bench file, under [corrections]:\nadc = {{ file = \"{}\", channel "
+             "= \"{}\", phase_sign = \"lag\"{} }}\n",
+             command.output.string(), command.output.filename().string(), command.channel,
+             command.amplitudes_vpp.size() > 1
+                 ? fmt::format(", test_amplitude_vpp = {}", command.amplitudes_vpp.front())
+                 : "");
+  return 0;
+}
+
+} // namespace dyncal::services

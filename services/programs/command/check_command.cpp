@@ -1,0 +1,62 @@
+#include "services/programs/command/check_command.hpp"
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "drivers/generator/generator_identity.hpp"
+#include "drivers/generator/left_over_state.hpp"
+#include "drivers/link/scpi_answer.hpp"
+#include "services/base/json_text.hpp"
+#include "services/checks/bench_check/checks.hpp"
+#include "services/checks/bench_check/report.hpp"
+#include "services/programs/command/work_progress.hpp"
+
+namespace dyncal::services {
+
+namespace {
+
+// One of no known family may keep what another program left in it without a word.
+void ask_generator(const bench_check::BenchView& view, bench_check::Findings& findings) {
+  using bench_check::Severity;
+  const GeneratorSettings& generator = view.bench.generator;
+  if (generator.driver != GeneratorDriver::scpi || view.refused("generator.address")) {
+    return;
+  }
+  const auto identity = drivers::generator::read_identity(generator.address);
+  if (!identity) {
+    findings.push_back(view.at(Severity::warning, {"generator", "address"},
+                               fmt::format("cannot be asked: {}", identity.error().message)));
+  } else if (drivers::generator::family_of(*identity) ==
+             drivers::generator::GeneratorFamily::unknown) {
+    findings.push_back(view.at(
+        Severity::warning, {"generator", "address"},
+        fmt::format("is a generator of no family that dyncal knows ({}): a DC offset, burst, sweep "
+                    "or modulation that another program left in it may not be read back; look at "
+                    "its front panel before a run",
+                    drivers::shown(*identity))));
+  }
+}
+
+} // namespace
+
+int run_check(const CheckCommand& command) {
+  std::vector<bench_check::BenchView> views;
+  bench_check::Findings findings;
+  {
+    const WorkProgress progress("reading what the bench names");
+    for (const std::filesystem::path& path : command.bench_files) {
+      views.push_back(bench_check::look_at_bench(path));
+    }
+    findings = bench_check::check_benches(views);
+    for (const bench_check::BenchView& view : views) {
+      if (command.asks_generator) {
+        ask_generator(view, findings);
+      }
+    }
+  }
+  fmt::print("{}", command.json ? json_text(bench_check::as_json(findings, views), 2) + "\n"
+                                : bench_check::as_text(findings));
+  return bench_check::exit_status(findings);
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,325 @@
+#include "services/programs/command/demo_command.hpp"
+
+#include <arpa/inet.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <thread>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include "drivers/virtual_bench/model/response_file.hpp"
+#include "services/base/output_file.hpp"
+#include "services/daemon/program/child_process.hpp"
+#include "services/programs/command/run_command.hpp"
+#include "services/programs/demo/demo_bench.hpp"
+#include "services/programs/demo/truth_check.hpp"
+#include "services/programs/demo/vendor_assignment.hpp"
+
+namespace dyncal::services {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr double agreement_limit = 4.0; // standard uncertainties
+constexpr auto start_limit = 10s;
+// Domains whose ports lie below those that Linux hands out to clients; chosen by process so that
+// two demos do not meet.
+constexpr int first_demo_domain = 20;
+constexpr int demo_domains = 80;
+
+// Of the virtual laser: the bench draws its errors from them and the recipe states them.
+constexpr DemoUncertainty reference_uncertainty{
+    .reference_magnitude_rel = 5e-4, .reference_phase_rad = 5e-4, .acs_rate_rel = 3e-7};
+
+struct Demo {
+  DemoPreset preset;
+  std::map<std::string, std::string> dds;
+  int domain = 0;
+  std::string bench;
+  std::filesystem::path folder;
+  std::vector<ChildProcess> processes;
+};
+
+bool is_free_udp_port(std::uint16_t port) {
+  const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(port);
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  void* raw = &address;
+  const bool is_free = probe >= 0 && bind(probe, static_cast<sockaddr*>(raw), sizeof address) == 0;
+  close(probe);
+  return is_free;
+}
+
+// The unit sends to it, so it must be known before the receiver opens it. Linux does not give ports
+// from 61000 on to clients, such as the DDS programs that start meanwhile.
+Expected<std::uint16_t> free_udp_port() {
+  constexpr int first = 61'000;
+  constexpr int ports = 65'536 - first;
+  for (int i = 0; i < ports; ++i) {
+    const auto port = static_cast<std::uint16_t>(first + (getpid() + i) % ports);
+    if (is_free_udp_port(port)) {
+      return port;
+    }
+  }
+  return fail(ErrorCode::network, "this machine has no free UDP port on 127.0.0.1");
+}
+
+Error cannot_write(const std::filesystem::path& path) {
+  return {ErrorCode::bad_file,
+          fmt::format("{}: cannot write here; choose another folder with --output", path.string())};
+}
+
+// Excites where the response is known.
+Expected<void> follow_response(const std::filesystem::path& file, DemoPreset& preset) {
+  const auto table = drivers::virtual_bench::read_response_file(file);
+  if (!table) {
+    return fail(ErrorCode::bad_file, table.error().message);
+  }
+  const auto left_out = keep_frequencies(preset, table->first_hz, table->last_hz);
+  if (preset.frequencies_hz.empty()) {
+    return fail(ErrorCode::bad_file,
+                fmt::format("{}: the response is known from {} to {} Hz, where preset {} excites "
+                            "nothing; choose another preset",
+                            file.string(), table->first_hz, table->last_hz, preset.name));
+  }
+  if (!left_out.empty()) {
+    fmt::print("Without {} Hz, where {} states no response\n", fmt::join(left_out, ", "),
+               file.string());
+  }
+  return {};
+}
+
+Expected<Demo> prepare(const DemoCommand& command) {
+  Demo demo;
+  const auto& presets = demo_presets();
+  const auto preset = std::find_if(presets.begin(), presets.end(), [&](const DemoPreset& one) {
+    return one.name == command.preset;
+  });
+  if (preset == presets.end()) {
+    return fail(ErrorCode::bad_argument,
+                fmt::format("unknown preset '{}'; there are mpu9250-paper, mpu9250-ptb, "
+                            "bma280, tss, can, can-sync",
+                            command.preset));
+  }
+  demo.preset = *preset;
+  demo.preset.repetitions = command.repetitions.value_or(demo.preset.repetitions);
+  demo.preset.duration_s = command.duration_s.value_or(demo.preset.duration_s);
+  demo.preset.trigger_phase_correction = command.trigger_phase_correction;
+  if (command.response) {
+    if (const auto followed = follow_response(*command.response, demo.preset); !followed) {
+      return fail(followed.error());
+    }
+  }
+  const auto dds = parse_vendor_assignment(command.dds);
+  if (!dds) {
+    return fail(dds.error());
+  }
+  demo.dds = *dds;
+  demo.domain =
+      command.domain.value_or(first_demo_domain + static_cast<int>(getpid() % demo_domains));
+  demo.bench = fmt::format("demo-{}", getpid());
+  std::error_code failed;
+  std::filesystem::create_directories(command.folder, failed);
+  demo.folder = std::filesystem::absolute(command.folder);
+  if (failed) {
+    return fail(cannot_write(demo.folder));
+  }
+  return demo;
+}
+
+Expected<void> start(Demo& demo, const std::string& program,
+                     const std::vector<std::string>& arguments) {
+  const std::filesystem::path log = demo.folder / (program + ".log");
+  auto process = ChildProcess::start(program_folder() / program, arguments, {log, log});
+  if (!process) {
+    return fail(process.error());
+  }
+  demo.processes.push_back(std::move(*process));
+  return {};
+}
+
+// Waits until the process has written a JSON file.
+Expected<nlohmann::json> wait_for_json(const std::filesystem::path& path, ChildProcess& process) {
+  const auto deadline = std::chrono::steady_clock::now() + start_limit;
+  while (std::chrono::steady_clock::now() < deadline && process.running()) {
+    std::ifstream stream(path);
+    nlohmann::json json = nlohmann::json::parse(stream, nullptr, false);
+    if (!json.is_discarded()) {
+      return json;
+    }
+    std::this_thread::sleep_for(20ms); // until the file is there or the deadline is over
+  }
+  return fail(ErrorCode::device,
+              fmt::format("{} did not start: {}", process.name(), process.last_line()));
+}
+
+// About how long the run takes in the bench's own time, in which the sensor is to warm up.
+double bench_seconds(const DemoPreset& preset) {
+  constexpr double between_steps_s = 1.0;
+  return static_cast<double>(preset.frequencies_hz.size()) * preset.repetitions *
+         (preset.settling_s + preset.duration_s + between_steps_s);
+}
+
+std::vector<std::string> bench_arguments(const DemoCommand& command, const Demo& demo,
+                                         std::uint16_t dau_port) {
+  const DemoPreset& preset = demo.preset;
+  const std::vector<std::pair<std::string, std::string>> options{
+      {"--preset", preset.sensor()},
+      {"--seed", std::to_string(command.seed)},
+      {"--speed", command.speed},
+      {"--dau", fmt::format("127.0.0.1:{}", dau_port)},
+      {"--acs-listen", "127.0.0.1:0"},
+      {"--generator-listen", "127.0.0.1:0"},
+      {"--truth", demo.folder / "truth.json"},
+      {"--adc-file", demo.folder / "adc.json"},
+      {"--ports-file", demo.folder / "ports.json"},
+      {"--frequencies", fmt::format("{}", fmt::join(preset.frequencies_hz, ","))},
+      {"--levels", fmt::format("{}", fmt::join(preset.levels_m_s2, ","))},
+      {"--reference-magnitude-rel",
+       fmt::format("{}", reference_uncertainty.reference_magnitude_rel)},
+      {"--reference-phase-rad", fmt::format("{}", reference_uncertainty.reference_phase_rad)},
+      {"--thermal-cycle", fmt::format("{:.0f}", bench_seconds(preset))},
+      {"--loss", std::to_string(command.loss)},
+      {"--duplicate", std::to_string(command.duplicates)}};
+  std::vector<std::string> arguments;
+  if (preset.can != DemoPreset::CanLink::none) {
+    arguments = {"--can",         command.can_interface, "--can-bus",
+                 command.can_bus, "--dbc-file",          demo.folder / "sensor.dbc"};
+  }
+  for (const auto& [name, value] : options) {
+    arguments.push_back(name);
+    arguments.push_back(value);
+  }
+  if (command.response) {
+    arguments.insert(arguments.end(), {"--response", *command.response});
+  }
+  for (const std::string& fault : command.faults) {
+    arguments.insert(arguments.end(), {"--fault", fault});
+  }
+  return arguments;
+}
+
+Expected<void> start_bench(const DemoCommand& command, Demo& demo) {
+  const auto port = free_udp_port();
+  if (!port) {
+    return fail(port.error());
+  }
+  std::filesystem::remove(demo.folder / "ports.json");
+  if (auto started = start(demo, "dyncal-virtual-bench", bench_arguments(command, demo, *port));
+      !started) {
+    return started;
+  }
+  const auto ports = wait_for_json(demo.folder / "ports.json", demo.processes.back());
+  if (!ports) {
+    return fail(ports.error());
+  }
+  const DemoAddresses addresses{.dau_listen = fmt::format("127.0.0.1:{}", *port),
+                                .acs = fmt::format("127.0.0.1:{}", ports->value("acs", 0)),
+                                .generator =
+                                    fmt::format("127.0.0.1:{}", ports->value("generator", 0)),
+                                .oscilloscope = fmt::format("127.0.0.1:{}", ports->value("dso", 0)),
+                                .sensor = fmt::format("127.0.0.1:{}", ports->value("tss", 0)),
+                                .can_interface = command.can_interface,
+                                .can_bus = command.can_bus};
+  // As "dyncal calibrate dso-delay" would have found it; the paper's value.
+  if (auto written = write_output_file(demo.folder / "dso-delay.json",
+                                       "{\"value_s\": 236e-9, \"u_s\": 1e-9}\n");
+      !written) {
+    return written;
+  }
+  return write_output_file(
+      demo.folder / "bench.toml",
+      demo_bench_file(demo.preset, demo.bench, addresses, reference_uncertainty));
+}
+
+Expected<void> start_services(Demo& demo) {
+  const std::string bench_file = demo.folder / "bench.toml";
+  const std::string domain = std::to_string(demo.domain);
+  std::vector<std::pair<std::string, std::string>> services{
+      {"dyncal-analysis", "analysis"}, {"dyncal-guard", "acs"}, {"dyncal-acs", "acs"}};
+  if (demo.preset.triggered) {
+    services.emplace_back("dyncal-dso", "dau");
+  } else if (demo.preset.can != DemoPreset::CanLink::none) {
+    services.emplace_back("dyncal-can", "dau");
+  }
+  if (!demo.preset.triggered && demo.preset.can != DemoPreset::CanLink::absolute_time) {
+    services.emplace_back("dyncal-dau", "dau");
+  }
+  for (const auto& [program, role] : services) {
+    std::vector<std::string> arguments{"--dds", demo.dds[role], "--domain", domain};
+    if (role != "analysis") {
+      arguments.insert(arguments.begin(), bench_file);
+    }
+    if (auto started = start(demo, program, arguments); !started) {
+      return started;
+    }
+  }
+  return {};
+}
+
+// A service that has ended reports why in its last line, which explains more than what the others
+// report of its absence.
+Error explain(Demo& demo, const Error& error) {
+  for (ChildProcess& process : demo.processes) {
+    if (!process.running()) {
+      return {error.code, fmt::format("{} ended: {}", process.name(), process.last_line())};
+    }
+  }
+  return error;
+}
+
+int compare_with_truth(const RunOutcome& outcome, const Demo& demo) {
+  const auto check = check_truth(outcome, demo.folder / "truth.json");
+  if (!check) {
+    return report_error(check.error());
+  }
+  fmt::print("\nAgainst the truth of the virtual bench: {} values, the largest deviation is {:.1f} "
+             "standard uncertainties ({})\n",
+             check->points, check->worst, check->worst_where);
+  if (check->points == 0 || !(check->worst <= agreement_limit)) {
+    return report_error(
+        {ErrorCode::no_result,
+         fmt::format("the result does not agree with the truth within {} standard uncertainties",
+                     agreement_limit)});
+  }
+  return 0;
+}
+
+} // namespace
+
+int run_demo(const DemoCommand& command, const std::stop_token& stop) {
+  auto demo = prepare(command);
+  if (!demo) {
+    return report_error(demo.error());
+  }
+  fmt::print("Virtual bench: {}\nFiles in {}\n", demo->preset.shows, demo->folder.string());
+  std::fflush(stdout);
+  if (const auto started =
+          start_bench(command, *demo).and_then([&] { return start_services(*demo); });
+      !started) {
+    return report_error(explain(*demo, started.error()));
+  }
+  RunCommand run;
+  run.bench_file = demo->folder / "bench.toml";
+  run.json = command.json ? *command.json : demo->folder / "result.json";
+  run.figures.folder = demo->folder;
+  run.keep = command.keep;
+  run.network.dds = demo->dds["run"];
+  run.network.domain = demo->domain;
+  const auto outcome = conduct_run(run, stop);
+  if (!outcome) {
+    return report_error(explain(*demo, outcome.error()));
+  }
+  const int status = conclude(*outcome);
+  return status != 0 ? status : compare_with_truth(*outcome, *demo);
+}
+
+} // namespace dyncal::services

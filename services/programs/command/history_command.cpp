@@ -1,0 +1,225 @@
+#include "services/programs/command/history_command.hpp"
+
+#include <cmath>
+#include <ctime>
+#include <numbers>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "services/base/json_text.hpp"
+#include "services/base/output_file.hpp"
+#include "services/base/printable_text.hpp"
+#include "services/contract/unit.hpp"
+#include "services/daemon/program/program.hpp"
+#include "services/programs/command/work_progress.hpp"
+#include "services/records/store/history.hpp"
+#include "services/views/figures/drift.hpp"
+#include "services/views/report/rounding.hpp"
+
+namespace dyncal::services {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double degrees = 180.0 / std::numbers::pi;
+constexpr double seconds_of_day = 86'400.0;
+
+std::string day_and_time(const Calibration& calibration) {
+  const std::string& began = calibration.run.began_utc;
+  return began.empty() ? "-" : began.substr(0, 19) + "Z";
+}
+
+// Since 1970; 0 where it is not known.
+double days_of(const Calibration& calibration) {
+  std::tm utc{};
+  const char* rest = strptime(calibration.run.began_utc.c_str(), "%Y-%m-%dT%H:%M:%S", &utc);
+  return rest == nullptr ? 0.0 : static_cast<double>(timegm(&utc)) / seconds_of_day;
+}
+
+Json number_or_null(std::optional<double> value) {
+  return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
+}
+
+Json value_json(const HistoryValue& value) {
+  const RecordedPoint& point = value.point;
+  return {{"calibration", value.calibration},
+          {"unit", point.unit},
+          {"level_m_s2", number_or_null(point.level_m_s2)},
+          {"magnitude", point.magnitude},
+          {"U_magnitude", point.expanded_magnitude},
+          {"phase_rad", point.phase_rad},
+          {"U_phase_rad", point.expanded_phase_rad},
+          {"deviation_magnitude_rel", value.deviation_magnitude_rel},
+          {"deviation_phase_rad", value.deviation_phase_rad},
+          {"en_magnitude", number_or_null(value.en_magnitude)},
+          {"en_phase", number_or_null(value.en_phase)},
+          {"agrees", value.agrees()},
+          {"flags", point.flags}};
+}
+
+void print_json(const History& history) {
+  Json json{{"sensor", history.sensor}, {"calibrations", Json::array()}, {"lines", Json::array()}};
+  for (const Calibration& calibration : history.calibrations) {
+    const StoredRun& run = calibration.run;
+    json["calibrations"].push_back(
+        {{"bench", run.bench},
+         {"run", run.run},
+         {"state", run.state},
+         {"began_utc", run.began_utc.empty() ? Json(nullptr) : Json(run.began_utc)},
+         {"source", calibration.source},
+         {"software", run.software},
+         {"recipe_sha256", run.recipe_sha256},
+         {"result_sha256", run.result_sha256},
+         {"folder", run.folder}});
+  }
+  for (const HistoryLine& line : history.lines) {
+    Json values = Json::array();
+    for (const HistoryValue& value : line.values) {
+      values.push_back(value_json(value));
+    }
+    json["lines"].push_back({{"channel", line.channel},
+                             {"frequency_text_hz", line.frequency_text_hz},
+                             {"frequency_hz", line.frequency_hz},
+                             {"values", std::move(values)}});
+  }
+  fmt::print("{}\n", json_text(json, 2));
+}
+
+std::string en_text(std::optional<double> en) {
+  return en ? fmt::format("{:.2f}", *en) : std::string("-");
+}
+
+void print_line(const HistoryLine& line, const History& history) {
+  const std::string unit = short_form(line.values.back().point.unit);
+  fmt::print("\n{} at {} Hz, magnitude in {}\n", one_line(line.channel),
+             one_line(line.frequency_text_hz),
+             unit.empty() ? "a unit that is not known" : one_line(unit));
+  fmt::print("{:<20} {:<12} {:>13} {:>10} {:>10} {:>7} {:>11} {:>9} {:>9} {:>7}\n", "begin (UTC)",
+             "state", "|H|", "U", "d|H| / %", "E_n", "arg H / deg", "U / deg", "d / deg", "E_n");
+  for (const HistoryValue& value : line.values) {
+    const Calibration& calibration = history.calibrations[value.calibration];
+    const RecordedPoint& point = value.point;
+    const RoundedValue phase = round_phase(point.phase_rad, point.expanded_phase_rad).degrees;
+    fmt::print("{:<20} {:<12} {:>13.6g} {:>10.2g} {:>10.3f} {:>7} {:>11} {:>9} {:>9.4f} "
+               "{:>7}{}{}\n",
+               one_line(day_and_time(calibration)), one_line(calibration.run.state),
+               point.magnitude, point.expanded_magnitude, 100.0 * value.deviation_magnitude_rel,
+               en_text(value.en_magnitude), phase.value, phase.u,
+               degrees * value.deviation_phase_rad, en_text(value.en_phase),
+               value.agrees() ? "" : "  disagrees with the one before",
+               point.flags.empty() ? "" : "  " + one_line(point.flags));
+  }
+}
+
+void print_tables(const History& history) {
+  fmt::print("{}: {} calibrations, deviations from the first, E_n against the one before (k = 2)\n",
+             one_line(history.sensor), history.calibrations.size());
+  std::size_t compared = 0;
+  std::size_t agreeing = 0;
+  for (const HistoryLine& line : history.lines) {
+    print_line(line, history);
+    for (const HistoryValue& value : line.values) {
+      compared += value.en_magnitude ? 1 : 0;
+      agreeing += value.en_magnitude && value.agrees() ? 1 : 0;
+    }
+  }
+  fmt::print("\n{} of {} values agree with the calibration before (|E_n| <= 1 in magnitude and "
+             "phase)\n",
+             agreeing, compared);
+}
+
+figures::DriftData drift_of(const std::string& channel, const History& history) {
+  figures::DriftData data;
+  data.title = fmt::format("Drift of {}, {}", history.sensor, channel);
+  const double first_day = days_of(history.calibrations.front());
+  data.subtitle = fmt::format("{} calibrations, the first on {}", history.calibrations.size(),
+                              day_and_time(history.calibrations.front()));
+  for (const HistoryLine& line : history.lines) {
+    if (line.channel != channel) {
+      continue;
+    }
+    figures::DriftLine& drawn = data.lines.emplace_back();
+    drawn.frequency_hz = line.frequency_hz;
+    data.unit = short_form(line.values.back().point.unit);
+    for (const HistoryValue& value : line.values) {
+      const Calibration& calibration = history.calibrations[value.calibration];
+      drawn.values.push_back({.run = calibration.run.run,
+                              .began_utc = calibration.run.began_utc,
+                              .days = days_of(calibration) - first_day,
+                              .magnitude = value.point.magnitude,
+                              .expanded_magnitude = value.point.expanded_magnitude,
+                              .deviation_magnitude_rel = value.deviation_magnitude_rel,
+                              .phase_rad = value.point.phase_rad,
+                              .expanded_phase_rad = value.point.expanded_phase_rad,
+                              .deviation_phase_rad = value.deviation_phase_rad});
+    }
+  }
+  return data;
+}
+
+Expected<void> write_drift(const History& history, const std::filesystem::path& folder) {
+  std::string channel;
+  for (const HistoryLine& line : history.lines) {
+    if (line.channel == channel) {
+      continue;
+    }
+    channel = line.channel;
+    std::string name = "drift-" + channel;
+    for (char& c : name) {
+      c = c == '/' ? '-' : c;
+    }
+    const auto written =
+        figures::write(figures::drift_figure(drift_of(channel, history), name), folder);
+    if (!written) {
+      return fail(written.error());
+    }
+    for (const std::filesystem::path& path : *written) {
+      fmt::print(stderr, "wrote {}\n", path.string());
+    }
+  }
+  return {};
+}
+
+Expected<History> look_up(const HistoryCommand& command) {
+  const WorkProgress progress("opening the store");
+  auto store = Store::open_existing(store_place(command.store.store, command.store.folder));
+  if (!store) {
+    return fail(store.error());
+  }
+  auto calibrations = (*store)->calibrations(command.sensor, progress.count());
+  if (!calibrations) {
+    return fail(calibrations.error());
+  }
+  progress.count()->begin("comparing", "", 0);
+  return history_of(command.sensor, std::move(*calibrations), command.channel,
+                    command.frequency_hz);
+}
+
+} // namespace
+
+int run_history(const HistoryCommand& command) {
+  const auto looked_up = look_up(command);
+  if (!looked_up) {
+    return report_error(looked_up.error());
+  }
+  const History& history = *looked_up;
+  if (history.lines.empty()) {
+    return report_error({ErrorCode::no_result,
+                         fmt::format("the store has no calibration of sensor '{}' with a value{}; "
+                                     "'dyncal runs' lists serial numbers and sources",
+                                     command.sensor,
+                                     command.channel.empty() && !command.frequency_hz
+                                         ? ""
+                                         : " at this channel and frequency")});
+  }
+  if (command.figures) {
+    if (const auto written = write_drift(history, *command.figures); !written) {
+      return report_error(written.error());
+    }
+  }
+  command.json ? print_json(history) : print_tables(history);
+  return 0;
+}
+
+} // namespace dyncal::services

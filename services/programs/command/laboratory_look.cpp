@@ -1,0 +1,87 @@
+#include "services/programs/command/laboratory_look.hpp"
+
+#include <chrono>
+
+#include "services/base/version.hpp"
+#include "services/bus/host_clocks/clock_messages.hpp"
+#include "services/bus/host_network.hpp"
+#include "services/checks/doctor/announcement_listener.hpp"
+#include "services/checks/doctor/laboratory_watch.hpp"
+#include "services/checks/doctor/unheard_analysis.hpp"
+
+namespace dyncal::services {
+namespace {
+
+using doctor::Severity;
+
+// Looks at the laboratory for as long as the command says.
+doctor::LaboratoryView look(doctor::LaboratoryWatch& watch, doctor::AnnouncementListener* listener,
+                            double seconds, const std::stop_token& stop) {
+  using Clock = std::chrono::steady_clock;
+  const auto began = Clock::now();
+  const auto passed_s = [&] { return std::chrono::duration<double>(Clock::now() - began).count(); };
+  while (!stop.stop_requested() && passed_s() < seconds) {
+    watch.work();
+    if (listener != nullptr) {
+      listener->work();
+    }
+  }
+  doctor::LaboratoryView view = watch.view();
+  view.seconds = passed_s();
+  if (listener != nullptr) {
+    view.announced_by_multicast = listener->heard();
+    view.announced_from = listener->heard_from();
+  }
+  return view;
+}
+
+// Null where multicast is not to be used, or cannot be; then a finding says so.
+std::optional<doctor::AnnouncementListener> open_listener(const NetworkOptions& network,
+                                                          doctor::Findings& findings) {
+  if (network.no_multicast) {
+    return std::nullopt;
+  }
+  const auto address = network.interface_name.empty()
+                           ? Expected<std::string>(std::string())
+                           : bus::interface_address(network.interface_name);
+  if (address && address->starts_with("127.")) {
+    return std::nullopt; // nothing is sent by multicast there
+  }
+  auto listener = doctor::AnnouncementListener::open(network.domain, address ? *address : "");
+  if (!listener) {
+    findings.push_back({Severity::warning, "multicast", listener.error().message});
+    return std::nullopt;
+  }
+  return std::move(*listener);
+}
+
+} // namespace
+
+Expected<void> look_at_laboratory(const NetworkOptions& network, double seconds,
+                                  const std::stop_token& stop,
+                                  const std::function<void(const LaboratoryLook&)>& judge) {
+  auto participant = join_network(network, "dyncal-doctor", {.watch_discovery = true});
+  if (!participant) {
+    return fail(participant.error());
+  }
+  const auto own = this_program("dyncal-doctor", software_version(), network.dds);
+  auto watch = doctor::LaboratoryWatch::open(*participant, own, bus::system_clock());
+  if (!watch) {
+    return fail(watch.error());
+  }
+  LaboratoryLook found;
+  auto listener = open_listener(network, found.about_multicast);
+  found.host = doctor::look_at_host(".");
+  found.view = look(**watch, listener ? &*listener : nullptr, seconds, stop);
+  found.host.udp_after = doctor::udp_counters();
+  found.host.link_changes_after = doctor::link_changes();
+  found.host.queues_after = doctor::send_queues();
+  found.view.domain = network.domain;
+  if (!doctor::analysis_is_heard(found.view)) {
+    found.host.tried = doctor::try_hosts(doctor::announcing_hosts(found.view, found.host), stop);
+  }
+  judge(found);
+  return {};
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,97 @@
+#include "services/programs/command/list_command.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "services/base/json_text.hpp"
+#include "services/contract/run_identity.hpp"
+#include "services/programs/command/harmless_text.hpp"
+#include "services/programs/command/watched_laboratory.hpp"
+#include "services/views/live/laboratory_json.hpp"
+
+namespace dyncal::services {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+// Programs are matched, and tell what they keep for late listeners, within this.
+constexpr auto quiet_time = 1s;
+
+std::string source_text(const live::Source& source) {
+  std::string device = source.description ? source.description->device : "";
+  if (source.description && !source.description->serial.empty()) {
+    device += (device.empty() ? "" : " ") + source.description->serial;
+  }
+  const std::size_t channels = source.description ? source.description->channels.size() : 0;
+  return fmt::format("  source {}  {}  {:.1f} S/s  {} channels  {}  on {}", harmless(source.name),
+                     source.is_silent ? "silent" : to_string(source.state), source.rate_hz,
+                     channels, harmless(device), harmless(source.host));
+}
+
+std::string run_text(const live::Run& run) {
+  return fmt::format("  run {}  {}  {} results{}", harmless(RunIdentity::parse(run.name).name),
+                     to_string(run.state()), run.results.size(),
+                     run.message.empty() ? "" : "  " + harmless(run.message));
+}
+
+void print_text(const live::Laboratory& laboratory) {
+  const auto now = laboratory.clock().now();
+  for (const auto& [name, bench] : laboratory.benches()) {
+    const live::Condition condition = condition_of(bench, now);
+    fmt::print("bench {}  {}{}\n", harmless(name), to_string(state_of(bench, now)),
+               condition.what.empty() ? "" : "  " + harmless(condition.what));
+    for (const auto& [source_name, source] : bench.sources) {
+      fmt::print("{}\n", source_text(source));
+    }
+    for (const auto& [service_name, service] : bench.services) {
+      const char* kind = service.is_recorder() ? "recorder"
+                         : service.is_guard()  ? "guard"
+                                               : "analysis";
+      fmt::print("  {} {}  {}\n", kind, harmless(service_name), to_string(service.health));
+    }
+    for (const auto& [run_name, run] : bench.runs) {
+      fmt::print("{}\n", run_text(run));
+    }
+  }
+  if (laboratory.benches().empty()) {
+    fmt::print("nothing on this DDS domain; 'dyncal doctor' looks for the reason\n");
+  }
+}
+
+} // namespace
+
+int run_list(const ListCommand& command, const std::stop_token& stop) {
+  const auto watched = WatchedLaboratory::open(command.network, "dyncal-list", command.bench, stop);
+  if (!watched) {
+    return report_error(watched.error());
+  }
+  const live::Laboratory& laboratory = (*watched)->laboratory();
+  const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                           std::chrono::duration<double>(command.seconds));
+  auto number_of_things = std::size_t{0};
+  auto quiet_at = Clock::now() + 2 * quiet_time;
+  while (!(*watched)->is_over() && Clock::now() < std::min(deadline, quiet_at)) {
+    (*watched)->work(Clock::now() + 100ms);
+    std::size_t things = laboratory.programs().size();
+    for (const auto& [name, bench] : laboratory.benches()) {
+      things += 1 + bench.sources.size() + bench.services.size() + bench.runs.size();
+    }
+    if (things != number_of_things) {
+      number_of_things = things;
+      quiet_at = Clock::now() + quiet_time;
+    }
+  }
+  if (command.json) {
+    fmt::print("{}\n", json_text(live::laboratory_json(laboratory), 2));
+  } else {
+    print_text(laboratory);
+  }
+  const auto heard = (*watched)->outcome();
+  return heard ? 0 : report_error(heard.error());
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,309 @@
+#include "services/programs/command/run_command.hpp"
+
+#include <atomic>
+#include <cstdio>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "drivers/utc_clock.hpp"
+#include "services/base/printable_text.hpp"
+#include "services/bench/file/adc_file.hpp"
+#include "services/checks/bench_check/checks.hpp"
+#include "services/checks/doctor/unheard_analysis.hpp"
+#include "services/contract/run_identity.hpp"
+#include "services/contract/time_name.hpp"
+#include "services/contract/topics.hpp"
+#include "services/daemon/program/bench_program.hpp"
+#include "services/daemon/program/watched_network.hpp"
+#include "services/programs/command/laboratory_look.hpp"
+#include "services/programs/command/progress_line.hpp"
+#include "services/programs/command/run_again.hpp"
+#include "services/records/run_folder/run_folder.hpp"
+#include "services/run/bench_queue.hpp"
+#include "services/run/guard_watch.hpp"
+#include "services/run/run_plan.hpp"
+#include "services/views/report/show_outcome.hpp"
+
+namespace dyncal::services {
+
+std::string run_from_time() {
+  return time_name(utc_now_ns());
+}
+
+Expected<std::vector<analysis::AdcCalibrationPoint>> read_adc_calibration(const BenchFile& bench) {
+  if (!bench.corrections.adc) {
+    return std::vector<analysis::AdcCalibrationPoint>{};
+  }
+  return read_adc_file(*bench.corrections.adc);
+}
+
+namespace {
+
+// At a run.
+struct Attempt {
+  std::string name;
+  bool misses_analysis = false; // none has been heard of it
+};
+
+// All that the attempts at a run have in common.
+struct Conduct {
+  const RunCommand& command;
+  const BenchFile& bench;
+  const std::vector<analysis::AdcCalibrationPoint>& adc;
+  const NetworkOptions& network;
+  bus::Participant& participant;
+  const ShowProgress& show;
+  const std::stop_token& stop;
+  Attempt& newest;
+};
+
+void show_notice(const ShowProgress& show, const std::string& sentence) {
+  RunProgress progress;
+  progress.notice = sentence;
+  show(progress);
+}
+
+struct ConductedRun {
+  RunOutcome outcome;
+  std::unique_ptr<KeptRun> kept;
+};
+
+// `text`: of its RunIdentity.
+Expected<ConductedRun> conduct(const Conduct& run, const std::string& text) {
+  const bool resumes = !run.command.resume.empty();
+  run.newest.name = RunIdentity::parse(text).name;
+  auto kept = KeptRun::open(
+      run.command.keep, run.bench,
+      {.run = text,
+       .is_resumed = resumes,
+       .adc_file = adc_file_of(run.bench),
+       .dds = run.network.dds,
+       .domain = run.network.domain,
+       .notice = [show = &run.show](const std::string& sentence) { show_notice(*show, sentence); }},
+      run.participant);
+  if (!kept) {
+    return fail(kept.error());
+  }
+  const ShowProgress show = [&](const RunProgress& progress) {
+    (*kept)->note(progress);
+    run.show(progress);
+  };
+  RunController controller(run.participant, run.bench, text, show);
+  controller.set_keeping((*kept)->keeping());
+  auto outcome =
+      resumes ? controller.resume(run.adc, run.stop) : controller.conduct(run.adc, run.stop);
+  if (!outcome) {
+    run.newest.misses_analysis =
+        outcome.error().code == ErrorCode::no_analysis && !controller.has_heard_analysis();
+    (*kept)->discard();
+    return fail(outcome.error());
+  }
+  outcome->adc_file = adc_file_of(run.bench);
+  return ConductedRun{std::move(*outcome), std::move(*kept)};
+}
+
+// Every attempt is a run of its own.
+Expected<ConductedRun> conduct_new(const Conduct& run) {
+  const auto identity = RunIdentity::begin(run.command.run, utc_now_ns());
+  return identity ? conduct(run, identity->text()) : fail(identity.error());
+}
+
+// Waits for the end of other runs; again when one of several that waited was quicker.
+Expected<ConductedRun> conduct_in_turn(const Conduct& run) {
+  auto queue = BenchQueue::open(run.participant, bus::system_clock(), run.bench.bench);
+  if (!queue) {
+    return fail(queue.error());
+  }
+  std::string shown;
+  const auto show_phase = [&](const std::string& phase) {
+    if (phase != std::exchange(shown, phase)) {
+      show_notice(run.show, phase);
+    }
+  };
+  while (true) {
+    if (const auto free = queue->wait_until_free(show_phase, run.stop); !free) {
+      return fail(free.error());
+    }
+    auto conducted = conduct_new(run);
+    const bool refused = !conducted && conducted.error().code == ErrorCode::no_source;
+    if (!refused || run.stop.stop_requested() || !queue->taken_by()) {
+      return conducted;
+    }
+  }
+}
+
+// The newest run of that name: by its folder, else by what analyses hold. As typed: there is none.
+std::string newest_run_called(const Conduct& run, bus::Reader<wire::ServiceStatus>& statuses) {
+  const std::string& typed = run.command.resume;
+  if (run.command.keep.folder) {
+    const auto folder = find_run_folder(*run.command.keep.folder, run.bench.bench, typed);
+    const RunIdentity kept = RunIdentity::parse(folder.filename().string());
+    if (!kept.conductor.empty()) {
+      return kept.text();
+    }
+  }
+  RunIdentity newest{typed, "", ""};
+  statuses.take([&](const wire::ServiceStatus& status) {
+    const RunIdentity held = RunIdentity::parse(status.run().to_string());
+    if (held.is_called(typed) && held.start >= newest.start) {
+      newest = held;
+    }
+  });
+  return newest.text();
+}
+
+// Nobody else may conduct it: a run that lives is heard within a few seconds.
+Expected<ConductedRun> resume_run(const Conduct& run) {
+  auto queue = BenchQueue::open(run.participant, bus::system_clock(), run.bench.bench);
+  if (!queue) {
+    return fail(queue.error());
+  }
+  auto statuses = run.participant.reader(bus::topics::service_status, run.bench.bench,
+                                         std::make_shared<bus::WakeUp>());
+  if (!statuses) {
+    return fail(statuses.error());
+  }
+  if (const auto other = queue->listen(run.stop)) {
+    return fail(ErrorCode::no_source,
+                fmt::format("bench '{}' is in use by {}; wait for its end, or end it there",
+                            run.bench.bench, *other));
+  }
+  return conduct(run, newest_run_called(run, *statuses));
+}
+
+Expected<ConductedRun> conduct_as_asked(const Conduct& run) {
+  if (!run.command.resume.empty()) {
+    return resume_run(run);
+  }
+  if (run.command.wait) {
+    return conduct_in_turn(run);
+  }
+  return conduct_new(run);
+}
+
+// What guards say of the exciter after the run, of which they hear more than its generator says.
+void take_words_of_guards(bus::Reader<wire::ServiceStatus>& statuses, const BenchFile& bench,
+                          RunOutcome& outcome) {
+  const auto now = bus::system_clock().now();
+  GuardWatch guards(bench.bench, bench.generator.address, now);
+  statuses.take([&](const wire::ServiceStatus& status) { guards.take(status, now); });
+  const std::string failure = guards.failure(now);
+  if (bench.generator.driver == GeneratorDriver::scpi && !failure.empty()) {
+    outcome.output_may_be_on = true;
+    outcome.problem += (outcome.problem.empty() ? "" : "; ") + one_line(failure);
+  }
+}
+
+// The folder first, which is what is left if the rest fails; then the database, which may let wait.
+// What is kept is evaluated once more at the end.
+Expected<void> show_and_keep(const Conduct& conduct, ConductedRun& run) {
+  const RunCommand& command = conduct.command;
+  auto statuses = conduct.participant.reader(bus::topics::service_status, conduct.bench.bench,
+                                             std::make_shared<bus::WakeUp>());
+  const auto kept = run.kept->finish(run.outcome);
+  auto shown = show_outcome(run.outcome, command.json, command.figures);
+  if (const auto folder = run.kept->folder(); folder && kept) {
+    fmt::print("kept in {}\n", folder->string());
+    std::fflush(stdout);
+    run.kept->add_to_store(run.outcome);
+  }
+  Expected<void> done = kept ? std::move(shown) : fail(kept.error());
+  if (!done && run.outcome.output_may_be_on) {
+    done.error().message += "; " + output_warning(run.outcome);
+  }
+  done = done.and_then([&] { return run.kept->hold_against_recording(run.outcome, conduct.stop); });
+  if (statuses) { // all this has taken a while
+    take_words_of_guards(*statuses, conduct.bench, run.outcome);
+  }
+  return done;
+}
+
+// What this host hears instead of an analysis, in brackets. `links` as they were at the beginning.
+std::string why_unheard(const NetworkOptions& network, const std::map<std::string, unsigned>& links,
+                        const std::stop_token& stop) {
+  constexpr double look_s = 3.0;
+  std::string why;
+  const auto looked = look_at_laboratory(network, look_s, stop, [&](const LaboratoryLook& look) {
+    doctor::HostView host = look.host;
+    host.link_changes_before = links;
+    why = " (" + doctor::why_no_analysis_is_heard(look.view, host) + ")";
+  });
+  return looked ? why : " (" + looked.error().message + ")";
+}
+
+// What would be excited for nothing.
+Expected<void> check_bench(const BenchFile& bench) {
+  const auto errors =
+      bench_check::find_errors_before_run(bench_check::look_at_bench_text(bench.text, bench.path));
+  if (errors.empty()) {
+    return {};
+  }
+  const auto& first = errors.front();
+  std::string sentence = BenchProblem{first.file, first.line, first.key, first.sentence}.text();
+  if (errors.size() > 1) {
+    sentence += fmt::format(" (all {} errors: dyncal check {})", errors.size(), first.file);
+  }
+  return fail(ErrorCode::bad_file, std::move(sentence));
+}
+
+} // namespace
+
+Expected<RunOutcome> conduct_run(const RunCommand& command, const std::stop_token& asked) {
+  if (const auto named = RunIdentity::begin(command.run, utc_now_ns()); !named) {
+    return fail(named.error());
+  }
+  const auto bench = read_bench_file(command.bench_file);
+  if (!bench) {
+    return fail(bench.error());
+  }
+  if (const auto checked = check_bench(*bench); !checked) {
+    return fail(checked.error());
+  }
+  const auto adc = read_adc_calibration(*bench);
+  if (!adc) {
+    return fail(adc.error());
+  }
+  if (const auto possible = check_outputs(command.json, command.figures); !possible) {
+    return fail(possible.error());
+  }
+  NetworkOptions network = command.network;
+  add_network_settings(bench->network, network);
+  const auto links = doctor::link_changes();
+  Attempt newest{command.resume};
+  std::atomic<bool> excited = !command.resume.empty(); // then the name does not change any more
+  auto joined = WatchedNetwork::join(network, "dyncal-run", asked, [&](const std::string& why) {
+    if (bench->generator.driver != GeneratorDriver::none) { // files are not resumed
+      run_again(why, excited ? newest.name : "");
+    }
+  });
+  if (!joined) {
+    return fail(joined.error());
+  }
+  const std::stop_token stop = (*joined)->stop();
+  ProgressLine progress(stderr);
+  const ShowProgress show = [&](const RunProgress& state) {
+    excited = excited || state.step > 0;
+    progress.show(state);
+  };
+  const Conduct conduct{command, *bench, *adc, network, (*joined)->participant, show, stop, newest};
+  auto run = conduct_as_asked(conduct);
+  progress.end();
+  const auto shown = run ? show_and_keep(conduct, *run) : fail(run.error());
+  auto heard = (*joined)->outcome(shown);
+  if (!heard && newest.misses_analysis) {
+    joined->reset(); // what is looked for may be in its way
+    heard.error().message += why_unheard(network, links, asked);
+  }
+  if (!heard) {
+    return fail(heard.error());
+  }
+  return std::move(run->outcome);
+}
+
+int conclude(const RunOutcome& outcome) {
+  const auto complete = check_complete(outcome);
+  return complete ? 0 : report_error(complete.error());
+}
+
+} // namespace dyncal::services

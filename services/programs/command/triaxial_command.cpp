@@ -1,0 +1,341 @@
+#include "services/programs/command/triaxial_command.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "analysis/response/triaxial.hpp"
+#include "services/base/error.hpp"
+#include "services/base/json_text.hpp"
+#include "services/daemon/program/program.hpp"
+#include "services/programs/command/work_progress.hpp"
+#include "services/views/report/result_file.hpp"
+
+namespace dyncal::services {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Names = std::array<std::string, 3>;
+
+constexpr std::array axis_names{'x', 'y', 'z'};
+
+struct Direction { // one excitation
+  std::size_t axis = 0;
+  ResultPoints sensor;
+  ResultPoints motion; // empty: single-axis reference
+};
+
+struct Measured {
+  Names channels;
+  Names motion_channels;
+  std::vector<Direction> directions;
+  [[nodiscard]] bool triaxial_reference() const { return !directions.front().motion.empty(); }
+};
+
+struct ResponsePoint {
+  double frequency_hz = 0.0;
+  std::array<std::optional<analysis::Axes>, 3> columns; // by direction
+  std::array<std::array<double, 3>, 3> u{};             // [direction][axis], of each real component
+  std::array<std::optional<analysis::TransverseSensitivity>, 3> transverse;
+};
+
+tl::unexpected<Error> bad(std::string message) {
+  return fail(ErrorCode::bad_argument, std::move(message));
+}
+
+// The names that end with "_x", "_y", "_z" after the same beginning, when there is one such
+// beginning.
+Expected<Names> find_channels(const std::set<std::string>& names, const std::string& option) {
+  std::set<std::string> beginnings;
+  for (const std::string& name : names) {
+    for (const char axis : axis_names) {
+      if (name.ends_with(std::string("_") + axis)) {
+        beginnings.insert(name.substr(0, name.size() - 1));
+      }
+    }
+  }
+  if (beginnings.size() != 1) {
+    return bad(fmt::format("the channels of the axes cannot be found by their names (_x, _y, _z at "
+                           "the end); name them: {} X Y Z",
+                           option));
+  }
+  const std::string& beginning = *beginnings.begin();
+  return Names{beginning + "x", beginning + "y", beginning + "z"};
+}
+
+Expected<Names> channels_of(const std::vector<std::string>& named,
+                            const std::vector<Direction>& directions,
+                            ResultPoints Direction::*points, const std::string& option) {
+  if (named.size() == 3) {
+    return Names{named[0], named[1], named[2]};
+  }
+  // A sensor may have other axes than those that answer in the reference's unit: a gyroscope's, a
+  // magnetometer's.
+  std::set<std::string> like_the_reference;
+  std::set<std::string> others;
+  for (const Direction& direction : directions) {
+    for (const auto& [place, point] : direction.*points) {
+      (point.unit == R"(\one)" ? like_the_reference : others).insert(place.first);
+    }
+  }
+  return find_channels(like_the_reference.empty() ? others : like_the_reference, option);
+}
+
+Expected<Measured> read(const TriaxialCommand& command, const SharedWorkCount& count) {
+  ByteCount bytes(count, "reading",
+                  bytes_of_files(command.results) + bytes_of_files(command.motions));
+  Measured measured;
+  const bool motion_known = std::any_of(command.motions.begin(), command.motions.end(),
+                                        [](const auto& path) { return !path.empty(); });
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (motion_known && (command.results[axis].empty() || command.motions[axis].empty())) {
+      return bad("a triaxial reference needs the results and the motions of all three directions: "
+                 "--x --y --z --motion-x --motion-y --motion-z");
+    }
+    if (command.results[axis].empty()) {
+      continue;
+    }
+    auto sensor = read_result_file(command.results[axis], bytes);
+    if (!sensor) {
+      return fail(sensor.error());
+    }
+    measured.directions.push_back({axis, std::move(*sensor), {}});
+    if (motion_known) {
+      auto motion = read_result_file(command.motions[axis], bytes);
+      if (!motion) {
+        return fail(motion.error());
+      }
+      measured.directions.back().motion = std::move(*motion);
+    }
+  }
+  if (measured.directions.empty()) {
+    return bad("give the result of at least one direction of excitation: --x, --y or --z");
+  }
+  auto channels =
+      channels_of(command.channels, measured.directions, &Direction::sensor, "--channels");
+  if (!channels) {
+    return fail(channels.error());
+  }
+  measured.channels = std::move(*channels);
+  if (motion_known) {
+    channels = channels_of(command.motion_channels, measured.directions, &Direction::motion,
+                           "--motion-channels");
+    if (!channels) {
+      return fail(channels.error());
+    }
+    measured.motion_channels = std::move(*channels);
+  }
+  return measured;
+}
+
+struct AxesAndUncertainty {
+  analysis::Axes values{};
+  std::array<double, 3> u{}; // of each real component: the larger of along and across the phasor
+};
+
+// Nothing when a channel has no value there. The excited axis of a reference is the unit of its
+// motion.
+std::optional<AxesAndUncertainty> axes_at(const ResultPoints& points, const Names& channels,
+                                          double frequency_hz,
+                                          std::optional<std::size_t> unit_axis) {
+  AxesAndUncertainty axes;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (unit_axis == i) {
+      axes.values[i] = 1.0;
+      continue;
+    }
+    const auto found = points.find({channels[i], frequency_hz});
+    if (found == points.end()) {
+      return std::nullopt;
+    }
+    const analysis::ComparedResult& value = found->second.value;
+    axes.values[i] = std::polar(value.magnitude, value.phase_rad);
+    axes.u[i] = std::max(value.u_magnitude, value.magnitude * value.u_phase_rad);
+  }
+  return axes;
+}
+
+// Nothing when not all directions have the frequency.
+Expected<std::optional<ResponsePoint>> response_at(const Measured& measured, double frequency_hz) {
+  ResponsePoint point{.frequency_hz = frequency_hz, .columns = {}, .transverse = {}};
+  std::vector<analysis::TriaxialExcitation> excitations;
+  for (const Direction& direction : measured.directions) {
+    const auto sensor = axes_at(direction.sensor, measured.channels, frequency_hz, std::nullopt);
+    if (!sensor) {
+      return std::optional<ResponsePoint>();
+    }
+    point.columns[direction.axis] = sensor->values;
+    point.u[direction.axis] = sensor->u;
+    if (measured.triaxial_reference()) {
+      const auto motion =
+          axes_at(direction.motion, measured.motion_channels, frequency_hz, direction.axis);
+      if (!motion) {
+        return std::optional<ResponsePoint>();
+      }
+      excitations.push_back({motion->values, motion->u, sensor->values, sensor->u});
+    }
+  }
+  if (!measured.triaxial_reference()) {
+    return std::optional(point);
+  }
+  const auto response = analysis::evaluate_triaxial(excitations);
+  if (!response) {
+    return bad(fmt::format("{} Hz: {}", frequency_hz, response.error().message));
+  }
+  for (std::size_t j = 0; j < 3; ++j) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      (*point.columns[j])[i] = response->h[i][j];
+      point.u[j][i] = response->u[i][j];
+    }
+  }
+  return std::optional(point);
+}
+
+Expected<void> add_transverse(ResponsePoint& point, double transverse_motion_rel) {
+  for (std::size_t j = 0; j < 3; ++j) {
+    if (!point.columns[j]) {
+      continue;
+    }
+    std::array<double, 3> own{};
+    for (std::size_t i = 0; i < 3;
+         ++i) { // an axis that was not excited answers about as much as the others
+      own[i] = std::abs(point.columns[i] ? (*point.columns[i])[i] : (*point.columns[j])[j]);
+    }
+    const auto transverse = analysis::transverse_sensitivity(*point.columns[j], point.u[j], j, own,
+                                                             transverse_motion_rel);
+    if (!transverse) {
+      return bad(fmt::format("{} Hz, excitation along {}: {}", point.frequency_hz, axis_names[j],
+                             transverse.error().message));
+    }
+    point.transverse[j] = *transverse;
+  }
+  return {};
+}
+
+Expected<std::vector<ResponsePoint>> evaluate(const TriaxialCommand& command,
+                                              const Measured& measured, WorkCount& count) {
+  std::vector<ResponsePoint> points;
+  count.begin("evaluating", "values", measured.directions.front().sensor.size());
+  for (const auto& [place, unused] : measured.directions.front().sensor) {
+    count.add_done();
+    if (place.first != measured.channels[0]) {
+      continue;
+    }
+    auto point = response_at(measured, place.second);
+    if (!point) {
+      return fail(point.error());
+    }
+    if (!*point) {
+      continue;
+    }
+    const double bound = measured.triaxial_reference() ? 0.0 : command.transverse_motion_rel;
+    if (const auto added = add_transverse(**point, bound); !added) {
+      return fail(added.error());
+    }
+    points.push_back(**point);
+  }
+  if (points.empty()) {
+    return bad(
+        fmt::format("the files have no frequency in common at which {}, {} and {} have values",
+                    measured.channels[0], measured.channels[1], measured.channels[2]));
+  }
+  return points;
+}
+
+// The progress is gone before anything is printed.
+Expected<std::pair<Measured, std::vector<ResponsePoint>>>
+read_and_evaluate(const TriaxialCommand& command) {
+  const WorkProgress progress("reading");
+  auto measured = read(command, progress.count());
+  if (!measured) {
+    return fail(measured.error());
+  }
+  auto points = evaluate(command, *measured, *progress.count());
+  if (!points) {
+    return fail(points.error());
+  }
+  return std::pair(std::move(*measured), std::move(*points));
+}
+
+void print_json(const Measured& measured, const std::vector<ResponsePoint>& points) {
+  Json json{{"channels", measured.channels},
+            {"triaxial_reference", measured.triaxial_reference()},
+            {"points", Json::array()}};
+  for (const ResponsePoint& point : points) {
+    Json one{{"frequency_hz", point.frequency_hz}, {"excitations", Json::array()}};
+    for (std::size_t j = 0; j < 3; ++j) {
+      if (!point.columns[j]) {
+        continue;
+      }
+      Json axes = Json::array();
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::complex<double> h = (*point.columns[j])[i];
+        axes.push_back({{"axis", std::string(1, axis_names[i])},
+                        {"real", h.real()},
+                        {"imaginary", h.imag()},
+                        {"u_component", point.u[j][i]},
+                        {"magnitude", std::abs(h)},
+                        {"phase_rad", std::arg(h)},
+                        {"ratio", point.transverse[j]->ratio[i]},
+                        {"u_ratio", point.transverse[j]->u_ratio[i]}});
+      }
+      one["excitations"].push_back({{"along", std::string(1, axis_names[j])},
+                                    {"response", std::move(axes)},
+                                    {"largest_transverse_ratio", point.transverse[j]->largest}});
+    }
+    json["points"].push_back(std::move(one));
+  }
+  fmt::print("{}\n", json_text(json, 2));
+}
+
+void print_table(const TriaxialCommand& command, const Measured& measured,
+                 const std::vector<ResponsePoint>& points) {
+  fmt::print("{:>12} {:>6} {:>12} {:>12} {:>12} {:>12} {:>12}   {}\n", "f / Hz", "along", "|H_x|",
+             "|H_y|", "|H_z|", "transverse", "u", "largest of the ratios to the excited axis");
+  for (const ResponsePoint& point : points) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      if (!point.columns[j]) {
+        continue;
+      }
+      const analysis::Axes& h = *point.columns[j];
+      const analysis::TransverseSensitivity& transverse = *point.transverse[j];
+      const std::size_t largest =
+          transverse.ratio[(j + 1) % 3] > transverse.ratio[(j + 2) % 3] ? (j + 1) % 3 : (j + 2) % 3;
+      fmt::print("{:>12g} {:>6} {:>12.6f} {:>12.6f} {:>12.6f} {:>11.3f}% {:>11.3f}%   {}\n",
+                 point.frequency_hz, axis_names[j], std::abs(h[0]), std::abs(h[1]), std::abs(h[2]),
+                 100.0 * transverse.largest, 100.0 * transverse.u_ratio[largest],
+                 axis_names[largest]);
+    }
+  }
+  if (measured.triaxial_reference()) {
+    fmt::print("\ntransverse motion of the exciter is corrected by the triaxial reference\n");
+  } else if (command.transverse_motion_rel > 0.0) {
+    fmt::print(
+        "\ntransverse motion of the exciter is unknown up to {} of the motion along its axis; u "
+        "includes that\n",
+        command.transverse_motion_rel);
+  } else {
+    fmt::print("\ntransverse motion of the exciter is assumed to be zero; --transverse-motion "
+               "states its bound\n");
+  }
+}
+
+} // namespace
+
+int run_triaxial(const TriaxialCommand& command) {
+  const auto evaluated = read_and_evaluate(command);
+  if (!evaluated) {
+    return report_error(evaluated.error());
+  }
+  const auto& [measured, points] = *evaluated;
+  command.json ? print_json(measured, points) : print_table(command, measured, points);
+  return 0;
+}
+
+} // namespace dyncal::services

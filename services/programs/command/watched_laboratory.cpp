@@ -1,0 +1,34 @@
+#include "services/programs/command/watched_laboratory.hpp"
+
+#include "services/base/version.hpp"
+#include "services/bus/host_clocks/clock_messages.hpp"
+
+namespace dyncal::services {
+
+Expected<std::unique_ptr<WatchedLaboratory>> WatchedLaboratory::open(const NetworkOptions& network,
+                                                                     const std::string& program,
+                                                                     const std::string& bench,
+                                                                     const std::stop_token& asked) {
+  auto joined = WatchedNetwork::join(network, program, asked);
+  if (!joined) {
+    return fail(joined.error());
+  }
+  std::unique_ptr<WatchedLaboratory> watched(
+      new WatchedLaboratory(std::move(*joined), std::make_shared<bus::WakeUp>()));
+  auto readers = live::LaboratoryReaders::open(
+      watched->network_->participant, bench, this_program(program, software_version(), network.dds),
+      bus::system_clock(), watched->wake_up_);
+  if (!readers) {
+    return fail(readers.error());
+  }
+  watched->readers_.emplace(std::move(*readers));
+  return watched;
+}
+
+void WatchedLaboratory::work(std::chrono::steady_clock::time_point until) {
+  wake_up_->wait_until(until);
+  readers_->work(laboratory_);
+  laboratory_.work();
+}
+
+} // namespace dyncal::services

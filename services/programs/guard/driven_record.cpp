@@ -1,0 +1,101 @@
+#include "services/programs/guard/driven_record.hpp"
+
+#include <cstdlib>
+#include <fstream>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "services/base/json_text.hpp"
+#include "services/base/output_file.hpp"
+
+namespace dyncal::services {
+namespace {
+
+using nlohmann::json;
+
+// A bench's name is any text; as the name of a file it is not.
+std::string file_name(const std::string& bench) {
+  std::string name;
+  for (const char letter : bench) {
+    const bool is_plain = (letter >= '0' && letter <= '9') || (letter >= 'a' && letter <= 'z') ||
+                          (letter >= 'A' && letter <= 'Z') || letter == '-';
+    name += is_plain ? std::string(1, letter)
+                     : fmt::format("_{:02x}", static_cast<unsigned char>(letter));
+  }
+  return name + ".json";
+}
+
+DrivenRun run_of(const json& kept) {
+  DrivenRun run;
+  run.run = kept.at("run").get<std::string>();
+  run.has_ended = kept.at("has_ended").get<bool>();
+  run.is_conducted = kept.value("is_conducted", false);
+  for (const json& one : kept.at("settings")) {
+    OutputSettings settings;
+    settings.frequency_hz = one.at("frequency_hz").get<double>();
+    if (one.contains("voltage_vpp")) {
+      settings.voltage_vpp = one.at("voltage_vpp").get<double>();
+    }
+    if (run.settings.size() < ExciterWatch::max_settings) {
+      run.settings.push_back(settings);
+    }
+  }
+  return run;
+}
+
+} // namespace
+
+std::filesystem::path guard_state_folder() {
+  const auto variable = [](const char* name) {
+    const char* value = std::getenv(name);
+    return std::filesystem::path(value != nullptr ? value : "");
+  };
+  if (auto folder = variable("STATE_DIRECTORY"); !folder.empty()) {
+    return folder;
+  }
+  if (const auto folder = variable("XDG_STATE_HOME"); !folder.empty()) {
+    return folder / "dyncal-guard";
+  }
+  const auto home = variable("HOME");
+  return (home.empty() ? std::filesystem::temp_directory_path() : home / ".local" / "state") /
+         "dyncal-guard";
+}
+
+DrivenRecord::DrivenRecord(const std::filesystem::path& folder, const std::string& bench,
+                           std::string generator)
+    : path_(folder / file_name(bench)), generator_(std::move(generator)) {}
+
+DrivenRun DrivenRecord::read() const {
+  std::ifstream in(path_);
+  const json kept = json::parse(in, nullptr, false);
+  try {
+    return kept.is_object() && kept.at("generator") == generator_ ? run_of(kept) : DrivenRun{};
+  } catch (const json::exception&) {
+    return {};
+  }
+}
+
+Expected<void> DrivenRecord::write(const DrivenRun& run) const {
+  std::error_code failure;
+  if (run.run.empty()) {
+    std::filesystem::remove(path_, failure);
+    return {};
+  }
+  std::filesystem::create_directories(path_.parent_path(), failure); // if not, writing says why
+  json settings = json::array();
+  for (const OutputSettings& one : run.settings) {
+    json entry = {{"frequency_hz", one.frequency_hz}};
+    if (one.voltage_vpp) {
+      entry["voltage_vpp"] = *one.voltage_vpp;
+    }
+    settings.push_back(std::move(entry));
+  }
+  return write_output_file(path_, json_text(json{{"generator", generator_},
+                                                 {"run", run.run},
+                                                 {"has_ended", run.has_ended},
+                                                 {"is_conducted", run.is_conducted},
+                                                 {"settings", std::move(settings)}}));
+}
+
+} // namespace dyncal::services

@@ -1,0 +1,371 @@
+#include "services/programs/virtual_bench/bench_options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+#include <map>
+
+#include "services/base/version.hpp"
+#include "services/daemon/program/command_line.hpp"
+#include "services/programs/virtual_bench/fault_option.hpp"
+
+namespace dyncal::services::virtual_bench {
+namespace {
+
+namespace device = dyncal::drivers::virtual_bench;
+
+// The words of the command line as they come, before they are checked against each other.
+struct Words {
+  std::string preset = "mpu9250-paper";
+  std::string speed = "1";
+  std::string dau = "127.0.0.1:7654";
+  std::string acs = "127.0.0.1:0";
+  std::string generator = "127.0.0.1:0";
+  std::string dso = "127.0.0.1:0";
+  std::string tss = "127.0.0.1:0";
+  std::string sensor = "0xbccb0100";
+  std::string can_bus = "1M";
+  std::string generator_words = "dg4000";
+  std::vector<std::string> scope_faults;
+  std::size_t scope_pieces = 0;
+  std::string response;
+  std::vector<std::string> faults;
+  std::vector<std::string> frequencies{"10", "20", "40", "80", "160"};
+  std::vector<double> levels{10.0};
+};
+
+tl::unexpected<Error> refuse(std::string message) {
+  return fail(ErrorCode::bad_argument, std::move(message));
+}
+
+void add_instrument_options(CLI::App& app, Words& words, BenchOptions& options) {
+  app.add_option("--preset", words.preset,
+                 fmt::format("sensor: {}", fmt::join(device::preset_names(), ", ")))
+      ->capture_default_str();
+  app.add_option("--seed", options.bench.seed, "everything drawn follows from it")
+      ->capture_default_str();
+  app.add_option("--speed", words.speed, "times real time, or max")->capture_default_str();
+  app.add_option("--duration", options.server.duration_s,
+                 "end after so many seconds of bench time (0: never)");
+  app.add_option("--dau", words.dau, "HOST:PORT that the unit sends its datagrams to")
+      ->capture_default_str();
+  app.add_option("--acs-listen", words.acs, "HOST:PORT of the ACS stream (port 0: chosen)")
+      ->capture_default_str();
+  app.add_option("--generator-listen", words.generator,
+                 "HOST:PORT of the generator's SCPI (port 0: chosen)")
+      ->capture_default_str();
+  app.add_option("--generator-words", words.generator_words,
+                 "whose SCPI the generator speaks: dg4000, 33500")
+      ->check(CLI::IsMember({"dg4000", "33500"}))
+      ->capture_default_str();
+  app.add_option("--dso-listen", words.dso, "HOST:PORT of the oscilloscope's SCPI (preset tss)")
+      ->capture_default_str();
+  app.add_option("--tss-listen", words.tss, "HOST:PORT of the time series sensor (preset tss)")
+      ->capture_default_str();
+  app.add_flag("--tss-free-running", options.bench.faults.series_start.free_running,
+               "the same as --fault free-running");
+  app.add_option("--scope-fault", words.scope_faults,
+                 fmt::format("NAME=PROBABILITY per answer of the oscilloscope: {}",
+                             fmt::join(device::scope_fault_names(), ", ")));
+  app.add_option("--scope-pieces", words.scope_pieces,
+                 "the oscilloscope's answers come in pieces of so many bytes (0: whole)");
+  app.add_option("--ports-file", options.ports_file,
+                 "write the ports to this file as JSON once they are open");
+  app.add_option("--truth", options.truth_file, "write what is true to this file");
+  app.add_option("--adc-file", options.adc_file,
+                 "write the calibration of the sync ADC to this file");
+}
+
+void add_can_options(CLI::App& app, Words& words, BenchOptions& options) {
+  app.add_option("--can", options.can_interface,
+                 "put a sensor with CAN output on this interface; all instruments then keep the "
+                 "UTC of this host, in real time");
+  app.add_option("--can-bus", words.can_bus,
+                 "500k, 1M (classic CAN) or fd-5M (CAN FD, 1 and 5 Mbit/s)")
+      ->capture_default_str();
+  app.add_option("--can-load", options.can.background_load,
+                 "share of the bus's time that other devices take")
+      ->check(CLI::Range(0.0, 0.8));
+  app.add_option("--dbc-file", options.dbc_file,
+                 "write the DBC file of the sensor with CAN output to this file");
+}
+
+void add_model_options(CLI::App& app, Words& words, BenchOptions& options) {
+  app.add_option("--response", words.response,
+                 "CSV file with the response of the sensor's z axis, in place of the preset's: "
+                 "frequency_hz,magnitude,phase_rad (magnitude of m/s^2 over m/s^2; lead)");
+  app.add_option("--frequencies", words.frequencies, "in Hz, decimal text, comma separated")
+      ->delimiter(',');
+  app.add_option("--levels", words.levels,
+                 "in m/s^2, one or one per frequency; the highest decides the ranges")
+      ->delimiter(',');
+  app.add_option("--acs-rate", options.bench.acs_rate_hz, "samples per second")
+      ->check(CLI::Range(100, 1000000))
+      ->capture_default_str();
+  app.add_flag("--acs-utc", options.bench.acs_utc, "the ACS stamps in UTC, as the unit does");
+  app.add_flag(
+      "--sync-is-first-output", options.bench.sync_is_first_output,
+      "sync is the output that drives the exciter, not a second one of constant amplitude");
+  app.add_option("--exciter-gain", options.bench.faults.exciter_gain,
+                 "the same as --fault exciter-gain=FACTOR")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--thermal-cycle", options.bench.thermal_cycle_s,
+                 "seconds for the sensor's warm-up")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--reference-magnitude-rel", options.bench.reference_magnitude_rel,
+                 "standard uncertainty, relative")
+      ->check(CLI::Range(0.0, 1.0));
+  app.add_option("--reference-phase-rad", options.bench.reference_phase_rad,
+                 "standard uncertainty in rad")
+      ->check(CLI::Range(0.0, 1.0));
+  app.add_option("--sensor", words.sensor, "id of the sensor in the unit")->capture_default_str();
+}
+
+void add_path_options(CLI::App& app, Words& words, BenchOptions& options) {
+  app.add_flag("--ticks", options.server.with_ticks, "send time_ticks, as units do since 2021-07");
+  app.add_option("--loss", options.server.path.loss, "probability that a datagram is lost")
+      ->check(CLI::Range(0.0, 1.0));
+  app.add_option("--duplicate", options.server.path.duplicate,
+                 "probability that a datagram comes twice")
+      ->check(CLI::Range(0.0, 1.0));
+  app.add_option("--reorder", options.server.path.reorder,
+                 "probability that a datagram comes after the next one")
+      ->check(CLI::Range(0.0, 1.0));
+  app.add_option("--fault", words.faults, fault_help());
+  app.add_option("--datagrams-per-second", options.server.datagrams_per_s,
+                 "most datagrams in a second of this host")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+}
+
+void add_recording_options(CLI::App& app, BenchOptions& options) {
+  app.add_option("--record-csv", options.record_folder,
+                 "write acs.csv and dau.csv into this folder instead of opening sockets");
+  app.add_option("--repetitions", options.programme.repetitions, "with --record-csv")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--settling", options.programme.settling_s, "with --record-csv, seconds")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--duration-per-step", options.programme.duration_s, "with --record-csv, seconds")
+      ->check(CLI::PositiveNumber);
+  app.add_flag("--exit-with-parent", options.exit_with_parent,
+               "end when the process that started this one ends");
+}
+
+void add_options(CLI::App& app, Words& words, BenchOptions& options) {
+  add_instrument_options(app, words, options);
+  add_can_options(app, words, options);
+  add_model_options(app, words, options);
+  add_path_options(app, words, options);
+  add_recording_options(app, options);
+}
+
+template <class Number>
+bool read_whole(const std::string& text, Number& value, int base_or_unused = 10) {
+  const char* end = text.data() + text.size();
+  std::from_chars_result result{};
+  if constexpr (std::is_integral_v<Number>) {
+    result = std::from_chars(text.data(), end, value, base_or_unused);
+  } else {
+    result = std::from_chars(text.data(), end, value);
+  }
+  return result.ec == std::errc() && result.ptr == end;
+}
+
+Expected<void> read_addresses(const Words& words, device::ServerSettings& server) {
+  const std::pair<const std::string*, drivers::Address*> addresses[] = {
+      {&words.dau, &server.dau},
+      {&words.acs, &server.acs_listen},
+      {&words.generator, &server.generator_listen}};
+  for (const auto& [text, address] : addresses) {
+    auto parsed = drivers::parse_address(*text);
+    if (!parsed) {
+      return refuse(parsed.error().message);
+    }
+    *address = *parsed;
+  }
+  return {};
+}
+
+Expected<void> read_scope_faults(const std::vector<std::string>& texts,
+                                 device::ScopeFaults& faults) {
+  constexpr const char* option = "--scope-fault";
+  const std::vector<std::string>& known = device::scope_fault_names();
+  for (const std::string& text : texts) {
+    const std::size_t sign = text.find('=');
+    const std::string name = text.substr(0, sign);
+    double probability = 0.0;
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      return refuse(
+          fmt::format("{} {}: no such fault; there are: {}", option, text, fmt::join(known, ", ")));
+    }
+    if (sign == std::string::npos || !read_whole(text.substr(sign + 1), probability) ||
+        !(probability >= 0.0 && probability <= 1.0)) {
+      return refuse(fmt::format("{} {}: write NAME=PROBABILITY with a probability from 0 to 1",
+                                option, text));
+    }
+    faults[name] = probability;
+  }
+  return {};
+}
+
+Expected<void> read_programme(const Words& words, BenchOptions& options) {
+  for (const std::string& text : words.frequencies) {
+    double frequency_hz = 0.0;
+    if (!read_whole(text, frequency_hz) || !(frequency_hz > 0.0 && frequency_hz <= 5000.0)) {
+      return refuse(
+          fmt::format("--frequencies: \"{}\" is not a frequency between 0 and 5000 Hz", text));
+    }
+  }
+  if (words.levels.size() != 1 && words.levels.size() != words.frequencies.size()) {
+    return refuse(fmt::format("--levels: give one level, or one for each of the {} frequencies",
+                              words.frequencies.size()));
+  }
+  for (const double level : words.levels) {
+    if (!(level > 0.0 && level <= 500.0)) {
+      return refuse(fmt::format("--levels: {} m/s^2 is not between 0 and 500", level));
+    }
+  }
+  options.programme.frequencies_hz = words.frequencies;
+  options.programme.levels_m_s2 =
+      words.levels.size() == 1 ? std::vector<double>(words.frequencies.size(), words.levels.front())
+                               : words.levels;
+  options.bench.highest_level_m_s2 = *std::max_element(words.levels.begin(), words.levels.end());
+  return {};
+}
+
+Expected<void> read_can(const Words& words, BenchOptions& options) {
+  const auto& kinds = drivers::virtual_bench::can_bus_kinds();
+  const auto kind =
+      std::find_if(kinds.begin(), kinds.end(), [&](const drivers::virtual_bench::CanBusKind& one) {
+        return one.name == words.can_bus;
+      });
+  if (kind == kinds.end()) {
+    return refuse(
+        fmt::format("--can-bus {}: no such bus; there are 500k, 1M, fd-5M", words.can_bus));
+  }
+  options.can.bus = *kind;
+  options.can.preset = options.bench.preset;
+  options.can.seed = options.bench.seed;
+  options.can.highest_level_m_s2 = options.bench.highest_level_m_s2;
+  options.can.faults = options.bench.faults.sensor;
+  options.can.loss = options.bench.faults.sensor_loss;
+  if (options.bench.response) {
+    options.can.preset.axes[2] = options.bench.response->response;
+    options.can.latency_s = std::min(options.can.latency_s, options.can.preset.axes[2].delay_s);
+  }
+  if (!options.can_interface.empty() && options.bench.preset.triggered) {
+    return refuse("--can: the sensor of preset tss records series and has no CAN output; choose "
+                  "another preset");
+  }
+  return {};
+}
+
+// After everything else: the sensor's range follows from the levels.
+Expected<void> read_triggered(const Words& words, BenchOptions& options) {
+  if (!options.bench.preset.triggered) {
+    return {};
+  }
+  device::TriggeredSettings triggered;
+  triggered.trigger.seed = options.bench.seed;
+  triggered.trigger.sync_amplitude_v = device::VirtualBench::sync_amplitude_v;
+  triggered.piece_bytes = words.scope_pieces;
+  const auto scope = drivers::parse_address(words.dso);
+  const auto sensor = drivers::parse_address(words.tss);
+  if (!scope || !sensor) {
+    return refuse(scope ? sensor.error().message : scope.error().message);
+  }
+  triggered.scope_listen = *scope;
+  triggered.sensor_listen = *sensor;
+  options.server.triggered = triggered;
+  if (options.bench.faults.sensor_loss.probability > 0.0 &&
+      options.bench.faults.sensor_loss.counted) {
+    return refuse("--fault loss: the samples of a series have no numbers; write counted=no");
+  }
+  return read_scope_faults(words.scope_faults, options.server.triggered->faults);
+}
+
+Expected<void> read_bench_faults(const Words& words, device::BenchFaults& faults) {
+  for (const std::string& text : words.faults) {
+    if (auto read = read_fault(text, faults); !read) {
+      return read;
+    }
+  }
+  return {};
+}
+
+Expected<void> read_response(const Words& words, BenchOptions& options) {
+  if (words.response.empty()) {
+    return {};
+  }
+  auto table = device::read_response_file(words.response);
+  if (!table) {
+    return fail(ErrorCode::bad_file, table.error().message);
+  }
+  for (const std::string& text : options.programme.frequencies_hz) {
+    double frequency_hz = 0.0;
+    if (read_whole(text, frequency_hz) && !table->covers(frequency_hz)) {
+      return refuse(fmt::format("--frequencies: {} Hz lies outside the response of {}, which is "
+                                "known from {} to {} Hz",
+                                text, words.response, table->first_hz, table->last_hz));
+    }
+  }
+  options.bench.response = std::move(*table);
+  return {};
+}
+
+Expected<void> read_words(const Words& words, BenchOptions& options) {
+  const auto preset = device::preset_by_name(words.preset);
+  if (!preset) {
+    return refuse(fmt::format("--preset {}: no such sensor; there are: {}", words.preset,
+                              fmt::join(device::preset_names(), ", ")));
+  }
+  options.bench.preset = *preset;
+  options.server.speed = 0.0;
+  options.bench.generator_words = words.generator_words == "33500"
+                                      ? device::GeneratorWords::keysight_33500
+                                      : device::GeneratorWords::dg4000;
+  if (words.speed != "max" &&
+      (!read_whole(words.speed, options.server.speed) || !(options.server.speed > 0.0))) {
+    return refuse(fmt::format("--speed {}: write a number above 0, or max", words.speed));
+  }
+  const bool hexadecimal = words.sensor.starts_with("0x");
+  if (!read_whole(hexadecimal ? words.sensor.substr(2) : words.sensor, options.server.sensor_id,
+                  hexadecimal ? 16 : 10)) {
+    return refuse(fmt::format("--sensor {}: write a number such as 0xbccb0100", words.sensor));
+  }
+  return read_addresses(words, options.server)
+      .and_then([&] { return read_bench_faults(words, options.bench.faults); })
+      .and_then([&] { return read_programme(words, options); })
+      .and_then([&] { return read_response(words, options); })
+      .and_then([&] { return read_triggered(words, options); })
+      .and_then([&] { return read_can(words, options); });
+}
+
+} // namespace
+
+Expected<std::optional<BenchOptions>> parse_command_line(int argc, char** argv) {
+  CLI::App app{"A calibration bench without hardware: generator, exciter, analogue calibration "
+               "system and SmartUp Unit, reached through "
+               "their real protocols.",
+               "dyncal-virtual-bench"};
+  app.set_version_flag("--version", build_description());
+  Words words;
+  BenchOptions options;
+  add_options(app, words, options);
+  const auto parsed = services::parse_command_line(app, argc, argv);
+  if (!parsed) {
+    return fail(parsed.error());
+  }
+  if (!*parsed) {
+    return std::nullopt;
+  }
+  if (auto read = read_words(words, options); !read) {
+    return fail(read.error());
+  }
+  return options;
+}
+
+} // namespace dyncal::services::virtual_bench

@@ -1,0 +1,384 @@
+#include "services/programs/virtual_bench/fault_option.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <map>
+#include <optional>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace dyncal::services::virtual_bench {
+namespace {
+
+namespace device = dyncal::drivers::virtual_bench;
+using device::BenchFaults;
+using device::ChannelFaults;
+
+std::optional<double> number_in(const std::string& text) {
+  double value = 0.0;
+  const char* end = text.data() + text.size();
+  const auto [read_to, status] = std::from_chars(text.data(), end, value);
+  return status == std::errc() && read_to == end ? std::optional(value) : std::nullopt;
+}
+
+// The option taken to pieces. What has been asked for is gone, so that the rest is unknown.
+class FaultText {
+public:
+  explicit FaultText(const std::string& whole) : whole_(whole) {
+    for (std::size_t begin = 0; begin <= whole.size();) {
+      const std::size_t end = std::min(whole.find(',', begin), whole.size());
+      const std::string part = whole.substr(begin, end - begin);
+      const std::size_t sign = std::min(part.find('='), part.size());
+      const std::string value = sign < part.size() ? part.substr(sign + 1) : "";
+      if (begin == 0) {
+        name_ = part.substr(0, sign);
+        value_ = value;
+      } else {
+        settings_[part.substr(0, sign)] = value;
+      }
+      begin = end + 1;
+    }
+  }
+
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] bool has_value() const { return !value_.empty(); }
+
+  [[nodiscard]] tl::unexpected<Error> refuse(const std::string& what) const {
+    return fail(ErrorCode::bad_argument, fmt::format("--fault {}: {}", whole_, what));
+  }
+
+  [[nodiscard]] Expected<double> value(const char* meaning, double lowest, double highest) const {
+    return checked(number_in(value_), fmt::format("{}=", name_), meaning, lowest, highest);
+  }
+
+  [[nodiscard]] Expected<double> setting(const std::string& key, const char* meaning, double usual,
+                                         double lowest, double highest) {
+    const auto text = take(key);
+    return text ? checked(number_in(*text), fmt::format("{}=", key), meaning, lowest, highest)
+                : Expected<double>(usual);
+  }
+
+  [[nodiscard]] std::optional<std::string> take(const std::string& key) {
+    const auto found = settings_.find(key);
+    if (found == settings_.end()) {
+      return std::nullopt;
+    }
+    std::string value = found->second;
+    settings_.erase(found);
+    return value;
+  }
+
+  [[nodiscard]] Expected<void> nothing_left() const {
+    if (!settings_.empty()) {
+      return refuse(fmt::format("has no setting \"{}\"", settings_.begin()->first));
+    }
+    return {};
+  }
+
+private:
+  [[nodiscard]] Expected<double> checked(std::optional<double> number, const std::string& before,
+                                         const char* meaning, double lowest, double highest) const {
+    if (!number || !(*number >= lowest && *number <= highest)) {
+      return refuse(
+          fmt::format("write {}{}, a number from {} to {}", before, meaning, lowest, highest));
+    }
+    return *number;
+  }
+
+  std::string whole_;
+  std::string name_;
+  std::string value_;
+  std::map<std::string, std::string> settings_;
+};
+
+Expected<ChannelFaults*> channel_of(FaultText& text, BenchFaults& faults) {
+  const std::string name = text.take("at").value_or("");
+  const std::pair<const char*, ChannelFaults*> channels[] = {{"sensor", &faults.sensor},
+                                                             {"reference", &faults.reference},
+                                                             {"sync_acs", &faults.sync_acs},
+                                                             {"sync_dau", &faults.sync_dau}};
+  for (const auto& [known, channel] : channels) {
+    if (name == known) {
+      return channel;
+    }
+  }
+  return text.refuse("write at=CHANNEL; there are sensor, reference, sync_acs, sync_dau");
+}
+
+Expected<void> read_over_range(FaultText& text, BenchFaults& faults) {
+  const auto channel = channel_of(text, faults);
+  const auto limit = text.value("LIMIT", 1e-3, 1e4);
+  if (!channel || !limit) {
+    return fail(!channel ? channel.error() : limit.error());
+  }
+  (*channel)->range = *limit;
+  return {};
+}
+
+Expected<void> read_soft_ends(FaultText& text, BenchFaults& faults) {
+  const auto channel = channel_of(text, faults);
+  const auto limit = text.value("LIMIT", 1e-3, 1e4);
+  if (!channel || !limit) {
+    return fail(!channel ? channel.error() : limit.error());
+  }
+  const std::string end = text.take("end").value_or("both");
+  if (end != "both" && end != "upper" && end != "lower") {
+    return text.refuse("write end=both, end=upper or end=lower");
+  }
+  (*channel)->soft_upper = end == "lower" ? 0.0 : *limit;
+  (*channel)->soft_lower = end == "upper" ? 0.0 : *limit;
+  return {};
+}
+
+Expected<void> read_held(FaultText& text, BenchFaults& faults) {
+  const auto channel = channel_of(text, faults);
+  const auto part = text.value("PART", 0.0, 1.0);
+  if (!channel || !part) {
+    return fail(!channel ? channel.error() : part.error());
+  }
+  (*channel)->held_part = *part;
+  return {};
+}
+
+Expected<void> read_fifo(FaultText& text, BenchFaults& faults) {
+  const auto samples = text.value("SAMPLES", 2.0, 1e6);
+  if (!samples) {
+    return fail(samples.error());
+  }
+  faults.fifo_samples = static_cast<std::size_t>(*samples);
+  return {};
+}
+
+Expected<void> read_stuck(FaultText& text, BenchFaults& faults) {
+  const auto channel = channel_of(text, faults);
+  const auto samples = text.value("SAMPLES", 1.0, 1e6);
+  const auto every_s = text.setting("every", "SECONDS", 1.0, 1e-3, 1e6);
+  if (!channel || !samples || !every_s) {
+    return fail(!channel ? channel.error() : !samples ? samples.error() : every_s.error());
+  }
+  (*channel)->stuck_samples = static_cast<std::size_t>(*samples);
+  (*channel)->stuck_every_s = *every_s;
+  return {};
+}
+
+Expected<void> read_hum(FaultText& text, BenchFaults& faults) {
+  const auto channel = channel_of(text, faults);
+  const auto part = text.value("PART", 0.0, 10.0);
+  const auto frequency_hz = text.setting("frequency", "HZ", 50.0, 0.1, 1e5);
+  if (!channel || !part || !frequency_hz) {
+    return fail(!channel ? channel.error() : !part ? part.error() : frequency_hz.error());
+  }
+  const std::string when = text.take("while").value_or("always");
+  if (when != "always" && when != "driven") {
+    return text.refuse("write while=driven, or nothing for hum that is always there");
+  }
+  (*channel)->hum_while_driven = when == "driven";
+  (*channel)->hum_rel = *part;
+  (*channel)->hum_hz = *frequency_hz;
+  return {};
+}
+
+Expected<void> read_drift(FaultText& text, BenchFaults& faults) {
+  const auto channel = channel_of(text, faults);
+  const auto part = text.value("PART", -10.0, 10.0);
+  if (!channel || !part) {
+    return fail(!channel ? channel.error() : part.error());
+  }
+  (*channel)->drift_rel_per_s = *part;
+  return {};
+}
+
+Expected<void> read_knock(FaultText& text, BenchFaults& faults) {
+  const auto channel = channel_of(text, faults);
+  const auto part = text.value("PART", -1e3, 1e3);
+  const auto after_s = text.setting("after", "SECONDS", 1.0, 0.0, 1e6);
+  if (!channel || !part || !after_s) {
+    return fail(!channel ? channel.error() : !part ? part.error() : after_s.error());
+  }
+  (*channel)->knock_rel = *part;
+  (*channel)->knock_after_s = *after_s;
+  return {};
+}
+
+Expected<void> read_delay_change(FaultText& text, BenchFaults& faults) {
+  const auto by_s = text.value("SECONDS", -0.1, 0.1);
+  const auto after_s = text.setting("after", "SECONDS", 1.0, 0.0, 1e6);
+  if (!by_s || !after_s) {
+    return fail(!by_s ? by_s.error() : after_s.error());
+  }
+  faults.delay_change = {*by_s, *after_s};
+  return {};
+}
+
+Expected<void> read_wandering(FaultText& text, BenchFaults& faults) {
+  const auto part = text.value("PART", 0.0, 0.5);
+  const auto period_s = text.setting("period", "SECONDS", 1.0, 0.01, 1e6);
+  if (!part || !period_s) {
+    return fail(!part ? part.error() : period_s.error());
+  }
+  faults.wandering = {*part, *period_s};
+  return {};
+}
+
+Expected<void> read_loss(FaultText& text, BenchFaults& faults) {
+  const auto probability = text.value("PROBABILITY", 0.0, 1.0);
+  if (!probability) {
+    return fail(probability.error());
+  }
+  const std::string at = text.take("at").value_or("");
+  const std::string counted = text.take("counted").value_or("yes");
+  if (at != "sensor" && at != "acs") {
+    return text.refuse("write at=sensor or at=acs");
+  }
+  if (counted != "yes" && counted != "no") {
+    return text.refuse("write counted=yes or counted=no");
+  }
+  (at == "acs" ? faults.acs_loss : faults.sensor_loss) = {*probability, counted == "yes"};
+  return {};
+}
+
+Expected<void> read_free_running(FaultText& text, BenchFaults& faults) {
+  if (text.has_value()) {
+    return text.refuse("takes no value");
+  }
+  faults.series_start.free_running = true;
+  return {};
+}
+
+Expected<void> read_start_jitter(FaultText& text, BenchFaults& faults) {
+  const auto jitter_s = text.value("SECONDS", 0.0, 1.0);
+  if (!jitter_s) {
+    return fail(jitter_s.error());
+  }
+  faults.series_start.jitter_s = *jitter_s;
+  return {};
+}
+
+Expected<void> read_exciter_gain(FaultText& text, BenchFaults& faults) {
+  const auto factor = text.value("FACTOR", 1e-3, 1e3);
+  if (!factor) {
+    return fail(factor.error());
+  }
+  faults.exciter_gain = *factor;
+  return {};
+}
+
+Expected<void> read_ring_down(FaultText& text, BenchFaults& faults) {
+  const auto time_s = text.value("SECONDS", 1e-3, 10.0);
+  if (!time_s) {
+    return fail(time_s.error());
+  }
+  faults.ring_down_s = *time_s;
+  return {};
+}
+
+Expected<void> read_left_offset(FaultText& text, BenchFaults& faults) {
+  const auto offset_v = text.value("VOLTS", -10.0, 10.0);
+  if (!offset_v) {
+    return fail(offset_v.error());
+  }
+  faults.left_in_generator.offset_v = *offset_v;
+  return {};
+}
+
+Expected<void> read_left_burst(FaultText& text, BenchFaults& faults) {
+  if (text.has_value()) {
+    return text.refuse("takes no value");
+  }
+  faults.left_in_generator.in_burst = true;
+  return {};
+}
+
+Expected<void> read_no_reset(FaultText& text, BenchFaults& faults) {
+  if (text.has_value()) {
+    return text.refuse("takes no value");
+  }
+  faults.left_in_generator.is_kept = true;
+  return {};
+}
+
+Expected<void> read_output_stays_on(FaultText& text, BenchFaults& faults) {
+  if (text.has_value()) {
+    return text.refuse("takes no value");
+  }
+  faults.output_stays_on = true;
+  return {};
+}
+
+Expected<void> read_stamp_fault(FaultText& text, BenchFaults& faults) {
+  const auto probability = text.value("PROBABILITY", 0.0, 1.0);
+  if (!probability) {
+    return fail(probability.error());
+  }
+  faults.stamps[text.name()] = *probability;
+  return {};
+}
+
+struct Fault {
+  const char* name;
+  const char* form;
+  Expected<void> (*read)(FaultText&, BenchFaults&);
+};
+
+constexpr std::array<Fault, 19> known_faults{{
+    {"over-range", "over-range=LIMIT,at=CHANNEL", read_over_range},
+    {"soft-ends", "soft-ends=LIMIT,at=CHANNEL[,end=upper|lower]", read_soft_ends},
+    {"held", "held=PART,at=CHANNEL", read_held},
+    {"fifo", "fifo=SAMPLES", read_fifo},
+    {"stuck", "stuck=SAMPLES,at=CHANNEL[,every=SECONDS]", read_stuck},
+    {"hum", "hum=PART,at=CHANNEL[,frequency=HZ][,while=driven]", read_hum},
+    {"drift", "drift=PART_PER_SECOND,at=CHANNEL", read_drift},
+    {"knock", "knock=PART,at=CHANNEL[,after=SECONDS]", read_knock},
+    {"delay-change", "delay-change=SECONDS[,after=SECONDS]", read_delay_change},
+    {"wandering", "wandering=PART[,period=SECONDS]", read_wandering},
+    {"loss", "loss=PROBABILITY,at=sensor|acs[,counted=no]", read_loss},
+    {"free-running", "free-running", read_free_running},
+    {"start-jitter", "start-jitter=SECONDS", read_start_jitter},
+    {"exciter-gain", "exciter-gain=FACTOR", read_exciter_gain},
+    {"ring-down", "ring-down=SECONDS", read_ring_down},
+    {"generator-offset", "generator-offset=VOLTS", read_left_offset},
+    {"generator-burst", "generator-burst", read_left_burst},
+    {"generator-no-reset", "generator-no-reset", read_no_reset},
+    {"output-stays-on", "output-stays-on", read_output_stays_on},
+}};
+
+std::vector<std::string> forms() {
+  std::vector<std::string> all;
+  all.reserve(known_faults.size());
+  for (const Fault& fault : known_faults) {
+    all.emplace_back(fault.form);
+  }
+  return all;
+}
+
+} // namespace
+
+std::string fault_help() {
+  return fmt::format("what is wrong on purpose, again for each fault: {}; CHANNEL is sensor, "
+                     "reference, sync_acs or sync_dau; parts are of the highest level or of the "
+                     "amplitude of sync; NAME=PROBABILITY per sample for stamps: {}",
+                     fmt::join(forms(), ", "), fmt::join(device::stamp_fault_names(), ", "));
+}
+
+Expected<void> read_fault(const std::string& text, BenchFaults& faults) {
+  FaultText fault(text);
+  const auto& stamp_faults = device::stamp_fault_names();
+  const auto* known = std::find_if(known_faults.begin(), known_faults.end(),
+                                   [&](const Fault& one) { return fault.name() == one.name; });
+  Expected<void> (*read)(FaultText&, BenchFaults&) = nullptr;
+  if (known != known_faults.end()) {
+    read = known->read;
+  } else if (std::find(stamp_faults.begin(), stamp_faults.end(), fault.name()) !=
+             stamp_faults.end()) {
+    read = read_stamp_fault;
+  } else {
+    return fault.refuse(fmt::format("no such fault; there are: {}; of stamps: {}",
+                                    fmt::join(forms(), ", "), fmt::join(stamp_faults, ", ")));
+  }
+  return read(fault, faults).and_then([&] { return fault.nothing_left(); });
+}
+
+} // namespace dyncal::services::virtual_bench

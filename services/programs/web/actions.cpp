@@ -1,0 +1,331 @@
+#include "services/programs/web/actions.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
+
+#include "services/base/json_text.hpp"
+#include "services/bench/file/bench_file.hpp"
+#include "services/contract/time_name.hpp"
+#include "services/contract/topics.hpp"
+#include "services/programs/web/laboratory_answers.hpp"
+
+namespace dyncal::services::web {
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+constexpr const char* target = "conductor";
+
+void answer_action(bool accepted, const std::string& by, const std::string& message,
+                   httplib::Response& response) {
+  const Json json{{"answer", accepted ? "accepted" : "refused"}, {"by", by}, {"message", message}};
+  response.status = accepted ? 200 : 409;
+  response.set_content(json_text(json), "application/json");
+}
+
+// A member of what a visitor sent; empty: it is no object, or has no such text.
+std::string text_of(const Json& body, const char* member) {
+  const Json text = body.is_object() ? body.value(member, Json()) : Json();
+  return text.is_string() ? text.get<std::string>() : "";
+}
+
+std::optional<wire::CommandKind> kind_of(const std::string& word) {
+  const std::map<std::string, wire::CommandKind> kinds{{"repeat", wire::COMMAND_REPEAT},
+                                                       {"abort", wire::COMMAND_ABORT},
+                                                       {"pause", wire::COMMAND_PAUSE},
+                                                       {"continue", wire::COMMAND_CONTINUE}};
+  const auto found = kinds.find(word);
+  return found == kinds.end() ? std::nullopt : std::optional(found->second);
+}
+
+// The folder's own bench files, by name.
+std::vector<std::string> bench_files_of(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::error_code unknown;
+  for (const auto& entry : fs::directory_iterator(folder, unknown)) {
+    if (entry.path().extension() == ".toml" && entry.is_regular_file(unknown)) {
+      names.push_back(entry.path().filename().string());
+    }
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::vector<std::string> run_arguments(const NetworkOptions& network, const fs::path& file,
+                                       const fs::path& runs_folder) {
+  std::vector<std::string> arguments{"run",       file.string(), "--dds",
+                                     network.dds, "--domain",    std::to_string(network.domain)};
+  if (!runs_folder.empty()) {
+    arguments.insert(arguments.end(), {"--folder", runs_folder.string()});
+  }
+  for (const std::string& peer : network.peers) {
+    arguments.insert(arguments.end(), {"--peer", peer});
+  }
+  if (network.no_multicast) {
+    arguments.emplace_back("--no-multicast");
+  }
+  if (!network.interface_name.empty()) {
+    arguments.insert(arguments.end(), {"--interface", network.interface_name});
+  }
+  return arguments;
+}
+
+// The one that is commanded; null: it is not the bench's run now.
+const live::Run* run_of(const live::Laboratory& laboratory, const wire::Command& command) {
+  const live::Bench* bench = laboratory.bench(command.bench().to_string());
+  const live::Run* run = bench == nullptr ? nullptr : bench->current_run();
+  return run != nullptr && run->name == command.run() ? run : nullptr;
+}
+
+// Nothing: the plan has no such step.
+std::optional<std::uint32_t> attempt_of(const live::Run& run, std::uint32_t number) {
+  if (run.plan) {
+    for (const live::Step& step : run.plan->steps) {
+      if (step.step == number) {
+        return step.attempt;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+struct ConductedRun {
+  std::string conductor;
+  std::optional<std::uint32_t> attempt; // of the commanded step; nothing: the plan does not have it
+};
+
+std::optional<ConductedRun> conducted_run(const live::Laboratory& laboratory,
+                                          const wire::Command& command, bus::Clock::Instant now) {
+  const live::Run* run = run_of(laboratory, command);
+  if (run == nullptr || run->is_over() || !run->conductor_heard || run->is_left_alone(now)) {
+    return std::nullopt;
+  }
+  return ConductedRun{.conductor = run->plan ? run->plan->conductor : "",
+                      .attempt = attempt_of(*run, command.step())};
+}
+
+// What the command asked for can be seen.
+bool shows(const live::Run& run, const wire::Command& command, std::uint32_t attempt_before) {
+  switch (command.kind()) {
+  case wire::COMMAND_ABORT:
+    return run.is_over();
+  case wire::COMMAND_PAUSE:
+    return run.is_paused();
+  case wire::COMMAND_CONTINUE:
+    return !run.is_paused();
+  default:
+    return attempt_of(run, command.step()).value_or(0) > std::max(attempt_before, 1U);
+  }
+}
+
+} // namespace
+
+Actions::Actions(ActionOptions options, bus::Participant& participant, bus::Clock& clock,
+                 StateCache& cache, RequestRouter& router)
+    : options_(std::move(options)), participant_(participant), clock_(clock), cache_(cache),
+      router_(router) {
+  if (options_.token) {
+    token_.emplace(*options_.token, clock);
+  }
+}
+
+bool Actions::is_permitted(const httplib::Request& request, httplib::Response& response,
+                           TokenUse use) {
+  if (!token_) {
+    router_.refuse(Refusal::not_permitted, 403,
+                   "this daemon takes no actions; it was started without --token-file", request,
+                   response);
+    return false;
+  }
+  switch (token_->check(request.get_header_value("Authorization"), request.remote_addr, use)) {
+  case TokenAnswer::right:
+    return true;
+  case TokenAnswer::wrong:
+    router_.refuse(Refusal::wrong_token, 401, "the token is wrong", request, response);
+    response.set_header("WWW-Authenticate", "Bearer");
+    return false;
+  case TokenAnswer::too_many:
+    break;
+  }
+  router_.refuse(Refusal::too_many_tokens, 429,
+                 "too many wrong tokens from this address; try again in a minute", request,
+                 response);
+  response.set_header("Retry-After", "60");
+  return false;
+}
+
+bool Actions::post(const httplib::Request& request, httplib::Response& response) {
+  const auto address = bench_address(request.path);
+  const bool is_command = address && address->part == "command";
+  if (!is_command && request.path != "/api/run") {
+    return false;
+  }
+  const Json body = Json::parse(request.body, nullptr, false);
+  const std::string word = text_of(body, "command");
+  const bool stops = is_command && kind_of(word) == wire::COMMAND_ABORT;
+  if (!is_permitted(request, response, stops ? TokenUse::stops_the_exciter : TokenUse::ordinary)) {
+    return true;
+  }
+  if (is_command) {
+    command(address->bench, body, request, response);
+  } else {
+    start_run(text_of(body, "file"), response);
+  }
+  spdlog::info("{} of {}: {} {}", request.path, request.remote_addr, response.status,
+               response.body);
+  return true;
+}
+
+bool Actions::get(const httplib::Request& request, httplib::Response& response) {
+  if (request.path != "/api/bench-files") {
+    return false;
+  }
+  if (is_permitted(request, response)) {
+    list_bench_files(response);
+  }
+  return true;
+}
+
+void Actions::command(const std::string& bench, const Json& body, const httplib::Request& request,
+                      httplib::Response& response) {
+  const std::string word = text_of(body, "command");
+  const auto kind = kind_of(word);
+  const Json step = body.is_object() ? body.value("step", Json()) : Json();
+  const Json run = body.is_object() ? body.value("run", Json()) : Json();
+  const bool has_step = step.is_number_unsigned() && step.get<std::uint64_t>() > 0 &&
+                        step.get<std::uint64_t>() < 1'000'000;
+  if (!kind || !run.is_string() || (*kind == wire::COMMAND_REPEAT && !has_step)) {
+    router_.refuse(Refusal::malformed, 400,
+                   "the body must be {\"command\": \"repeat|abort|pause|continue\", \"run\": RUN, "
+                   "\"step\": N of repeat}",
+                   request, response);
+    return;
+  }
+  wire::Command message;
+  message.bench(bench);
+  message.target(target);
+  message.kind(*kind);
+  message.run(run.get<std::string>());
+  message.sender(options_.sender);
+  message.step(has_step ? step.get<std::uint32_t>() : 0);
+  send(message, word, response);
+}
+
+void Actions::send(const wire::Command& command, const std::string& word,
+                   httplib::Response& response) {
+  const auto run = cache_.look([&](const live::Laboratory& laboratory) {
+    return conducted_run(laboratory, command, clock_.now());
+  });
+  if (!run) {
+    answer_action(false, "", "no conductor is running this run", response);
+    return;
+  }
+  const bool is_repeat = command.kind() == wire::COMMAND_REPEAT;
+  if (is_repeat && !run->attempt) {
+    answer_action(false, run->conductor,
+                  fmt::format("the run's plan has no step {}", command.step()), response);
+    return;
+  }
+  switch (repeat_until_effect(command, run->attempt.value_or(0))) {
+  case Effect::shown:
+    answer_action(true, run->conductor, word + ": done", response);
+    return;
+  case Effect::heard:
+    if (is_repeat) {
+      answer_action(true, run->conductor,
+                    fmt::format("the conductor was asked to excite step {} once more; it does so "
+                                "after the planned steps",
+                                command.step()),
+                    response);
+      return;
+    }
+    break;
+  case Effect::none:
+    break;
+  }
+  answer_action(false, run->conductor,
+                fmt::format("{} had no effect within {} s", word, effect_limit.count()), response);
+}
+
+Actions::Effect Actions::repeat_until_effect(const wire::Command& command,
+                                             std::uint32_t attempt_before) {
+  std::unique_lock lock(mutex_, std::defer_lock);
+  if (command.kind() != wire::COMMAND_ABORT) { // which waits for no other command
+    lock.lock();
+  }
+  auto writer = participant_.writer(bus::topics::command, command.bench().to_string());
+  if (!writer) {
+    spdlog::error("{}", writer.error().message);
+    return Effect::none;
+  }
+  const auto end = clock_.now() + effect_limit;
+  bool was_heard = false;
+  while (clock_.now() < end) {
+    const auto outcome = writer->write(command, std::chrono::milliseconds(100));
+    was_heard = outcome == bus::WriteOutcome::written && writer->matched_readers() > 0;
+    if (!router_.wait_until(clock_.now() + command_interval)) {
+      break;
+    }
+    const bool is_shown = cache_.look([&](const live::Laboratory& laboratory) {
+      const live::Run* run = run_of(laboratory, command);
+      return run != nullptr && shows(*run, command, attempt_before);
+    });
+    if (is_shown) {
+      return Effect::shown;
+    }
+  }
+  return was_heard ? Effect::heard : Effect::none;
+}
+
+void Actions::list_bench_files(httplib::Response& response) const {
+  Json files = Json::array();
+  for (const std::string& name : bench_files_of(options_.benches_folder)) {
+    const auto bench = read_bench_file(options_.benches_folder / name);
+    files.push_back({{"file", name},
+                     {"bench", bench ? Json(bench->bench) : Json(nullptr)},
+                     {"problem", bench ? Json(nullptr) : Json(bench.error().message)}});
+  }
+  response.set_content(json_text(nlohmann::ordered_json{{"files", std::move(files)}}),
+                       "application/json");
+}
+
+void Actions::start_run(const std::string& name, httplib::Response& response) {
+  const std::vector<std::string> known = bench_files_of(options_.benches_folder);
+  if (std::find(known.begin(), known.end(), name) == known.end()) {
+    answer_action(false, "", "there is no such bench file in the folder of --benches", response);
+    return;
+  }
+  const std::lock_guard lock(mutex_);
+  if (const auto run = runs_.find(name); run != runs_.end() && !run->second.running()) {
+    runs_.erase(run);
+  }
+  if (runs_.contains(name)) {
+    answer_action(false, "", name + ": a run of this bench file is under way", response);
+    return;
+  }
+  std::error_code unknown;
+  const fs::path logs =
+      options_.runs_folder.empty() ? fs::temp_directory_path(unknown) : options_.runs_folder;
+  fs::create_directories(logs, unknown); // the first run of all; if it fails, the log file tells
+  const fs::path log =
+      logs / fmt::format("{}-{}.log", name, time_name(bus::system_clock().utc_now_ns()));
+  auto child = ChildProcess::start(
+      program_folder() / "dyncal",
+      run_arguments(options_.network, options_.benches_folder / name, options_.runs_folder),
+      {log, log});
+  if (!child) {
+    answer_action(false, "", child.error().message, response);
+    return;
+  }
+  const std::string started = fmt::format("dyncal run {} is process {}, its output is in {}", name,
+                                          child->id(), log.string());
+  runs_.emplace(name, std::move(*child));
+  answer_action(true, "dyncal run", started, response);
+}
+
+} // namespace dyncal::services::web

@@ -1,0 +1,75 @@
+// What visitors with the token may do: command the conductor of a run, and start a run.
+//
+// A command is repeated until its effect shows, for `effect_limit` at most; the answer says what
+// came of it. A step that is to be excited once more may have to wait for the planned ones, longer
+// than any visitor: the answer says that the conductor has been asked. A run is a `dyncal run` of a
+// bench file of one folder, one at a time of a file; what it prints is in a file beside the runs.
+// It is asked to end when the daemon ends. Every request is logged with its outcome. Any thread;
+// one command at a time, but for an abort, which waits for none.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include <httplib.h>
+
+#include "services/bus/bus.hpp"
+#include "services/bus/clock.hpp"
+#include "services/daemon/program/child_process.hpp"
+#include "services/daemon/program/program.hpp"
+#include "services/programs/web/access_token.hpp"
+#include "services/programs/web/request_router.hpp"
+#include "services/programs/web/state_cache.hpp"
+
+namespace dyncal::services::web {
+
+struct ActionOptions {
+  std::optional<std::string> token; // nothing: no actions at all
+  std::filesystem::path benches_folder;
+  std::filesystem::path runs_folder;
+  NetworkOptions network;
+  std::string sender; // "dyncal-web:4711@lab-1"
+};
+
+class Actions {
+public:
+  static constexpr std::chrono::seconds effect_limit{3};
+  static constexpr std::chrono::milliseconds command_interval{250};
+
+  // All outlive the object.
+  Actions(ActionOptions options, bus::Participant& participant, bus::Clock& clock,
+          StateCache& cache, RequestRouter& router);
+
+  [[nodiscard]] bool may_act() const { return token_.has_value(); }
+  // False: the address is another's.
+  [[nodiscard]] bool post(const httplib::Request& request, httplib::Response& response);
+  [[nodiscard]] bool get(const httplib::Request& request, httplib::Response& response);
+
+private:
+  [[nodiscard]] bool is_permitted(const httplib::Request& request, httplib::Response& response,
+                                  TokenUse use = TokenUse::ordinary);
+  void command(const std::string& bench, const nlohmann::ordered_json& body,
+               const httplib::Request& request, httplib::Response& response);
+  enum class Effect { none, heard, shown };
+
+  void send(const wire::Command& command, const std::string& word, httplib::Response& response);
+  [[nodiscard]] Effect repeat_until_effect(const wire::Command& command,
+                                           std::uint32_t attempt_before);
+  void start_run(const std::string& name, httplib::Response& response);
+  void list_bench_files(httplib::Response& response) const;
+
+  ActionOptions options_;
+  std::optional<AccessToken> token_;
+  bus::Participant& participant_;
+  bus::Clock& clock_;
+  StateCache& cache_;
+  RequestRouter& router_;
+  std::mutex mutex_;
+  std::map<std::string, ChildProcess> runs_; // by bench file
+};
+
+} // namespace dyncal::services::web

@@ -1,0 +1,45 @@
+#include "services/programs/web/addresses.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "services/programs/web/laboratory_answers.hpp"
+
+namespace dyncal::services::web {
+namespace {
+
+constexpr std::array<std::string_view, 5> read_addresses{"/", "/events", "/api/laboratory",
+                                                         "/api/history", "/api/bench-files"};
+constexpr std::array<std::string_view, 4> read_folders{"/page/", "/javascript/", "/guide/",
+                                                       "/files/"};
+
+} // namespace
+
+const char* methods_of(std::string_view path) {
+  if (path == "*") {
+    return all_methods;
+  }
+  const auto address = bench_address(path);
+  if (path == "/api/run" || (address && address->part == "command")) {
+    return acting_methods;
+  }
+  const bool is_read =
+      address ||
+      std::find(read_addresses.begin(), read_addresses.end(), path) != read_addresses.end() ||
+      std::any_of(read_folders.begin(), read_folders.end(),
+                  [&](std::string_view folder) { return path.starts_with(folder); });
+  return is_read ? reading_methods : nullptr;
+}
+
+bool allows(std::string_view methods, std::string_view method) {
+  while (!methods.empty()) {
+    const auto comma = methods.find(", ");
+    if (methods.substr(0, comma) == method) {
+      return true;
+    }
+    methods.remove_prefix(comma == std::string_view::npos ? methods.size() : comma + 2);
+  }
+  return false;
+}
+
+} // namespace dyncal::services::web

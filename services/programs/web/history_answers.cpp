@@ -1,0 +1,145 @@
+#include "services/programs/web/history_answers.hpp"
+
+#include <ctime>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "services/base/json_text.hpp"
+#include "services/programs/web/request_router.hpp"
+#include "services/records/store/history.hpp"
+#include "services/records/store/store.hpp"
+#include "services/views/report/json_number.hpp"
+
+namespace dyncal::services::web {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Of "2026-11-22T10:15:30.123456789Z"; null: not known.
+Json milliseconds(const std::string& utc_text) {
+  std::tm utc{};
+  const char* end = strptime(utc_text.c_str(), "%Y-%m-%dT%H:%M:%S", &utc);
+  return end == nullptr ? Json(nullptr) : Json(static_cast<double>(timegm(&utc)) * 1e3);
+}
+
+Json sensors_json(const std::vector<StoredRun>& runs) {
+  std::set<std::string> sensors;
+  for (const StoredRun& run : runs) {
+    for (const RecordedInstrument& source : run.sources) {
+      if (!source.serial.empty()) {
+        sensors.insert(source.serial);
+      } else if (!source.device.empty()) {
+        sensors.insert(source.device);
+      }
+    }
+  }
+  return sensors;
+}
+
+Json point_json(const RecordedPoint& point) {
+  return {{"frequency_text_hz", point.frequency_text_hz},
+          {"frequency_hz", json_number(point.frequency_hz)},
+          {"level_m_s2", json_number(point.level_m_s2)},
+          {"unit", point.unit},
+          {"magnitude", json_number(point.magnitude)},
+          {"u_magnitude", json_number(point.u_magnitude)},
+          {"U_magnitude", json_number(point.expanded_magnitude)},
+          {"phase_rad", json_number(point.phase_rad)},
+          {"u_phase_rad", json_number(point.u_phase_rad)},
+          {"U_phase_rad", json_number(point.expanded_phase_rad)},
+          {"flags", point.flags}};
+}
+
+// One row a run and channel.
+Json runs_json(const std::vector<Calibration>& calibrations) {
+  Json runs = Json::array();
+  for (const Calibration& calibration : calibrations) {
+    std::map<std::string, Json> channels;
+    for (const RecordedPoint& point : calibration.points) {
+      Json& points = channels.try_emplace(point.channel, Json::array()).first->second;
+      points.push_back(point_json(point));
+    }
+    for (auto& [channel, points] : channels) {
+      runs.push_back({{"run", calibration.run.run},
+                      {"bench", calibration.run.bench},
+                      {"utc_ms", milliseconds(calibration.run.began_utc)},
+                      {"state", calibration.run.state},
+                      {"channel", channel},
+                      {"points", std::move(points)}});
+    }
+  }
+  return runs;
+}
+
+// Each value against the one before it.
+Json en_json(const History& history) {
+  Json rows = Json::array();
+  for (const HistoryLine& line : history.lines) {
+    for (std::size_t i = 1; i < line.values.size(); ++i) {
+      const HistoryValue& value = line.values[i];
+      if (!value.en_magnitude && !value.en_phase) {
+        continue;
+      }
+      const auto run_of = [&](const HistoryValue& one) {
+        return history.calibrations[one.calibration].run.run;
+      };
+      const auto number = [](const std::optional<double>& en) {
+        return en ? json_number(*en) : Json(nullptr);
+      };
+      rows.push_back({{"of", run_of(value)},
+                      {"against", run_of(line.values[i - 1])},
+                      {"channel", line.channel},
+                      {"frequency_text_hz", line.frequency_text_hz},
+                      {"en_magnitude", number(value.en_magnitude)},
+                      {"en_phase", number(value.en_phase)}});
+    }
+  }
+  return rows;
+}
+
+} // namespace
+
+bool HistoryAnswers::answer(const httplib::Request& request, httplib::Response& response) {
+  if (request.path != "/api/history") {
+    return false;
+  }
+  const std::string sensor = request.get_param_value("sensor");
+  Json json{{"sensor", sensor},
+            {"sensors", Json::array()},
+            {"runs", Json::array()},
+            {"en", Json::array()}};
+  const std::unique_lock lock(mutex_, longest_wait);
+  if (!lock) {
+    json["problem"] = "the store is slow and is still answering others; ask again";
+    response.set_content(json_text(json), "application/json");
+    return true;
+  }
+  auto store = Store::open_existing(place_);
+  if (place_.empty() || !store) {
+    json["problem"] = place_.empty() ? "there is no store (--store)" : store.error().message;
+    response.set_content(json_text(json), "application/json");
+    return true;
+  }
+  const auto runs = (*store)->runs({});
+  auto calibrations =
+      sensor.empty() ? Expected<std::vector<Calibration>>{} : (*store)->calibrations(sensor);
+  if (!runs || !calibrations) {
+    answer_error(500, "failed", runs ? calibrations.error().message : runs.error().message,
+                 response);
+    return true;
+  }
+  if (calibrations->size() > max_runs) {
+    calibrations->erase(calibrations->begin(),
+                        calibrations->end() - static_cast<std::ptrdiff_t>(max_runs));
+  }
+  json["sensors"] = sensors_json(*runs);
+  json["runs"] = runs_json(*calibrations);
+  json["en"] = en_json(history_of(sensor, std::move(*calibrations)));
+  response.set_content(json_text(json), "application/json");
+  return true;
+}
+
+} // namespace dyncal::services::web

@@ -1,0 +1,183 @@
+#include "services/programs/web/laboratory_answers.hpp"
+
+#include <array>
+#include <charconv>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "services/base/json_text.hpp"
+#include "services/programs/web/request_router.hpp"
+#include "services/views/live/run_json.hpp"
+#include "services/views/report/step_json.hpp"
+
+namespace dyncal::services::web {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array<std::string_view, 7> parts{"run",      "figures", "budget", "signal",
+                                                "spectrum", "fit",     "command"};
+
+// 0: it is no number.
+std::uint32_t number_of(const std::string& text) {
+  std::uint32_t number = 0;
+  const char* end = text.data() + text.size();
+  const auto parsed = std::from_chars(text.data(), end, number);
+  return parsed.ec == std::errc() && parsed.ptr == end ? number : 0;
+}
+
+std::optional<figures::ErrorBars> bars_of(const std::string& name) {
+  if (name == "U") {
+    return figures::ErrorBars::expanded;
+  }
+  if (name == "u") {
+    return figures::ErrorBars::standard;
+  }
+  return name == "none" ? std::optional(figures::ErrorBars::none) : std::nullopt;
+}
+
+void answer_text(const Text& text, const char* otherwise, httplib::Response& response) {
+  if (text) {
+    response.set_content(*text, "application/json");
+  } else {
+    answer_error(404, "not_known", otherwise, response);
+  }
+}
+
+void send_file(const ServedFile& file, const std::string& name, const httplib::Request& request,
+               httplib::Response& response) {
+  const bool is_picture = name.ends_with(".svg");
+  response.set_header("Content-Security-Policy",
+                      "default-src 'none'; style-src 'unsafe-inline'; sandbox");
+  response.set_header("Content-Disposition",
+                      fmt::format("{}; filename*=UTF-8''{}", is_picture ? "inline" : "attachment",
+                                  percent_encoded(name)));
+  answer_with(file, media_type(name), request, response);
+}
+
+} // namespace
+
+std::optional<BenchAddress> bench_address(std::string_view path) {
+  constexpr std::string_view begin = "/api/bench/";
+  if (!path.starts_with(begin) || path.size() == begin.size()) {
+    return std::nullopt;
+  }
+  const std::string_view rest = path.substr(begin.size());
+  const auto slash = rest.rfind('/');
+  if (slash != std::string_view::npos) {
+    for (const std::string_view part : parts) {
+      if (rest.substr(slash + 1) == part && slash > 0) {
+        return BenchAddress{std::string(rest.substr(0, slash)), std::string(part)};
+      }
+    }
+  }
+  return BenchAddress{std::string(rest), ""};
+}
+
+Text LaboratoryAnswers::results(const std::string& bench, const std::string& run) const {
+  return cache_.results(bench, run, [&](const std::string& name, Json& json) {
+    json["files"] = Json::array();
+    for (const RunFile& file : files_.files_of(bench, name)) {
+      json["files"].push_back(
+          {{"name", file.name},
+           {"bytes", file.bytes},
+           {"href", fmt::format("/files/{}/{}/{}", percent_encoded(bench), percent_encoded(name),
+                                percent_encoded(file.name))}});
+    }
+  });
+}
+
+bool LaboratoryAnswers::answer(const httplib::Request& request, httplib::Response& response) const {
+  if (request.path == "/api/laboratory") {
+    answer_text(cache_.laboratory(), "", response);
+    return true;
+  }
+  if (answer_file(request, response)) {
+    return true;
+  }
+  const auto address = bench_address(request.path);
+  if (!address) {
+    return false;
+  }
+  if (address->part.empty()) {
+    answer_text(cache_.bench(address->bench), "no bench of this name was heard of", response);
+  } else if (address->part == "run") {
+    answer_text(results(address->bench, request.get_param_value("run")),
+                "no such run of this bench was heard of", response);
+  } else if (address->part == "figures") {
+    answer_figures(address->bench, request, response);
+  } else if (address->part == "budget") {
+    answer_budget(address->bench, request, response);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+void LaboratoryAnswers::answer_figures(const std::string& bench, const httplib::Request& request,
+                                       httplib::Response& response) const {
+  const auto bars = bars_of(request.has_param("bars") ? request.get_param_value("bars") : "U");
+  if (!bars) {
+    answer_error(400, "malformed", "bars must be U, u or none", response);
+    return;
+  }
+  answer_text(cache_.figures(bench, request.get_param_value("run"),
+                             request.get_param_value("channel"), *bars),
+              "no such run with results of this channel was heard of", response);
+}
+
+void LaboratoryAnswers::answer_budget(const std::string& name, const httplib::Request& request,
+                                      httplib::Response& response) const {
+  const std::string run_name = request.get_param_value("run");
+  const live::Run::ResultKey key{number_of(request.get_param_value("step")),
+                                 number_of(request.get_param_value("repetition")),
+                                 request.get_param_value("channel")};
+  const auto json = cache_.look([&](const live::Laboratory& laboratory) -> std::optional<Json> {
+    const live::Bench* bench = laboratory.bench(name);
+    if (bench == nullptr) {
+      return std::nullopt;
+    }
+    const auto named = bench->runs.find(run_name);
+    const live::Run* run = run_name.empty()             ? bench->current_run()
+                           : named == bench->runs.end() ? nullptr
+                                                        : &named->second;
+    if (run == nullptr || !run->results.contains(key)) {
+      return std::nullopt;
+    }
+    const StepResult& result = run->results.at(key);
+    return Json{{"bench", name},
+                {"run", run->name},
+                {"channel", result.channel},
+                {"step", result.step},
+                {"repetition", result.repetition},
+                {"contributions", budget_json(result)}};
+  });
+  answer_text(json ? std::make_shared<const std::string>(json_text(*json)) : nullptr,
+              "no such result was heard of", response);
+}
+
+bool LaboratoryAnswers::answer_file(const httplib::Request& request,
+                                    httplib::Response& response) const {
+  constexpr std::string_view begin = "/files/";
+  if (!request.path.starts_with(begin)) {
+    return false;
+  }
+  const std::string rest = request.path.substr(begin.size());
+  const auto first = rest.find('/');
+  const auto second = first == std::string::npos ? first : rest.find('/', first + 1);
+  const auto file =
+      second == std::string::npos
+          ? std::nullopt
+          : files_.find(rest.substr(0, first), rest.substr(first + 1, second - first - 1),
+                        rest.substr(second + 1));
+  const auto opened = file ? files_.open(*file) : std::nullopt;
+  if (opened) {
+    send_file(*opened, file->path.filename().string(), request, response);
+  } else {
+    answer_error(404, "not_known", "the run has no such file", response);
+  }
+  return true;
+}
+
+} // namespace dyncal::services::web

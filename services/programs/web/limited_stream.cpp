@@ -1,0 +1,102 @@
+#include "services/programs/web/limited_stream.hpp"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+namespace dyncal::services::web {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::chrono::milliseconds look_again = 50ms;
+
+void address_of(const sockaddr_storage& storage, std::string& ip, int& port) {
+  std::array<char, INET6_ADDRSTRLEN> text{};
+  if (storage.ss_family == AF_INET) {
+    sockaddr_in address{};
+    std::memcpy(&address, &storage, sizeof(address));
+    inet_ntop(AF_INET, &address.sin_addr, text.data(), text.size());
+    port = ntohs(address.sin_port);
+  } else if (storage.ss_family == AF_INET6) {
+    sockaddr_in6 address{};
+    std::memcpy(&address, &storage, sizeof(address));
+    inet_ntop(AF_INET6, &address.sin6_addr, text.data(), text.size());
+    port = ntohs(address.sin6_port);
+  }
+  ip = text.data();
+}
+
+} // namespace
+
+LimitedStream::LimitedStream(socket_t socket, std::string request,
+                             const std::atomic<bool>& stopping,
+                             const std::atomic<std::size_t>& waiting)
+    : socket_(socket), request_(std::move(request)), stopping_(stopping), waiting_(waiting) {}
+
+bool LimitedStream::is_writable() const {
+  const auto began = Clock::now();
+  while (!stopping_) {
+    pollfd one{.fd = socket_, .events = POLLOUT, .revents = 0};
+    if (poll(&one, 1, static_cast<int>(look_again.count())) > 0) {
+      return (one.revents & (POLLERR | POLLHUP)) == 0;
+    }
+    const auto passed = Clock::now() - began;
+    if (passed >= write_limit || (waiting_ > 0 && passed >= crowded_write_limit)) {
+      was_slow_ = true;
+      return false;
+    }
+  }
+  return false;
+}
+
+ssize_t LimitedStream::read(char* data, size_t size) {
+  if (taken_ == request_.size()) {
+    return -1;
+  }
+  const std::size_t count = std::min(size, request_.size() - taken_);
+  std::memcpy(data, request_.data() + taken_, count);
+  taken_ += count;
+  return static_cast<ssize_t>(count);
+}
+
+ssize_t LimitedStream::write(const char* data, size_t size) {
+  if (!is_writable()) {
+    return -1;
+  }
+  return send(socket_, data, size, MSG_NOSIGNAL | MSG_DONTWAIT);
+}
+
+void LimitedStream::get_remote_ip_and_port(std::string& ip, int& port) const {
+  sockaddr_storage storage{};
+  socklen_t length = sizeof(storage);
+  if (getpeername(socket_, reinterpret_cast<sockaddr*>(&storage), &length) == 0) {
+    address_of(storage, ip, port);
+  }
+}
+
+void LimitedStream::get_local_ip_and_port(std::string& ip, int& port) const {
+  sockaddr_storage storage{};
+  socklen_t length = sizeof(storage);
+  if (getsockname(socket_, reinterpret_cast<sockaddr*>(&storage), &length) == 0) {
+    address_of(storage, ip, port);
+  }
+}
+
+std::string visitor_of(socket_t socket) {
+  std::string ip;
+  int port = 0;
+  sockaddr_storage storage{};
+  socklen_t length = sizeof(storage);
+  if (getpeername(socket, reinterpret_cast<sockaddr*>(&storage), &length) == 0) {
+    address_of(storage, ip, port);
+  }
+  return ip;
+}
+
+} // namespace dyncal::services::web

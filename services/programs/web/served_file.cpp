@@ -1,0 +1,138 @@
+#include "services/programs/web/served_file.hpp"
+
+#include <fcntl.h>
+#include <linux/openat2.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <charconv>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "services/programs/web/request_head.hpp"
+#include "services/programs/web/request_router.hpp"
+
+namespace dyncal::services::web {
+namespace {
+
+using drivers::FileDescriptor;
+
+constexpr std::size_t part_bytes = std::size_t{64} * 1024;
+
+// Nothing: it is no number.
+std::optional<std::size_t> number_of(std::string_view text) {
+  std::size_t number = 0;
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
+  const bool is_number = read.ec == std::errc() && read.ptr == text.data() + text.size();
+  return is_number ? std::optional(number) : std::nullopt;
+}
+
+// A range of what the visitor has in part, unless he has another state of it (If-Range).
+std::optional<ByteRange> range_of(const ServedFile& file, const httplib::Request& request) {
+  const std::string wanted = request.get_header_value("If-Range");
+  if (request.method != "GET" || (!wanted.empty() && wanted != file.etag)) {
+    return std::nullopt;
+  }
+  return parse_range(request.get_header_value(range_field), file.bytes);
+}
+
+} // namespace
+
+std::optional<ServedFile> open_beneath(const std::filesystem::path& folder, const std::string& name,
+                                       Links links) {
+  const FileDescriptor root(::open(folder.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
+  open_how how{};
+  how.flags =
+      O_RDONLY | O_CLOEXEC | O_NONBLOCK; // anyone who opens a pipe would wait for its writer
+  how.resolve = RESOLVE_BENEATH | RESOLVE_NO_MAGICLINKS |
+                (links == Links::none ? std::uint64_t{RESOLVE_NO_SYMLINKS} : 0U);
+  auto opened = std::make_shared<FileDescriptor>(
+      static_cast<int>(::syscall(SYS_openat2, root.number(), name.c_str(), &how, sizeof(how))));
+  struct stat status {};
+  if (!opened->is_open() || ::fstat(opened->number(), &status) != 0 || !S_ISREG(status.st_mode)) {
+    return std::nullopt;
+  }
+  std::string etag = fmt::format("\"{:x}-{:x}-{:x}\"", status.st_size, status.st_mtim.tv_sec,
+                                 status.st_mtim.tv_nsec);
+  return ServedFile{std::move(opened), static_cast<std::size_t>(status.st_size), std::move(etag)};
+}
+
+std::optional<ByteRange> parse_range(std::string_view text, std::size_t bytes) {
+  constexpr std::string_view unit = "bytes=";
+  const auto dash = text.find('-');
+  if (!text.starts_with(unit) || dash == std::string_view::npos) {
+    return std::nullopt;
+  }
+  const std::string_view begin = text.substr(unit.size(), dash - unit.size());
+  const std::string_view end = text.substr(dash + 1);
+  const auto first = number_of(begin);
+  const auto last = number_of(end);
+  if ((!first && !begin.empty()) || (!last && !end.empty()) || (!first && !last) ||
+      (first && last && *last < *first)) {
+    return std::nullopt;
+  }
+  if (!first) { // the last bytes
+    const std::size_t count = std::min(*last, bytes);
+    return ByteRange{bytes - count, count};
+  }
+  if (*first >= bytes) {
+    return ByteRange{};
+  }
+  return ByteRange{*first, std::min(last.value_or(bytes - 1), bytes - 1) - *first + 1};
+}
+
+bool names_etag(std::string_view field, std::string_view etag) {
+  constexpr std::string_view weak = "W/";
+  while (!field.empty()) {
+    const auto comma = field.find(',');
+    std::string_view one = field.substr(0, comma);
+    field.remove_prefix(comma == std::string_view::npos ? field.size() : comma + 1);
+    one.remove_prefix(std::min(one.find_first_not_of(' '), one.size()));
+    one = one.substr(0, one.find_last_not_of(' ') + 1);
+    if (one == "*" || one == etag || (one.starts_with(weak) && one.substr(weak.size()) == etag)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+void answer_with(const ServedFile& file, const std::string& media_type,
+                 const httplib::Request& request, httplib::Response& response) {
+  response.set_header("ETag", file.etag);
+  response.set_header("Accept-Ranges", "bytes");
+  if (names_etag(request.get_header_value("If-None-Match"), file.etag)) {
+    response.status = 304;
+    response.set_header("Content-Length", std::to_string(file.bytes)); // of what is not sent
+    return;
+  }
+  ByteRange range{0, file.bytes};
+  if (const auto wanted = range_of(file, request)) {
+    if (wanted->count == 0) {
+      response.set_header("Content-Range", fmt::format("bytes */{}", file.bytes));
+      answer_error(416, "malformed", "the file has no such bytes", response);
+      return;
+    }
+    range = *wanted;
+    response.status = 206;
+    response.set_header("Content-Range", fmt::format("bytes {}-{}/{}", range.first,
+                                                     range.first + range.count - 1, file.bytes));
+  }
+  if (range.count == 0) { // the library takes no provider of nothing
+    response.set_content("", media_type);
+    return;
+  }
+  response.set_content_provider(
+      range.count, media_type,
+      [descriptor = file.descriptor, first = range.first](std::size_t offset, std::size_t length,
+                                                          httplib::DataSink& sink) {
+        std::vector<char> bytes(std::min(length, part_bytes));
+        const ssize_t count = ::pread(descriptor->number(), bytes.data(), bytes.size(),
+                                      static_cast<off_t>(first + offset));
+        return count > 0 && sink.write(bytes.data(), static_cast<std::size_t>(count));
+      });
+}
+
+} // namespace dyncal::services::web

@@ -1,0 +1,198 @@
+#include "services/programs/web/state_cache.hpp"
+
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include "services/base/json_text.hpp"
+#include "services/views/live/laboratory_json.hpp"
+#include "services/views/live/run_figures.hpp"
+#include "services/views/live/run_json.hpp"
+#include "services/views/report/picture_json.hpp"
+
+namespace dyncal::services::web {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const live::Run* find_run(const live::Bench& bench, const std::string& run) {
+  if (run.empty()) {
+    return bench.current_run();
+  }
+  const auto found = bench.runs.find(run);
+  return found == bench.runs.end() ? nullptr : &found->second;
+}
+
+std::string bars_name(services::figures::ErrorBars bars) {
+  return bars == services::figures::ErrorBars::none ? "none" : symbol_of(bars);
+}
+
+Json milliseconds(std::int64_t utc_ns) {
+  return utc_ns == 0 ? Json(nullptr) : Json(static_cast<double>(utc_ns) / 1e6);
+}
+
+Json runs_json(const live::Bench& bench) {
+  Json runs = Json::array();
+  for (const auto& [name, run] : bench.runs) {
+    runs.push_back({{"run", name},
+                    {"planned_utc_ms", milliseconds(run.time_utc_ns())},
+                    {"state", live::to_string(run.state())}});
+  }
+  return runs;
+}
+
+} // namespace
+
+const StateCache::Made* StateCache::find(const TextKey& key) {
+  const auto found = texts_.find(key);
+  if (found == texts_.end()) {
+    return nullptr;
+  }
+  found->second.asked = laboratory_.clock().now();
+  return &found->second;
+}
+
+Text StateCache::young(const TextKey& key) {
+  const Made* made = find(key);
+  const bool is_young = made != nullptr && laboratory_.clock().now() - made->when < text_age;
+  return is_young ? made->text : nullptr;
+}
+
+Text StateCache::keep(const TextKey& key, const Json& json, std::uint64_t number) {
+  std::string whole = json_text(json);
+  whole.shrink_to_fit(); // it has grown by doubling
+  Text text = std::make_shared<const std::string>(std::move(whole));
+  texts_.erase(key);
+  make_room(text->size());
+  const bus::Clock::Instant now = laboratory_.clock().now();
+  texts_[key] = Made{text, now, number, now};
+  return text;
+}
+
+void StateCache::make_room(std::size_t needed) {
+  while (!texts_.empty() && (texts_.size() >= max_texts || bytes() + needed > max_bytes)) {
+    texts_.erase(std::min_element(texts_.begin(), texts_.end(), [](const auto& a, const auto& b) {
+      return a.second.asked < b.second.asked;
+    }));
+  }
+}
+
+void StateCache::drop_what_is_not_shown() {
+  const bus::Clock::Instant now = laboratory_.clock().now();
+  std::erase_if(texts_, [&](const auto& held) {
+    const auto& [key, made] = held;
+    if (now - made.asked >= forgotten_after) {
+      return true;
+    }
+    const live::Bench* bench = key.run.empty() ? nullptr : laboratory_.bench(key.bench);
+    return !key.run.empty() && (bench == nullptr || find_run(*bench, key.run) == nullptr);
+  });
+}
+
+std::size_t StateCache::bytes() const {
+  std::size_t sum = 0;
+  for (const auto& [key, made] : texts_) {
+    sum += made.text->size();
+  }
+  return sum;
+}
+
+StateCache::Held StateCache::held() const {
+  const std::lock_guard lock(mutex_);
+  return {texts_.size(), bytes()};
+}
+
+Text StateCache::laboratory() {
+  const std::lock_guard lock(mutex_);
+  const TextKey key{"laboratory", "", "", ""};
+  if (Text text = young(key)) {
+    return text;
+  }
+  Json json = live::laboratory_json(laboratory_);
+  add_daemon_(json);
+  return keep(key, json);
+}
+
+Text StateCache::bench(const std::string& name) {
+  const std::lock_guard lock(mutex_);
+  const live::Bench* bench = laboratory_.bench(name);
+  if (bench == nullptr) {
+    return nullptr;
+  }
+  const TextKey key{"bench", name, "", ""};
+  if (Text text = young(key)) {
+    return text;
+  }
+  return keep(key, live::bench_json(laboratory_, *bench));
+}
+
+Text StateCache::results(const std::string& name, const std::string& run_name,
+                         const AddFiles& add_files) {
+  const std::lock_guard lock(mutex_);
+  const live::Bench* bench = laboratory_.bench(name);
+  const live::Run* run = bench == nullptr ? nullptr : find_run(*bench, run_name);
+  if (run == nullptr) {
+    return nullptr;
+  }
+  const TextKey key{"run", name, run->name, ""};
+  const std::uint64_t number = run->results_number;
+  const Made* made = find(key);
+  const bool is_over = run->is_over(); // then files come and go
+  if (made != nullptr && made->number == number && (!is_over || young(key))) {
+    return made->text;
+  }
+  Json json{{"number", number},
+            {"now_utc_ms", milliseconds(laboratory_.clock().utc_now_ns())},
+            {"bench", name}};
+  json.update(live::run_json(*run));
+  json["runs"] = runs_json(*bench);
+  add_files(run->name, json);
+  return keep(key, json, number);
+}
+
+Text StateCache::figures(const std::string& name, const std::string& run_name,
+                         const std::string& channel, services::figures::ErrorBars error_bars) {
+  const std::lock_guard lock(mutex_);
+  const live::Bench* bench = laboratory_.bench(name);
+  const live::Run* run = bench == nullptr ? nullptr : find_run(*bench, run_name);
+  if (run == nullptr) {
+    return nullptr;
+  }
+  const std::string bars = bars_name(error_bars);
+  const TextKey key{"figures " + bars, name, run->name, channel};
+  const std::uint64_t number = run->results_number;
+  const Made* made = find(key);
+  if (made != nullptr && made->number == number) {
+    return made->text;
+  }
+  Json pictures = Json::array();
+  for (const services::figures::Figure& figure :
+       live::run_figures(name, *run, channel, error_bars)) {
+    pictures.push_back(picture_json(figure));
+  }
+  if (pictures.empty()) {
+    return nullptr;
+  }
+  return keep(key,
+              Json{{"number", number},
+                   {"bench", name},
+                   {"run", run->name},
+                   {"channel", channel},
+                   {"bars", bars},
+                   {"pictures", std::move(pictures)}},
+              number);
+}
+
+std::uint64_t StateCache::number() const {
+  const std::lock_guard lock(mutex_);
+  return laboratory_.number();
+}
+
+std::uint64_t StateCache::results_number(const std::string& name) const {
+  const std::lock_guard lock(mutex_);
+  const live::Bench* bench = laboratory_.bench(name);
+  const live::Run* run = bench == nullptr ? nullptr : bench->current_run();
+  return run == nullptr ? 0 : run->results_number; // a new run has another
+}
+
+} // namespace dyncal::services::web

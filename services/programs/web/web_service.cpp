@@ -1,0 +1,177 @@
+#include "services/programs/web/web_service.hpp"
+
+#include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
+
+#include "services/bus/host_network.hpp"
+#include "services/network/laboratory_readers.hpp"
+#include "services/programs/web/access_token.hpp"
+#include "services/programs/web/actions.hpp"
+#include "services/programs/web/event_stream.hpp"
+#include "services/programs/web/history_answers.hpp"
+#include "services/programs/web/laboratory_answers.hpp"
+#include "services/programs/web/request_router.hpp"
+#include "services/programs/web/run_files.hpp"
+#include "services/programs/web/signal_answers.hpp"
+#include "services/programs/web/state_cache.hpp"
+#include "services/records/store/store.hpp"
+#include "services/views/signals/signal_tap.hpp"
+
+namespace dyncal::services::web {
+namespace {
+
+constexpr const char* all_benches = "*";
+constexpr std::chrono::milliseconds max_wait{100};
+
+DoorOptions router_options(const WebOptions& options) {
+  DoorOptions router{.listen = options.listen,
+                     .own_names = options.own_names,
+                     .javascript_folder = options.javascript_folder,
+                     .guide_folder = options.guide_folder};
+  router.own_names.push_back(bus::host_name());
+  return router;
+}
+
+} // namespace
+
+struct WebService::Parts {
+  Parts(Daemon& own, const WebOptions& web, ActionOptions action_options)
+      : daemon(own), options(web),
+        cache(clock, [this](nlohmann::ordered_json& json) { add_daemon(json); }),
+        files(web.runs_folder), router(router_options(web), clock), answers(cache, files),
+        tap(participant, clock), signals(cache, tap, clock),
+        events(cache, answers, router,
+               [this](const std::string& bench, const httplib::Request& request) {
+                 return signals.signal(bench, request);
+               }),
+        history(store_of(web)),
+        actions(std::move(action_options), participant, clock, cache, router) {}
+
+  void add_daemon(nlohmann::ordered_json& json) const {
+    json["daemon"] = {{"host", identity.host},
+                      {"version", identity.software},
+                      {"vendor", identity.dds},
+                      {"samples_missed", std::to_string(tap.missed())},
+                      {"visitors", events.listeners()}};
+    json["may_act"] = actions.may_act();
+    json["has_guide"] = !options.guide_folder.empty();
+  }
+  static std::string store_of(const WebOptions& web) {
+    return web.store.empty() && web.runs_folder.empty() ? ""
+                                                        : store_place(web.store, web.runs_folder);
+  }
+  void add_answers();
+  void report();
+
+  bus::Clock& clock = bus::system_clock();
+  Daemon& daemon;
+  bus::Participant& participant = daemon.participant();
+  const ProgramIdentity& identity = daemon.identity();
+  WebOptions options;
+  std::shared_ptr<bus::WakeUp> wake_up = std::make_shared<bus::WakeUp>();
+  std::optional<live::LaboratoryReaders> readers;
+  StateCache cache;
+  RunFiles files;
+  RequestRouter router;
+  LaboratoryAnswers answers;
+  SignalTap tap;
+  SignalAnswers signals;
+  EventStream events;
+  HistoryAnswers history;
+  Actions actions;
+};
+
+// In the order in which they are asked.
+void WebService::Parts::add_answers() {
+  const auto ask = [](auto& answers_of) {
+    return [&answers_of](const httplib::Request& request, httplib::Response& response) {
+      return answers_of.answer(request, response);
+    };
+  };
+  router.on_get(ask(answers));
+  router.on_get(ask(signals));
+  router.on_get(ask(events));
+  router.on_get(ask(history));
+  router.on_get(
+      [this](const auto& request, auto& response) { return actions.get(request, response); });
+  router.on_post(
+      [this](const auto& request, auto& response) { return actions.post(request, response); });
+}
+
+void WebService::Parts::report() {
+  WebFigures figures{.visitors = events.listeners(),
+                     .requests = router.requests(),
+                     .refused = {},
+                     .benches = 0,
+                     .left_out = 0,
+                     .samples_missed = tap.missed()};
+  for (std::size_t i = 0; i < refusal_count; ++i) {
+    const auto reason = static_cast<Refusal>(i);
+    figures.refused.emplace_back(to_string(reason), router.refusals().of(reason));
+  }
+  cache.look([&](const live::Laboratory& laboratory) {
+    const live::LeftOut& out = laboratory.left_out();
+    figures.benches = laboratory.benches().size();
+    figures.left_out = out.benches + out.sources + out.services + out.runs + out.results;
+  });
+  daemon.supervisor().report(figures);
+}
+
+WebService::WebService(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+WebService::~WebService() = default;
+
+Expected<std::unique_ptr<WebService>> WebService::create(Daemon& daemon,
+                                                         const WebOptions& options) {
+  if (const auto joined = daemon.join(); !joined) {
+    return fail(joined.error());
+  }
+  ActionOptions actions{.token = {},
+                        .benches_folder = options.benches_folder,
+                        .runs_folder = options.runs_folder,
+                        .network = daemon.network,
+                        .sender = service_name(daemon.identity())};
+  if (!options.token_file.empty()) {
+    auto token = read_token(options.token_file);
+    if (!token) {
+      return fail(token.error());
+    }
+    actions.token = std::move(*token);
+  }
+  auto parts = std::make_unique<Parts>(daemon, options, std::move(actions));
+  auto readers = live::LaboratoryReaders::open(parts->participant, all_benches, parts->identity,
+                                               parts->clock, parts->wake_up);
+  if (!readers) {
+    return fail(readers.error());
+  }
+  parts->readers.emplace(std::move(*readers));
+  return std::unique_ptr<WebService>(new WebService(std::move(parts)));
+}
+
+Expected<void> WebService::serve() {
+  Parts& parts = *parts_;
+  const std::stop_token stop = parts.daemon.stop();
+  parts.add_answers();
+  if (const auto started = parts.router.start(); !started) {
+    return fail(started.error());
+  }
+  if (!std::filesystem::exists(parts.options.javascript_folder + "/dygraphs/dygraph.min.js")) {
+    spdlog::warn("{}/dygraphs is missing: the page shows no charts (Debian: libjs-dygraphs)",
+                 parts.options.javascript_folder);
+  }
+  const std::string address =
+      drivers::Address{parts.options.listen.host, static_cast<std::uint16_t>(parts.router.port())}
+          .text();
+  parts.daemon.supervisor().describe("page at http://" + address + "/");
+  parts.daemon.supervisor().serving();
+  spdlog::info("web ready ({}), page at http://{}/", parts.identity.dds, address);
+  while (!stop.stop_requested()) {
+    parts.clock.wait(*parts.wake_up, parts.clock.now() + max_wait);
+    parts.cache.change([&](live::Laboratory& laboratory) { parts.readers->work(laboratory); });
+    parts.report();
+    parts.daemon.turned();
+  }
+  parts.router.stop();
+  return {};
+}
+
+} // namespace dyncal::services::web

@@ -1,0 +1,53 @@
+// What a guard finds after a restart of what it has kept, and that damaged files are none.
+#include "services/programs/guard/driven_record.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/temporary_folder.hpp"
+
+namespace dyncal::services {
+namespace {
+
+const DrivenRun driven{"r1", false, {{40.0, 0.8}, {80.0, std::nullopt}}, true};
+
+TEST(DrivenRecord, GivesBackWhatWasWritten) {
+  const tests::TemporaryFolder folder;
+  const DrivenRecord record(folder.path() / "new" / "folder", "bench/1", "192.0.2.7:5025");
+  EXPECT_EQ(record.read(), DrivenRun{});
+  ASSERT_TRUE(record.write(driven));
+  EXPECT_EQ(record.read(), driven);
+  ASSERT_TRUE(record.write({}));
+  EXPECT_EQ(record.read(), DrivenRun{});
+  EXPECT_TRUE(record.write({})) << "that is gone already";
+}
+
+TEST(DrivenRecord, IsOneFileForEachBenchAndOfOneGenerator) {
+  const tests::TemporaryFolder folder;
+  ASSERT_TRUE(DrivenRecord(folder.path(), "a b", "192.0.2.7:5025").write(driven));
+  EXPECT_EQ(DrivenRecord(folder.path(), "a_b", "192.0.2.7:5025").read(), DrivenRun{});
+  EXPECT_EQ(DrivenRecord(folder.path(), "a b", "192.0.2.8:5025").read(), DrivenRun{});
+  EXPECT_EQ(DrivenRecord(folder.path(), "a b", "192.0.2.7:5025").read(), driven);
+}
+
+TEST(DrivenRecord, TakesDamagedFilesForNone) {
+  const tests::TemporaryFolder folder;
+  const DrivenRecord record(folder.path(), "b", "g");
+  for (const char* text :
+       {"", "{", "[]", "{}", R"({"generator": "g"})",
+        R"({"generator": "g", "run": 5, "has_ended": false, "settings": []})",
+        R"({"generator": "g", "run": "r", "has_ended": false, "settings": [{}]})"}) {
+    folder.write("b.json", text);
+    EXPECT_EQ(record.read(), DrivenRun{}) << text;
+  }
+}
+
+TEST(DrivenRecord, SaysWhereItCannotBeWritten) {
+  const tests::TemporaryFolder folder;
+  folder.write("file", "");
+  const auto written = DrivenRecord(folder.path() / "file", "b", "g").write(driven);
+  ASSERT_FALSE(written);
+  EXPECT_EQ(written.error().code, ErrorCode::bad_file);
+}
+
+} // namespace
+} // namespace dyncal::services

@@ -1,0 +1,290 @@
+// When the guard of an exciter switches it off, and when not; no real time passes.
+#include "services/programs/guard/exciter_guard.hpp"
+
+#include <gtest/gtest.h>
+
+#include "services/bus/memory/memory_network.hpp"
+#include "services/contract/topics.hpp"
+#include "tests/temporary_folder.hpp"
+
+namespace dyncal::services {
+namespace {
+
+using namespace std::chrono_literals;
+
+const ProgramIdentity own{"dyncal-guard", "lab-2", 7, "dyncal 1", "memory"};
+
+struct PlayedOutput {
+  bool reachable = true;
+  bool is_on = false;
+  OutputSettings settings{40.0, 0.8};
+  int tries = 0;
+};
+
+class PlayedGeneratorOutput : public GuardedOutput {
+public:
+  explicit PlayedGeneratorOutput(PlayedOutput& output) : output_(output) {}
+  Expected<void> switch_off() override {
+    ++output_.tries;
+    if (!output_.reachable) {
+      return fail(ErrorCode::device, "no route to host");
+    }
+    output_.is_on = false;
+    return {};
+  }
+  void ask() override { asked_ = true; }
+  std::optional<Expected<OutputReading>> answer() override {
+    if (!std::exchange(asked_, false)) {
+      return std::nullopt;
+    }
+    if (!output_.reachable) {
+      return fail(ErrorCode::device, "no route to host");
+    }
+    OutputReading reading;
+    reading.is_on = output_.is_on;
+    reading.settings = output_.settings;
+    return reading;
+  }
+
+private:
+  PlayedOutput& output_;
+  bool asked_ = false;
+};
+
+class ExciterGuardTest : public testing::Test {
+protected:
+  bus::SteppedClock clock_;
+  bus::MemoryNetwork network_{clock_};
+  bus::Participant bench_side_ = network_.join("bench");
+  bus::Participant conductor_ = network_.join("conductor");
+  bus::Writer<wire::Excitation> excitation_ =
+      conductor_.writer(bus::topics::excitation, "b1").value();
+  bus::Writer<wire::Measurement> measurement_ =
+      conductor_.writer(bus::topics::measurement, "b1").value();
+  PlayedOutput output_;
+  bool& reachable_ = output_.reachable;
+  int& tries_ = output_.tries;
+  tests::TemporaryFolder folder_;
+  bus::Reader<wire::ServiceStatus> status_ =
+      conductor_.reader(bus::topics::service_status, "b1", nullptr).value();
+  std::unique_ptr<ExciterGuard> guard_ = start();
+
+  std::unique_ptr<ExciterGuard> start() {
+    GuardedExciter exciter;
+    exciter.bench = "b1";
+    exciter.generator = "192.0.2.7:5025";
+    exciter.level_per_volt = 50.0;
+    return ExciterGuard::create(
+               bench_side_, own, exciter, 2s, std::make_unique<PlayedGeneratorOutput>(output_),
+               DrivenRecord(folder_.path(), exciter.bench, exciter.generator), clock_)
+        .value();
+  }
+  void announce(wire::ExcitationState state, const std::string& bench = "b1") {
+    wire::Excitation excitation;
+    excitation.bench(bench);
+    excitation.run("r1");
+    excitation.state(state);
+    excitation.frequency_text_hz("40");
+    excitation.level_m_s2(20.0);
+    excitation.window_end_utc_ns(state == wire::EXCITATION_DONE ? 2 : 0);
+    excitation_.write(excitation);
+  }
+  void report(wire::MeasurementState state) {
+    wire::Measurement measurement;
+    measurement.bench("b1");
+    measurement.run("r1");
+    measurement.state(state);
+    measurement_.write(measurement);
+  }
+  void pass(std::chrono::nanoseconds time) {
+    for (; time > 0ns; time -= 100ms) {
+      clock_.advance(std::min<std::chrono::nanoseconds>(time, 100ms));
+      guard_->work();
+    }
+  }
+};
+
+TEST_F(ExciterGuardTest, LeavesAnExciterAloneThatIsAttended) {
+  for (int i = 0; i < 100; ++i) {
+    announce(i < 50 ? wire::EXCITATION_SETTLING : wire::EXCITATION_STEADY);
+    pass(1900ms);
+  }
+  EXPECT_EQ(tries_, 0);
+}
+
+TEST_F(ExciterGuardTest, SwitchesOffJustAfterItsLimitAndOnce) {
+  announce(wire::EXCITATION_STEADY);
+  guard_->work();
+  clock_.advance(2s);
+  guard_->work();
+  EXPECT_EQ(tries_, 0);
+  clock_.advance(1ns);
+  guard_->work();
+  EXPECT_EQ(tries_, 1);
+  EXPECT_EQ(guard_->figures().switched_off, 1U);
+  pass(60s);
+  EXPECT_EQ(tries_, 1);
+}
+
+TEST_F(ExciterGuardTest, LeavesAnExciterAloneThatIsOff) {
+  announce(wire::EXCITATION_STEADY);
+  guard_->work();
+  announce(wire::EXCITATION_DONE);
+  pass(60s);
+  EXPECT_EQ(tries_, 0);
+}
+
+TEST_F(ExciterGuardTest, SwitchesOffWhereABrokenOffStepIsNotKnownToBeOff) {
+  announce(wire::EXCITATION_STEADY);
+  guard_->work();
+  announce(wire::EXCITATION_ABORTED); // without the end of its window
+  pass(3s);
+  EXPECT_EQ(tries_, 1);
+}
+
+// It hears DDS, but not its generator.
+TEST_F(ExciterGuardTest, IsNotContentWithAConductorThatHasLostHoldOfTheGenerator) {
+  announce(wire::EXCITATION_STEADY);
+  for (int i = 0; i < 3; ++i) {
+    pass(1s);
+    report(wire::MEASUREMENT_RUNNING);
+  }
+  EXPECT_EQ(tries_, 1);
+}
+
+TEST_F(ExciterGuardTest, GoesOnTryingUntilTheGeneratorAnswers) {
+  reachable_ = false;
+  announce(wire::EXCITATION_STEADY);
+  pass(12s);
+  EXPECT_GE(tries_, 9);
+  EXPECT_LE(tries_, 11);
+  EXPECT_EQ(guard_->figures().switched_off, 0U);
+  EXPECT_TRUE(guard_->figures().may_be_on);
+  reachable_ = true;
+  pass(2s);
+  EXPECT_EQ(guard_->figures().switched_off, 1U);
+  EXPECT_FALSE(guard_->figures().may_be_on);
+  EXPECT_EQ(guard_->figures().bench, "b1");
+}
+
+TEST_F(ExciterGuardTest, StopsTryingWhenTheConductorIsBack) {
+  reachable_ = false;
+  announce(wire::EXCITATION_STEADY);
+  pass(5s);
+  const int before = tries_;
+  announce(wire::EXCITATION_DONE);
+  pass(60s);
+  EXPECT_EQ(tries_, before);
+}
+
+TEST_F(ExciterGuardTest, WatchesAgainAfterItHasSwitchedOff) {
+  for (int silence = 1; silence <= 3; ++silence) {
+    announce(wire::EXCITATION_STEADY);
+    pass(3s);
+    EXPECT_EQ(tries_, silence);
+  }
+}
+
+TEST_F(ExciterGuardTest, FindsAnExciterThatWasDrivenBeforeItBegan) {
+  announce(wire::EXCITATION_STEADY);
+  guard_ = start();
+  pass(3s);
+  EXPECT_EQ(tries_, 1);
+}
+
+// One power cut takes the conductor's host and its own.
+TEST_F(ExciterGuardTest, SwitchesOffWhatWasDrivenBeforeItsHostWentDown) {
+  announce(wire::EXCITATION_STEADY);
+  pass(1s);
+  output_.is_on = true;
+  guard_.reset();
+  excitation_ = conductor_.writer(bus::topics::excitation, "b2").value(); // what it wrote is gone
+  guard_ = start();
+  pass(1900ms);
+  EXPECT_TRUE(output_.is_on);
+  pass(300ms);
+  EXPECT_FALSE(output_.is_on);
+  pass(121s);
+  EXPECT_TRUE(std::filesystem::is_empty(folder_.path())) << "nothing is driven any more";
+}
+
+TEST_F(ExciterGuardTest, SaysWhatItLeavesOn) {
+  announce(wire::EXCITATION_STEADY);
+  pass(100ms);
+  announce(wire::EXCITATION_DONE);
+  output_.is_on = true;
+  output_.settings = {100.0, 0.8};
+  pass(2s);
+  wire::ServiceStatus last;
+  status_.take([&](const wire::ServiceStatus& one) { last = one; });
+  EXPECT_EQ(last.message(), "the output of the generator is on (100 Hz, 0.8 V peak to peak), which "
+                            "is not what run r1 drove: it is left on");
+  EXPECT_EQ(last.health(), wire::HEALTH_OK);
+  EXPECT_EQ(tries_, 0);
+}
+
+TEST_F(ExciterGuardTest, NamesTheRunThatItDoesNotHear) {
+  const auto newest = [this] {
+    wire::ServiceStatus last;
+    status_.take([&](const wire::ServiceStatus& one) { last = one; });
+    return last.run().to_string();
+  };
+  announce(wire::EXCITATION_STEADY);
+  pass(1900ms);
+  EXPECT_EQ(newest(), "");
+  pass(300ms);
+  EXPECT_EQ(newest(), "r1");
+  announce(wire::EXCITATION_DONE);
+  pass(100ms);
+  EXPECT_EQ(newest(), "");
+}
+
+TEST_F(ExciterGuardTest, SaysEverySecondThatItIsThere) {
+  int heard = 0;
+  for (int i = 0; i < 100; ++i) {
+    pass(100ms);
+    status_.take([&](const wire::ServiceStatus& status) {
+      ++heard;
+      EXPECT_EQ(status.service().to_string(), "guard@lab-2:7");
+      EXPECT_EQ(status.run().to_string(), "");
+      EXPECT_EQ(status.guarded_generator(), "192.0.2.7:5025");
+      EXPECT_EQ(status.health(), wire::HEALTH_OK);
+      EXPECT_EQ(status.published_utc_ns(), clock_.utc_now_ns());
+    });
+  }
+  EXPECT_EQ(heard, 10);
+}
+
+TEST_F(ExciterGuardTest, TellsOfAnOutputThatItCannotSwitchOffUntilItIs) {
+  const auto newest = [this] {
+    wire::ServiceStatus last;
+    status_.take([&](const wire::ServiceStatus& one) { last = one; });
+    return last;
+  };
+  reachable_ = false;
+  announce(wire::EXCITATION_STEADY);
+  pass(3s);
+  wire::ServiceStatus status = newest();
+  EXPECT_EQ(status.health(), wire::HEALTH_FAILED);
+  EXPECT_EQ(status.message(), "nothing is heard of run r1, and THE OUTPUT OF THE GENERATOR MAY BE "
+                              "ON: switch it off by hand if you can; trying again until it is off "
+                              "(no route to host)");
+  reachable_ = true;
+  pass(2s);
+  status = newest();
+  EXPECT_EQ(status.health(), wire::HEALTH_OK);
+  EXPECT_EQ(status.message(), "nothing was heard of run r1 while its exciter was driven; the "
+                              "output of the generator was switched off");
+  announce(wire::EXCITATION_SETTLING);
+  pass(100ms);
+  EXPECT_EQ(newest().message(), "");
+}
+
+TEST_F(ExciterGuardTest, DoesNotTakeAnotherBenchsExcitationForItsOwn) {
+  announce(wire::EXCITATION_STEADY, "b2"); // in the partition of b1
+  pass(10s);
+  EXPECT_EQ(tries_, 0);
+}
+
+} // namespace
+} // namespace dyncal::services
