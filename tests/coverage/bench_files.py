@@ -1,7 +1,7 @@
 """The files that `dyncal analyse` reads: records, shots, ADC calibration, bench file.
 
-The formats are those of drivers/files/README.md, drivers/tss/README.md, services/bench/file/adc_file.hpp
-and services/bench/file/bench_file.hpp, written from these pages and not with any of our code.
+The formats are those of drivers/files/README.md, drivers/tss/README.md, and of adc_file.hpp and
+bench_file.hpp in services/bench/file, written from these pages and not with any of our code.
 """
 
 import json

@@ -12,7 +12,7 @@ import sys
 
 # The analysis evaluates benches that it has never heard of: no bench file, no device.
 REFUSED = {
-    "dyncal-analysis": ["services/bench/file/", "drivers/", "tomlplusplus", "libdyncal_bench_program"],
+    "dyncal-analysis": ["services/bench/", "drivers/", "tomlplusplus", "libdyncal_bench_program"],
 }
 # What must be there, so that an empty list is not taken for a short one.
 EXPECTED = {

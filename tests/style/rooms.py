@@ -14,7 +14,8 @@ import sys
 from tree import CODE, TOP, conclude, tracked
 
 # Rooms of each tree from the lowest floor up; "." is the tree's own folder. A room includes itself
-# and rooms of lower floors of its tree, never one of its own floor: so there is no circle.
+# and rooms of lower floors of its tree, never one of its own floor: so there is no circle. Those of
+# services/ are wings, and the same holds for the rooms of a wing.
 FLOORS = {
     "analysis": [
         ["base"],
@@ -36,25 +37,37 @@ FLOORS = {
         ["virtual_bench"],
     ],
     "services": [
-        ["."],
-        ["output"],
-        ["contract", "report/figures"],
-        ["bench", "bus", "supervision"],
-        ["bus/fastdds/screen"],
-        ["bus/cyclonedds", "bus/fastdds", "bus/memory", "host_clocks", "live_signals"],
-        ["program"],
-        ["evaluation/recipe", "recording", "source"],
-        ["evaluation/record", "evaluation/result"],
-        ["evaluation/method"],
-        ["evaluation"],
-        ["run"],
-        ["report"],
-        ["bench_draft", "laboratory", "live", "model", "run_folder", "store"],
-        ["certificate", "document"],
-        ["acs", "analysis", "can", "dau", "demo", "dso", "guard", "recorder", "virtual_bench"],
-        ["doctor", "replay", "web"],
-        ["bench_check", "exchange"],
+        ["base"],
+        ["contract"],
+        ["bench", "bus", "evaluation"],
+        ["daemon"],
+        ["network", "stream"],
+        ["instruments", "views"],
+        ["records", "run"],
+        ["checks"],
+        ["programs"],
+    ],
+}
+# Rooms of the wings that have several, from the lowest floor up; "." is the wing's own folder.
+WINGS = {
+    "bench": [["draft", "file"]],
+    "bus": [["."], ["cyclonedds", "fastdds/screen", "host_clocks", "memory"], ["fastdds"]],
+    "checks": [["bench_check", "doctor"]],
+    "daemon": [["supervision"], ["program"]],
+    "evaluation": [["recipe"], ["record", "result"], ["method"], ["."]],
+    "programs": [
+        [
+            "acs", "analysis", "can", "dau", "demo", "dso", "guard", "recorder", "virtual_bench",
+            "web",
+        ],
         ["command"],
+    ],
+    "records": [["mcap", "run_folder", "store"], ["capture"], ["replay"], ["exchange"]],
+    "views": [
+        ["figures", "signals"],
+        ["report"],
+        ["lab_file", "live", "model"],
+        ["certificate", "document"],
     ],
 }
 # What a tree may include of others: rooms, or a whole tree.
@@ -92,11 +105,28 @@ def room_in_tree(path):
     return tree, room
 
 
-def floor(tree, room):
-    for number, rooms in enumerate(FLOORS[tree]):
+def number_of(floors, room):
+    for number, rooms in enumerate(floors):
         if room in rooms:
             return number
     return None
+
+
+def floor(tree, room):
+    """Its floor, and that within its wing; None: it has none."""
+    if tree != "services":
+        wing, inner = room, None
+    else:
+        wing, _, inner = room.partition("/")
+    outer = number_of(FLOORS[tree], wing)
+    inner = number_of(WINGS.get(wing, [["."]]), inner or ".")
+    return None if outer is None or inner is None else (outer, inner)
+
+
+def runs_down(tree, source, target):
+    (upper, upper_inner), (lower, lower_inner) = floor(tree, source), floor(tree, target)
+    same_wing = tree == "services" and source.split("/")[0] == target.split("/")[0]
+    return lower_inner < upper_inner if same_wing else lower < upper
 
 
 def within(path, folder):
@@ -109,7 +139,7 @@ def refusal_in_tree(tree, source, target):
     for room in (source, target):
         if floor(tree, room) is None:
             return f"{tree}/{room} has no floor in tests/style/rooms.py"
-    if floor(tree, target) >= floor(tree, source):
+    if not runs_down(tree, source, target):
         return "the arrow does not run down"
     if tree == "drivers" and target not in SHARED_DRIVERS:
         family = source.split("/")[0]

@@ -2,7 +2,8 @@
 formulas, the same every time.
 
 The transfer function is that of an accelerometer with a resonance and a delay; everything is a
-plain dictionary in the shape of services/programs/web/PROTOCOL.md, which a test changes as it likes.
+plain dictionary in the shape of services/programs/web/PROTOCOL.md, which a test changes as it
+likes.
 """
 
 import cmath
