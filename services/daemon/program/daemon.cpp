@@ -58,13 +58,13 @@ int run_daemon(int argc, char** argv, const DaemonProgram& program) {
   if (const auto status = read_command_line(app, argc, argv)) {
     return *status;
   }
+  const std::stop_token signals = stop_on_signals(); // before there is any other thread
   set_up_log(program.name, program.log);
   auto supervisor =
       Supervisor::create(this_program(program.name, software_version(), network.dds), metrics);
   if (!supervisor) {
     return report_error(supervisor.error());
   }
-  const std::stop_token signals = stop_on_signals();
   const auto served = [&] { // what it made ends before the log does
     Daemon daemon(program.name, std::move(network), std::move(*supervisor), signals);
     return daemon.outcome(program.serve(daemon));

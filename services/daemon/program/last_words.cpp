@@ -49,12 +49,13 @@ bool can_make_thread() {
   return child > 0 && waitpid(static_cast<pid_t>(child), nullptr, 0) == child;
 }
 
-// As much as the stack of a thread takes.
+// As much as the stack of a thread takes, and what glibc reserves for what it will allocate: a
+// thread that ended meanwhile may have left room for less.
 bool has_memory() {
-  constexpr std::size_t stack_bytes = std::size_t{8} << 20U;
-  void* const stack =
-      mmap(nullptr, stack_bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  return stack != MAP_FAILED && munmap(stack, stack_bytes) == 0;
+  constexpr std::size_t bytes = (std::size_t{8} + 64) << 20U;
+  void* const found =
+      mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  return found != MAP_FAILED && munmap(found, bytes) == 0;
 }
 
 void end_if_something_lacks() {

@@ -71,8 +71,13 @@ void check_stamps(const analysis::ChannelFit& fit, double u_magnitude_rel, doubl
   }
 }
 
+// Held values have harmonics, too, and are flagged.
+bool holds_values(const analysis::ChannelFit& fit) {
+  return fit.integrity && fit.integrity->repeated_beyond_chance_part > 0.0;
+}
+
 void check_peaks(const std::string& reference_name, const std::string& channel,
-                 const analysis::BentPeaks& peaks, StepResult& result) {
+                 const analysis::BentPeaks& peaks, StepResult& result, bool may_refuse = true) {
   result.peaks = peaks;
   const double error = std::abs(peaks.amplitude_error_rel);
   if (!peaks.found || !result.valid ||
@@ -94,7 +99,7 @@ void check_peaks(const std::string& reference_name, const std::string& channel,
   } else {
     add_flag(ResultFlag::peaks_bent, bent, lost, result);
   }
-  if (error > refused_bending) {
+  if (may_refuse && error > refused_bending) {
     add_refusal(
         fmt::format("the peaks of {} are bent, so that about {} of the amplitude is lost; lower "
                     "the level, or choose a wider range",
@@ -142,7 +147,7 @@ void check_shape(const analysis::ChannelFit& reference, const analysis::ChannelF
   if (reference.integrity && sensor.integrity) {
     check_peaks(reference.channel, sensor.channel,
                 analysis::find_bent_peaks(sensor.integrity->shape, reference.integrity->shape),
-                result);
+                result, !holds_values(sensor) && !holds_values(reference));
   }
 }
 
