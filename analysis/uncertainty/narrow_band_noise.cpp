@@ -57,26 +57,30 @@ Shape make_shape(double forgets, double offset) {
 }
 
 // About frequencies above the sine's, at it, and below.
-const std::vector<Shape>& all_shapes() {
-  static const std::vector<Shape> shapes = [] {
-    std::vector<Shape> all;
-    double weights = 0.0;
-    for (const Memory& memory : memories) {
-      for (const double offset : offsets) {
-        for (const double sign : {1.0, -1.0}) {
-          if (sign > 0.0 || offset > 0.0) {
-            all.push_back(make_shape(memory.forgets, sign * offset));
-            all.back().weight = memory.weight;
-            weights += memory.weight;
-          }
-        }
+std::vector<Shape> make_shapes() {
+  std::vector<Shape> all;
+  double weights = 0.0;
+  const auto add = [&](const Memory& memory, double offset) {
+    all.push_back(make_shape(memory.forgets, offset));
+    all.back().weight = memory.weight;
+    weights += memory.weight;
+  };
+  for (const Memory& memory : memories) {
+    for (const double offset : offsets) {
+      add(memory, offset);
+      if (offset > 0.0) {
+        add(memory, -offset);
       }
     }
-    for (Shape& shape : all) {
-      shape.weight /= weights;
-    }
-    return all;
-  }();
+  }
+  for (Shape& shape : all) {
+    shape.weight /= weights;
+  }
+  return all;
+}
+
+const std::vector<Shape>& all_shapes() {
+  static const std::vector<Shape> shapes = make_shapes();
   return shapes;
 }
 

@@ -82,6 +82,14 @@ std::vector<std::string> warnings_of(const RecordedRunIndex& index, const Recipe
   return warnings;
 }
 
+bool has_restarted_source(const RecordedRunIndex& index, const Recipe& recipe) {
+  const auto names = recipe.sources();
+  return std::ranges::any_of(names, [&](const std::string& name) {
+    const auto source = index.sources.find(name);
+    return source != index.sources.end() && source->second.sessions.size() > 1;
+  });
+}
+
 } // namespace
 
 Expected<RecordedRunOutcome> evaluate_recording(recording::RecordingReader& reader,
@@ -102,11 +110,7 @@ Expected<RecordedRunOutcome> evaluate_recording(recording::RecordingReader& read
   }
   RecordedRunOutcome result;
   result.live_results = index->live_results;
-  for (const std::string& name : recipe->sources()) {
-    const auto source = index->sources.find(name);
-    result.source_restarted = result.source_restarted || (source != index->sources.end() &&
-                                                          source->second.sessions.size() > 1);
-  }
+  result.source_restarted = has_restarted_source(*index, *recipe);
   result.outcome = outcome_of(*recipe);
   result.outcome.adc_file = wish.recipe ? std::nullopt : adc_file_of(index->plan);
   result.warnings = warnings_of(*index, *recipe, reader.path());
