@@ -58,8 +58,8 @@ int run_daemon(int argc, char** argv, const DaemonProgram& program) {
   if (const auto status = read_command_line(app, argc, argv)) {
     return *status;
   }
-  const std::stop_token signals = stop_on_signals(); // before there is any other thread
   set_up_log(program.name, program.log);
+  const std::stop_token signals = stop_on_signals(); // before there are threads that would take one
   auto supervisor =
       Supervisor::create(this_program(program.name, software_version(), network.dds), metrics);
   if (!supervisor) {
