@@ -43,7 +43,9 @@ void silence(const fs::path& file, const std::vector<std::string>& columns) {
 
 class NoExcitationInFiles : public testing::Test {
 protected:
-  fs::path folder_ = fresh_folder("no-excitation");
+  fs::path folder_ = fresh_folder(
+      std::string("no-excitation-") +
+      testing::UnitTest::GetInstance()->current_test_info()->name()); // another one may run beside
   fs::path bench_ = recorded_bench(folder_, "files", "3");
 
   std::vector<std::string> problems(const std::vector<std::string>& command) {

@@ -175,6 +175,17 @@ public:
                 dds_entity_t reader, const TypeSupport& type, std::shared_ptr<WakeUp> wake_up)
       : participant_(std::move(participant)), wake_up_(std::move(wake_up)), type_(type),
         sample_(type.create(), type.destroy), topic_(topic), reader_(reader) {}
+  CycloneReader(const CycloneReader&) = delete;
+  CycloneReader& operator=(const CycloneReader&) = delete;
+  // Cyclone DDS 0.10 does not end a reader that is full while samples come for it: its receiving
+  // thread waits for room, and the end of the reader for that thread.
+  ~CycloneReader() override {
+    ddsi_serdata* serdata = nullptr;
+    dds_sample_info_t info;
+    while (dds_takecdr(reader_.get(), &serdata, 1, &info, DDS_ANY_STATE) > 0) {
+      release_cyclone_serdata(serdata);
+    }
+  }
 
   std::size_t take(const std::function<void(const void*)>& consume) override {
     std::size_t taken = 0;
