@@ -38,9 +38,7 @@ std::optional<wire::SourceDescription> KnownSource::take(const wire::SourceStatu
   }
   statuses_of_earlier = 0;
   std::swap(*description, *living);
-  wire::SourceDescription left = std::move(*living);
-  earlier.erase(living);
-  return left;
+  return *living; // which is kept: of two that write at once a late reader sees the second alone
 }
 
 std::string service_of(const std::optional<wire::SourceDescription>& description) {

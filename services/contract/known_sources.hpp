@@ -42,7 +42,7 @@ struct KnownSource {
     return status && !status->message().empty() ? ": " + status->message() : "";
   }
   void take(const wire::SourceDescription& described);
-  // Returns the description that is left, when one before it is the living session's.
+  // Returns the description that is left, when another one is the living session's.
   [[nodiscard]] std::optional<wire::SourceDescription> take(const wire::SourceStatus& reported);
 };
 using KnownSources = std::map<std::string, KnownSource>;

@@ -50,7 +50,8 @@ public:
   [[nodiscard]] std::stop_token stop() const { return joined_ ? joined_->stop() : signals_; }
   [[nodiscard]] Supervisor& supervisor() { return *supervisor_; }
   [[nodiscard]] const ProgramIdentity& identity() const { return supervisor_->identity(); }
-  // One turn of the main loop: what the network refused is reported with it.
+  // One turn of the main loop: what the network refused is reported with it. REQUIRES:
+  // participant() was not moved from; who does that reports to supervisor().
   void turned();
   // `served`, the last word of the program, as WatchedNetwork::outcome().
   [[nodiscard]] Expected<void> outcome(Expected<void> served) const;

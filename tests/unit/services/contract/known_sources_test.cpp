@@ -38,7 +38,22 @@ TEST(KnownSource, IsDescribedByItselfAgainWhenATwinHasGone) {
   EXPECT_EQ(left->session(), 2U);
   EXPECT_EQ(source.description->session(), 1U);
   EXPECT_EQ(source.description->device(), "sensor 1");
-  EXPECT_FALSE(source.before());
+}
+
+// Of two that write at once, a late reader sees the second alone: the first seems to have gone.
+TEST(KnownSource, IsDescribedByTheOneThatGoesOnThoughItSeemedToHaveGone) {
+  KnownSource source;
+  source.take(description(2)); // the twin's
+  source.take(description(1));
+  for (int i = 1; i <= KnownSource::statuses_of_a_living_session; ++i) {
+    EXPECT_EQ(source.take(status(2)).has_value(), i == KnownSource::statuses_of_a_living_session);
+  }
+  ASSERT_EQ(source.description->session(), 2U);
+  for (int i = 0; i < KnownSource::statuses_of_a_living_session - 1; ++i) { // the twin has ended
+    EXPECT_FALSE(source.take(status(1)));
+  }
+  EXPECT_TRUE(source.take(status(1)));
+  EXPECT_EQ(source.description->device(), "sensor 1");
 }
 
 TEST(KnownSource, IsDescribedByItselfAfterAProgramThatOnlyDescribedIt) {

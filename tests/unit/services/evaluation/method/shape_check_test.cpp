@@ -87,6 +87,16 @@ TEST(ShapeCheck, RefusesWhatIsBentByMuch) {
   EXPECT_THAT(bent.problem, HasSubstr("the peaks of dau/z are bent"));
 }
 
+TEST(ShapeCheck, FlagsHeldValuesForTheirHarmonicsAndDoesNotRefuseThem) {
+  StepResult held = result(1e-3);
+  analysis::ChannelFit sensor = channel("dau/z", 0.05);
+  sensor.integrity->repeated_beyond_chance_part = 0.02;
+  check_shape(channel("acs/ref", 0.0), sensor, held);
+  EXPECT_TRUE(held.valid);
+  EXPECT_THAT(kinds(held),
+              testing::ElementsAre(ResultFlag::values_off_stamps, ResultFlag::peaks_bent));
+}
+
 TEST(ShapeCheck, ShotsAreJudgedTogether) {
   std::vector<analysis::SineShape> shots(9, shape(0.004));
   for (analysis::SineShape& shot : shots) {
