@@ -11,12 +11,25 @@ namespace {
 constexpr double most_of_a_step = 20.0; // more than what shows a scatter, less than one wild shot
 constexpr double significant = 10.0;    // chi-squared of one degree of freedom, s not below 0: 1e-3
 constexpr double probable_none = 0.6;
-constexpr double scale_of_prior = 2.0;   // u*
-constexpr double latency_of_mean = 2.0;  // sqrt(3) of a rectangle, and its own scatter
-constexpr double latency_of_doubt = 4.4; // the least that holds 95 % of rectangles of 1 to 3 u*
-constexpr double narrowest = 0.03;       // u*: less does not matter
-constexpr double widest = 30.0;          // of the noisiest or most scattered step
-constexpr double step_factor = 1.05;     // of s: finer than any run can tell
+constexpr double scale_of_prior = 2.0;     // u*
+constexpr double latency_of_mean = 2.0;    // sqrt(3) of a rectangle, and its own scatter
+constexpr double latency_of_doubt = 4.4;   // the least that holds 95 % of rectangles of 1 to 3 u*
+constexpr double doubt_of_lone_step = 2.6; // U at most 1.5 times what clean errors make it
+constexpr double doubt_of_two_steps = 3.8; // the same
+constexpr double narrowest = 0.03;         // u*: less does not matter
+constexpr double widest = 30.0;            // of the noisiest or most scattered step
+constexpr double step_factor = 1.05;       // of s: finer than any run can tell
+
+double latency_of_doubt_from(std::size_t steps) {
+  switch (steps) {
+  case 1:
+    return doubt_of_lone_step;
+  case 2:
+    return doubt_of_two_steps;
+  default:
+    return latency_of_doubt;
+  }
+}
 
 bool counts(const StartEvidence& step) {
   return step.shots > 1 && step.u_s > 0.0;
@@ -103,7 +116,8 @@ std::optional<SharedStartScatter> shared_start_scatter(std::span<const StartEvid
   const auto [mean_s, mean_square_s2] = moments_of(grid, evidence);
   const double doubt_s = std::sqrt(std::max(0.0, mean_square_s2 - mean_s * mean_s));
   found.scatter_s = std::sqrt(mean_square_s2);
-  found.u_latency_s = std::hypot(latency_of_mean * mean_s, latency_of_doubt * doubt_s);
+  found.u_latency_s =
+      std::hypot(latency_of_mean * mean_s, latency_of_doubt_from(counted.size()) * doubt_s);
   found.is_shown = *std::max_element(evidence.begin(), evidence.end()) >= significant;
   return found;
 }

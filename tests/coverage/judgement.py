@@ -27,8 +27,8 @@ WIDEST_BOUND = 3.0
 PROBABILITY_OF_BOUND = 0.9973
 # U against 2 rms of the errors, where nothing is wrong that U must hold.
 NARROWEST_CLEAN, WIDEST_CLEAN = 0.9, 1.5
-# Claims whose rms is known to a tenth: no chance is added to the upper end.
-KNOWN_RMS = 60
+# Claims whose rms is known to a twentieth: no chance is added to the upper end.
+KNOWN_RMS = 200
 # By how much U of a mean may exceed what Student's factor alone, as stated, makes of the errors.
 BEYOND_STUDENT = 1.2
 # Sync is always connected here.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <numeric>
 #include <random>
 #include <vector>
 
@@ -104,6 +105,40 @@ Tally tally_of(const Latency& latency, unsigned seed) {
   return tally;
 }
 
+// A series of twelve shots at one frequency, with what else is uncertain of its phase.
+constexpr double lone_u_s = 1.5e-6;
+constexpr double lone_common_s = 0.6 * lone_u_s;
+constexpr std::size_t lone_shots = 12;
+constexpr double lone_resolved_s = 0.549 * lone_u_s; // u*
+
+Tally tally_of_lone_step(const Latency& latency, unsigned seed) {
+  Random random(seed);
+  std::normal_distribution<double> normal;
+  constexpr double n = lone_shots;
+  Tally tally;
+  for (int i = 0; i < 2000; ++i) {
+    std::vector<double> begins(lone_shots);
+    std::generate(begins.begin(), begins.end(),
+                  [&] { return lone_u_s * normal(random) + latency(random); });
+    const double mean_s = std::reduce(begins.begin(), begins.end()) / n;
+    StartEvidence step{lone_shots, 0.0, lone_u_s};
+    for (const double begin : begins) {
+      step.squares_s2 += (begin - mean_s) * (begin - mean_s);
+    }
+    const auto shared = shared_start_scatter(std::array{step});
+    EXPECT_TRUE(shared);
+    const double u_mean_s =
+        std::max(lone_u_s, std::sqrt(step.squares_s2 / (n - 1.0))) / std::sqrt(n);
+    const double u_all_s = std::hypot(std::hypot(u_mean_s, lone_common_s), shared->u_latency_s);
+    const double error = (mean_s + lone_common_s * normal(random)) / u_all_s;
+    tally.steps += 1.0;
+    tally.errors += error * error;
+    tally.silent += shared->is_shown ? 0.0 : 1.0;
+    tally.covered += !shared->is_shown && std::abs(error) <= 2.0 ? 1.0 : 0.0;
+  }
+  return tally;
+}
+
 constexpr std::array seeds{34U, 134U, 234U};
 constexpr double resolved_s = 0.449e-6; // u*: such a scatter is just seen, 2 u* in one run of five
 
@@ -176,6 +211,20 @@ TEST(SharedStartScatter, IsNoWiderThanErrorsAskForWhereItIsNoneOrLarge) {
     expect_not_too_wide(tally_of(none, seed), 0.0, seed);
     for (const double part : {5.0, 20.0}) {
       expect_not_too_wide(tally_of(within(part * resolved_s * std::sqrt(12.0)), seed), part, seed);
+    }
+  }
+}
+
+// One step tells little of s. Where U is to be at most 1.5 times what clean errors make it, it
+// holds fewer of the rectangles that the step hides.
+TEST(SharedStartScatter, LoneStepsAreNotTooWideAndHoldMostOfWhatTheyHide) {
+  for (const unsigned seed : seeds) {
+    expect_not_too_wide(tally_of_lone_step(none, seed), 0.0, seed);
+    for (const double part : {0.5, 1.0, 2.0, 3.0}) {
+      const double width_s = part * lone_resolved_s * std::sqrt(12.0);
+      const Tally tally = tally_of_lone_step(within(width_s), seed);
+      EXPECT_GT(tally.silent, 200.0) << part << ", seed " << seed;
+      EXPECT_GT(tally.part(), 0.8) << part << ", seed " << seed;
     }
   }
 }
