@@ -55,9 +55,12 @@ UsualStamps usual_of(std::span<const std::int64_t> stamps_ns, std::span<const st
 
 // What is left of a deviation when missing samples are taken off.
 double without_missing(double deviation_ns, double interval_ns) {
+  if (deviation_ns < 0.5 * interval_ns) {
+    return deviation_ns; // nearly all are
+  }
   const double periods = std::round(deviation_ns / interval_ns);
   const double rest = deviation_ns - periods * interval_ns;
-  return periods >= 1.0 && std::abs(rest) < near_whole_periods * interval_ns ? rest : deviation_ns;
+  return std::abs(rest) < near_whole_periods * interval_ns ? rest : deviation_ns;
 }
 
 } // namespace

@@ -5,11 +5,19 @@
 namespace dyncal::drivers::files {
 namespace {
 
-constexpr long double longest_interval_ns = 9.2e18L; // more is none
 constexpr unsigned rising_before_trust = 8;
-constexpr std::int64_t intervals_ahead = 8;
+constexpr std::uint64_t intervals_ahead = 8;
 constexpr std::size_t looked_at_behind = 64;
-constexpr std::int64_t second_ns = 1'000'000'000;
+constexpr std::uint64_t second_ns = 1'000'000'000;
+
+// Of `later` above `earlier`: unsigned, so that it has room whatever a file says.
+std::uint64_t distance_ns(std::int64_t earlier_ns, std::int64_t later_ns) {
+  return static_cast<std::uint64_t>(later_ns) - static_cast<std::uint64_t>(earlier_ns);
+}
+
+bool is_longer(std::uint64_t distance_ns, std::uint64_t intervals, std::uint64_t interval_ns) {
+  return distance_ns > 0 && (distance_ns - 1) / intervals >= interval_ns;
+}
 
 } // namespace
 
@@ -17,8 +25,7 @@ std::uint8_t StampOrder::flag_of(std::int64_t stamp_ns) {
   const bool rises = !last_ns_ || stamp_ns > before_ns_;
   before_ns_ = stamp_ns;
   if (!last_ns_ || stamp_ns > *last_ns_) {
-    const auto interval_ns = last_ns_ ? static_cast<long double>(stamp_ns) - *last_ns_ : 0.0L;
-    interval_ns_ = interval_ns < longest_interval_ns ? static_cast<std::int64_t>(interval_ns) : 0;
+    interval_ns_ = last_ns_ ? distance_ns(*last_ns_, stamp_ns) : 0;
     last_ns_ = stamp_ns;
     behind_ = 0;
     return 0;
@@ -33,29 +40,24 @@ std::uint8_t StampOrder::flag_of(std::int64_t stamp_ns) {
 }
 
 std::size_t StampOrder::ahead(std::span<const std::int64_t> stamps_ns) const {
-  if (!last_ns_ || interval_ns_ <= 0) {
+  if (!last_ns_ || interval_ns_ == 0 || stamps_ns.front() <= *last_ns_) {
     return 0;
   }
-  // Exact for every stamp, and never beyond its range, whatever a file says.
-  const auto from_last_ns = [&](std::int64_t stamp_ns) {
-    return static_cast<long double>(stamp_ns) - static_cast<long double>(*last_ns_);
-  };
-  const auto interval_ns = static_cast<long double>(interval_ns_);
-  if (from_last_ns(stamps_ns.front()) <= intervals_ahead * interval_ns) {
+  const std::uint64_t first_ns = distance_ns(*last_ns_, stamps_ns.front());
+  if (!is_longer(first_ns, intervals_ahead, interval_ns_)) {
     return 0;
   }
   const std::size_t looked_at = std::min(stamps_ns.size(), looked_at_behind + 1);
   for (std::size_t i = 1; i < looked_at; ++i) {
-    const long double back_ns = from_last_ns(stamps_ns[i]);
     // It comes back where it would be with as many intervals as samples, and is not a later one of
     // those that were set back.
-    if (back_ns > 0.0L && back_ns <= 2.0L * static_cast<long double>(i + 1) * interval_ns &&
-        stamps_ns[i] < stamps_ns[i - 1]) {
+    if (stamps_ns[i] > *last_ns_ && stamps_ns[i] < stamps_ns[i - 1] &&
+        !is_longer(distance_ns(*last_ns_, stamps_ns[i]), 2 * (i + 1), interval_ns_)) {
       return i;
     }
   }
   const bool nothing_behind = stamps_ns.size() == 1;
-  return nothing_behind && from_last_ns(stamps_ns.front()) > second_ns ? 1 : 0;
+  return nothing_behind && first_ns > second_ns ? 1 : 0;
 }
 
 void StampOrder::check(SampleBlock& block) {
@@ -67,7 +69,9 @@ void StampOrder::check(SampleBlock& block) {
   for (std::size_t i = 0; i < stamps.size();) {
     const std::size_t wrong = ahead(stamps.subspan(i));
     for (std::size_t end = i + wrong; i < end; ++i) {
-      set(i, stamps[i] - *last_ns_ >= second_ns ? stamp_second_slip : stamp_offset_below_second);
+      set(i, stamps[i] > *last_ns_ && distance_ns(*last_ns_, stamps[i]) >= second_ns
+                 ? stamp_second_slip
+                 : stamp_offset_below_second);
     }
     if (wrong > 0) {
       continue;

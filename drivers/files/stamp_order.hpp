@@ -30,7 +30,7 @@ private:
   [[nodiscard]] std::size_t ahead(std::span<const std::int64_t> stamps_ns) const;
 
   std::optional<std::int64_t> last_ns_; // in order
-  std::int64_t interval_ns_ = 0;        // of the last two in order
+  std::uint64_t interval_ns_ = 0;       // of the last two in order
   std::int64_t before_ns_ = 0;          // the stamp before, in order or not
   unsigned behind_ = 0;                 // rising ones since, behind the last in order
 };
