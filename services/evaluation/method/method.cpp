@@ -2,6 +2,7 @@
 
 #include "services/evaluation/method/absolute_time.hpp"
 #include "services/evaluation/method/analogue.hpp"
+#include "services/evaluation/method/flag_of_most.hpp"
 #include "services/evaluation/method/own_clock_sample_stamping.hpp"
 #include "services/evaluation/method/sample_time_stamping.hpp"
 #include "services/evaluation/method/series_time_stamping.hpp"
@@ -14,8 +15,8 @@ Expected<void> Method::check_time_scales(const RunRecords& /*records*/) const {
 
 void Method::add(const std::string& /*source*/, TriggeredRecord /*record*/) {}
 
-bool Method::settle(std::span<StepResult> /*results*/) const {
-  return false;
+bool Method::settle(std::span<StepResult> results) const {
+  return add_flag_of_most(ResultFlag::changed_within_step, results);
 }
 
 bool Method::is_complete(std::size_t /*step*/, const RunRecords& /*records*/) const {

@@ -6,6 +6,7 @@
 
 #include <fmt/core.h>
 
+#include "services/evaluation/method/flag_of_most.hpp"
 #include "services/evaluation/method/series_clock.hpp"
 #include "services/evaluation/method/series_step_evaluation.hpp"
 #include "services/evaluation/method/step_results.hpp"
@@ -22,33 +23,6 @@ StepAttempt attempt_at(std::size_t step, const RunRecords& records) {
 bool has_shots_that_disagree(const StepResult& result) {
   return std::any_of(result.flags.begin(), result.flags.end(),
                      [](const Flag& flag) { return flag.kind == ResultFlag::shots_disagree; });
-}
-
-// What changes within the series of most steps, as the sensor's clock does, changes in all of them,
-// also where the noise or a low frequency hides it. Chance shows it in one step of 10 000.
-bool add_disagreement_of_most(std::span<StepResult> results) {
-  struct Count {
-    std::size_t steps = 0, disagree = 0;
-  };
-  std::map<std::string, Count> of_channel;
-  for (const StepResult& result : results) {
-    Count& count = of_channel[result.channel];
-    count.steps += result.valid ? 1 : 0;
-    count.disagree += result.valid && has_shots_that_disagree(result) ? 1 : 0;
-  }
-  bool added = false;
-  for (StepResult& result : results) {
-    const Count& count = of_channel[result.channel];
-    if (result.valid && !has_shots_that_disagree(result) && 2 * count.disagree > count.steps) {
-      result.flags.push_back(
-          {ResultFlag::shots_disagree,
-           fmt::format("{}: {}: they do in {} of {} steps, and here it is hidden in their noise",
-                       result.channel, to_string(ResultFlag::shots_disagree), count.disagree,
-                       count.steps)});
-      added = true;
-    }
-  }
-  return added;
 }
 
 // A drift of the sensor's clock that another step shows.
@@ -139,7 +113,7 @@ bool SeriesTimeStamping::settle(std::span<StepResult> results) const {
   for (const auto& [channel, bends] : bends_) {
     disagree |= add_disagreement_of_another(bends, channel, results);
   }
-  disagree |= add_disagreement_of_most(results);
+  disagree |= add_flag_of_most(ResultFlag::shots_disagree, results);
   if (start_ == analysis::StartKind::uniform) {
     return disagree; // its scatter is known, and in u
   }

@@ -314,7 +314,7 @@ TEST_P(DisagreeingSteps, FlagTheOthersWhereTheyAreMost) {
               flagged)
         << result.step;
     const bool by_the_others = losing == 2 && result.step == 3;
-    EXPECT_EQ(testing::Matches(testing::Contains(HasSubstr("they do in 2 of 3 steps")))(
+    EXPECT_EQ(testing::Matches(testing::Contains(HasSubstr("so it is in 2 of 3 steps")))(
                   sentences_of(result.flags)),
               by_the_others)
         << result.step;

@@ -1,0 +1,43 @@
+#include "services/evaluation/method/flag_of_most.hpp"
+
+#include <algorithm>
+#include <map>
+#include <string>
+
+#include <fmt/core.h>
+
+namespace dyncal::services {
+namespace {
+
+bool carries(ResultFlag kind, const StepResult& result) {
+  return std::any_of(result.flags.begin(), result.flags.end(),
+                     [kind](const Flag& flag) { return flag.kind == kind; });
+}
+
+} // namespace
+
+bool add_flag_of_most(ResultFlag kind, std::span<StepResult> results) {
+  struct Count {
+    std::size_t steps = 0, flagged = 0;
+  };
+  std::map<std::string, Count> of_channel;
+  for (const StepResult& result : results) {
+    Count& count = of_channel[result.channel];
+    count.steps += result.valid ? 1 : 0;
+    count.flagged += result.valid && carries(kind, result) ? 1 : 0;
+  }
+  bool added = false;
+  for (StepResult& result : results) {
+    const Count& count = of_channel[result.channel];
+    if (result.valid && !carries(kind, result) && 2 * count.flagged > count.steps) {
+      result.flags.push_back(
+          {kind,
+           fmt::format("{}: {}: so it is in {} of {} steps; here noise or a low frequency hides it",
+                       result.channel, to_string(kind), count.flagged, count.steps)});
+      added = true;
+    }
+  }
+  return added;
+}
+
+} // namespace dyncal::services
