@@ -1,9 +1,10 @@
 // Conducts one run on a bench: publishes the recipe, waits until the analysis is armed, excites
 // step by step, collects what is published.
 //
-// Order of messages: idl/README.md, "The run protocol"; services/run/step_sequence.hpp excites the
-// steps, waits for what is away for a while, and repeats what was spoilt. The generator's output is
-// off on every way out: end, error, stop.
+// Order of messages: idl/README.md, "The run protocol". Its states have the classes arming_wait.hpp
+// or resume_wait.hpp, step_sequence.hpp, which excites the steps, waits for what is away for a
+// while, and repeats what was spoilt, and results_wait.hpp. The generator's output is off on every
+// way out: end, error, stop.
 //
 // Fails: no_analysis (nobody answers, or the run is not armed in time), no_source (the analysis
 // refuses the run), device (generator), network, interrupted (before the first step). Later there
@@ -41,12 +42,6 @@ struct RunKeeping {
 
 class RunController {
 public:
-  static constexpr std::chrono::seconds answer_limit{12}; // for an analysis to answer
-  static constexpr std::chrono::seconds armed_limit{36};  // until it has armed or refused the run
-  static constexpr std::chrono::seconds analysis_limit = StepSequence::away_limit; // of its silence
-  static constexpr std::chrono::seconds results_limit = StepSequence::results_limit;
-  static constexpr std::chrono::seconds missed_limit = StepSequence::missed_limit;
-
   RunController(bus::Participant& participant, const BenchFile& bench, std::string run,
                 ShowProgress show_progress)
       : RunController(RunEnvironment{.participant = participant}, bench, std::move(run),
@@ -81,26 +76,11 @@ private:
   Expected<void> check_before_first_step(const std::stop_token& stop);
   Expected<RunOutcome> excite_and_collect(const std::stop_token& stop);
   Expected<RunOutcome> collect_of_ended_run(const std::stop_token& stop);
-  Expected<void> wait_until_armed(const std::stop_token& stop);
-  Expected<void> wait_until_known(const std::stop_token& stop);
-  [[nodiscard]] Expected<void> check_same_instruments() const;
-  // Nothing while the analysis may still tell what it holds of the run.
-  // `may_be_another`: nothing tells yet that the analysis holds it with this recipe.
-  [[nodiscard]] std::optional<Expected<void>> answer_about_run(Instant attended,
-                                                               bool may_be_another) const;
-  [[nodiscard]] Error refusal_of_run() const;
   void leave_out_foreign_means();
-  // Nothing while the analysis may still answer.
-  [[nodiscard]] std::optional<Expected<void>> answer_of_analysis(Instant since) const;
-  [[nodiscard]] std::string silence_of_analysis() const;
-  Expected<void> wait_for_results(const std::stop_token& stop);
-  void abort(const std::string& reason);
   [[nodiscard]] std::string name() const; // of the run, for people
   [[nodiscard]] bool has_ended_at_analysis() const;
   // What an analysis that has ended the run does not give; empty where it gives all.
   [[nodiscard]] std::string lack_of_ended_run() const;
-  [[nodiscard]] bool everything_has_come() const;
-  [[nodiscard]] bool plays_files() const;
   [[nodiscard]] wire::MeasurementState final_state(bool excited) const;
 
   RunEnvironment environment_;

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include <fmt/core.h>
+
 namespace dyncal::services {
 namespace {
 
@@ -76,6 +78,12 @@ void RunWatch::follow(const std::string& phase) {
   show(phase);
   clock_.wait(*wake_up_, clock_.now() + look_interval);
   look();
+}
+
+std::string RunWatch::silence_of_analysis(std::chrono::seconds limit) const {
+  return fmt::format(
+      "the analysis service {} has gone silent; waiting for it or another up to {} s",
+      analysis()->service().c_str(), limit.count());
 }
 
 RunOutlook RunWatch::outlook() const {

@@ -82,6 +82,8 @@ public:
   // A result of this run names another bench file.
   [[nodiscard]] bool has_other_recipe() const { return messages_.has_other_recipe(); }
   [[nodiscard]] RunOutlook outlook() const;
+  // For people, while it is silent. REQUIRES: analysis().
+  [[nodiscard]] std::string silence_of_analysis(std::chrono::seconds limit) const;
   [[nodiscard]] RunCommands& commands() { return commands_; }
   [[nodiscard]] const RunOutcome& outcome() const { return outcome_; }
   [[nodiscard]] RunOutcome& outcome() { return outcome_; }

@@ -66,8 +66,8 @@ TEST_F(RunControllerResultsTest, GivesUpJustAfterItsLimitWhenTheLastResultsDoNot
   ASSERT_TRUE(outcome);
   EXPECT_EQ(outcome->problem, "the last results have not come from the analysis service");
   EXPECT_EQ(published_state(), wire::MEASUREMENT_DONE); // it was excited as planned
-  EXPECT_GE(clock_.elapsed() - excitation_done, RunController::results_limit - 50ms);
-  EXPECT_LE(clock_.elapsed() - excitation_done, RunController::results_limit + look);
+  EXPECT_GE(clock_.elapsed() - excitation_done, StepSequence::results_limit - 50ms);
+  EXPECT_LE(clock_.elapsed() - excitation_done, StepSequence::results_limit + look);
 }
 
 TEST_F(RunControllerResultsTest, TellsWithWhichSoftwareItWasArmed) {
@@ -117,8 +117,8 @@ TEST_P(MissedMessage, IsCollectedOnceMore) {
   EXPECT_EQ(outcome->problem, "");
   EXPECT_EQ(outcome->results.size(), 2U);
   EXPECT_EQ(outcome->transfer_functions.size(), 1U);
-  EXPECT_GE(clock_.elapsed(), 7s + RunController::missed_limit - 50ms);
-  EXPECT_LE(clock_.elapsed(), 7s + RunController::missed_limit + attention_limit + 2 * look);
+  EXPECT_GE(clock_.elapsed(), 7s + StepSequence::missed_limit - 50ms);
+  EXPECT_LE(clock_.elapsed(), 7s + StepSequence::missed_limit + attention_limit + 2 * look);
 }
 
 TEST_F(RunControllerResultsTest, WaitsAnewAfterEveryResult) {
@@ -126,11 +126,11 @@ TEST_F(RunControllerResultsTest, WaitsAnewAfterEveryResult) {
   const std::vector<std::pair<std::uint32_t, std::string>> results{
       {1, "dau/acceleration_x"}, {1, "dau/acceleration_y"}, {2, "dau/acceleration_x"}};
   for (std::size_t i = 0; i < results.size(); ++i) {
-    clock_.at(6s + (i + 1) * (RunController::results_limit - look), [this, result = results[i]] {
+    clock_.at(6s + (i + 1) * (StepSequence::results_limit - look), [this, result = results[i]] {
       analysis_.publish_result(result.first, result.second);
     });
   }
-  clock_.at(6s + 3 * RunController::results_limit, [this] { finish(); });
+  clock_.at(6s + 3 * StepSequence::results_limit, [this] { finish(); });
   const auto outcome = conduct();
   ASSERT_TRUE(outcome);
   EXPECT_EQ(outcome->problem, "");
@@ -139,13 +139,13 @@ TEST_F(RunControllerResultsTest, WaitsAnewAfterEveryResult) {
 
 TEST_F(RunControllerResultsTest, WaitsAsLongAsTheAnalysisIsAtWork) {
   play_analysis();
-  for (int i = 1; i <= 5 * RunController::results_limit.count(); ++i) {
+  for (int i = 1; i <= 5 * StepSequence::results_limit.count(); ++i) {
     clock_.at(6s + std::chrono::seconds(i), [this, i] {
       analysis_.report(wire::ARM_ARMED, wire::HEALTH_OK,
                        "evaluating a step, for " + std::to_string(i) + " s so far");
     });
   }
-  clock_.at(6s + 5 * RunController::results_limit + 1s, [this] {
+  clock_.at(6s + 5 * StepSequence::results_limit + 1s, [this] {
     analysis_.publish_result(1);
     finish();
   });
@@ -161,7 +161,7 @@ TEST_F(RunControllerResultsTest, EndsWhenTheAnalysisDiesBeforeTheLastResult) {
   const auto outcome = conduct();
   ASSERT_TRUE(outcome);
   EXPECT_EQ(outcome->problem, "the analysis service analysis@test:1 has gone silent");
-  EXPECT_LE(clock_.elapsed(), 7s + RunController::analysis_limit + look);
+  EXPECT_LE(clock_.elapsed(), 7s + StepSequence::away_limit + look);
 }
 
 // As it is: messages of another run on the bench are left out, and nothing else keeps two runs
@@ -224,7 +224,7 @@ protected:
 
 TEST_F(RunOfFiles, WaitsAsLongAsTheAnalysisIsWell) {
   play_analysis();
-  clock_.at(4 * RunController::results_limit, [this] {
+  clock_.at(4 * StepSequence::results_limit, [this] {
     EXPECT_EQ(published_state(), wire::MEASUREMENT_RUNNING);
     finish();
   });

@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "services/run/arming_wait.hpp"
 #include "tests/unit/services/run/conducted_run.hpp"
 
 namespace dyncal::services {
@@ -92,8 +93,8 @@ TEST_F(RunControllerTest, FailsJustAfterItsLimitWhenNobodyAnswers) {
   EXPECT_EQ(outcome.error().code, ErrorCode::no_analysis);
   EXPECT_EQ(outcome.error().message, "no analysis service answers for bench 'b'; is "
                                      "dyncal-analysis running in the same DDS domain?");
-  EXPECT_GT(clock_.elapsed(), RunController::answer_limit);
-  EXPECT_LE(clock_.elapsed(), RunController::answer_limit + look);
+  EXPECT_GT(clock_.elapsed(), ArmingWait::answer_limit);
+  EXPECT_LE(clock_.elapsed(), ArmingWait::answer_limit + look);
   EXPECT_FALSE(was_excited());
   EXPECT_EQ(published_state(), wire::MEASUREMENT_ABORTED);
 }
@@ -105,8 +106,8 @@ TEST_F(RunControllerTest, FailsJustAfterItsLimitWhenTheAnalysisDoesNotArm) {
   EXPECT_EQ(outcome.error().code, ErrorCode::no_analysis);
   EXPECT_EQ(outcome.error().message,
             "the analysis service analysis@test:1 has not armed for bench 'b'");
-  EXPECT_GT(clock_.elapsed(), RunController::armed_limit);
-  EXPECT_LE(clock_.elapsed(), RunController::armed_limit + look);
+  EXPECT_GT(clock_.elapsed(), ArmingWait::limit);
+  EXPECT_LE(clock_.elapsed(), ArmingWait::limit + look);
   EXPECT_FALSE(was_excited());
   EXPECT_EQ(published_state(), wire::MEASUREMENT_ABORTED);
 }
@@ -130,21 +131,19 @@ TEST_F(RunControllerTest, GivesUpAnAnalysisThatStaysSilentBeforeItArms) {
   const auto outcome = conduct();
   ASSERT_FALSE(outcome);
   EXPECT_EQ(outcome.error().code, ErrorCode::no_analysis);
-  EXPECT_GT(clock_.elapsed(), RunController::analysis_limit);
-  EXPECT_LE(clock_.elapsed(),
-            RunController::analysis_limit + RunController::armed_limit + 4 * look);
+  EXPECT_GT(clock_.elapsed(), StepSequence::away_limit);
+  EXPECT_LE(clock_.elapsed(), StepSequence::away_limit + ArmingWait::limit + 4 * look);
   EXPECT_FALSE(was_excited());
 }
 
 TEST_F(RunControllerTest, GoesOnWhenTheAnalysisArmsJustBeforeTheLimit) {
-  clock_.at(RunController::answer_limit - 1ms, [this] { analysis_.report(wire::ARM_WAITING); });
-  clock_.at(RunController::armed_limit - 1ms, [this] { analysis_.report(wire::ARM_ARMED); });
+  clock_.at(ArmingWait::answer_limit - 1ms, [this] { analysis_.report(wire::ARM_WAITING); });
+  clock_.at(ArmingWait::limit - 1ms, [this] { analysis_.report(wire::ARM_ARMED); });
   clock_.every(1s, [this] {
-    if (clock_.elapsed() > RunController::armed_limit + 7s) {
+    if (clock_.elapsed() > ArmingWait::limit + 7s) {
       analysis_.report(wire::ARM_FINISHED);
-    } else if (clock_.elapsed() > RunController::answer_limit) {
-      analysis_.report(clock_.elapsed() < RunController::armed_limit ? wire::ARM_WAITING
-                                                                     : wire::ARM_ARMED);
+    } else if (clock_.elapsed() > ArmingWait::answer_limit) {
+      analysis_.report(clock_.elapsed() < ArmingWait::limit ? wire::ARM_WAITING : wire::ARM_ARMED);
     }
   });
   const auto outcome = conduct();
@@ -234,8 +233,8 @@ TEST_F(RunControllerTest, EndsJustAfterItsLimitWhenTheAnalysisFallsSilent) {
   const wire::Measurement last = last_published();
   EXPECT_EQ(last.state(), wire::MEASUREMENT_ABORTED);
   EXPECT_EQ(last.message(), outcome->problem);
-  EXPECT_GT(clock_.elapsed(), RunController::analysis_limit);
-  EXPECT_LE(clock_.elapsed(), RunController::analysis_limit + 100ms + 1s + look);
+  EXPECT_GT(clock_.elapsed(), StepSequence::away_limit);
+  EXPECT_LE(clock_.elapsed(), StepSequence::away_limit + 100ms + 1s + look);
   EXPECT_EQ(analysis_.excitations().back().state(), wire::EXCITATION_ABORTED);
 }
 
