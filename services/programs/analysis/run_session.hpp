@@ -5,13 +5,13 @@
 // silent, and has answered the ARM command in its own sample stream, so commands arrive there and
 // samples arrive here (idl/README.md, "The run protocol").
 //
-// Limits: a run that is not armed within `arm_limit` is refused with one sentence, which its status
-// says from `notice_after` on; a source that is there, but is still starting, or busy with other
-// runs, is waited for up to `present_limit`. A
-// live source that sent nothing for `silence_limit`, or has ended, makes it WAITING for up to
-// `patience`, then FAILED. Once the excitation is over and nothing was published for `quiet_limit`,
-// or nothing was heard of the run for `runner_limit`, it ends with what there is. Time in which
-// this process did not work itself (stopped, or without the processor) counts for nobody's silence.
+// Limits: a run that is not armed within `Arming::limit` is refused with one sentence, which its
+// status says from `notice_after` on; a source that is there, but is still starting, or busy with
+// other runs, is waited for up to `Arming::present_limit`. A live source that sent nothing for
+// `silence_limit`, or has ended, makes it WAITING for up to `patience`, then FAILED. Once the
+// excitation is over and nothing was published for `quiet_limit`, or nothing was heard of the run
+// for `runner_limit`, it ends with what there is. Time in which this process did not work itself
+// (stopped, or without the processor) counts for nobody's silence.
 //
 // A session that begins in the middle of its run (the service was started late, or another one has
 // died) asks every source for what it has sent since its answer, and gives the results that the
@@ -37,17 +37,19 @@
 #pragma once
 
 #include <chrono>
-#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
+#include <variant>
 
 #include "idl/dyncal.h"
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
 #include "services/evaluation/run_evaluator.hpp"
+#include "services/programs/analysis/pending_announcements.hpp"
+#include "services/programs/analysis/run_conductor.hpp"
 #include "services/programs/analysis/run_publisher.hpp"
+#include "services/programs/analysis/session_state.hpp"
 #include "services/programs/analysis/source_requests.hpp"
 #include "services/programs/analysis/source_streams.hpp"
 
@@ -63,9 +65,7 @@ struct AnalysisContext {
 
 class RunSession {
 public:
-  static constexpr std::chrono::seconds arm_limit{10};
   static constexpr std::chrono::seconds notice_after{2};
-  static constexpr std::chrono::seconds present_limit{15};
   static constexpr std::chrono::seconds bench_limit{4};
   static constexpr std::chrono::milliseconds listening_time{2500};
   static constexpr std::chrono::seconds silence_limit{5};
@@ -81,15 +81,13 @@ public:
          std::shared_ptr<SourceRequests> requests,
          SourceStreams::Begin begin = SourceStreams::Begin::with_answer);
 
-  [[nodiscard]] bool armed() const { return status_.arm == wire::ARM_ARMED; }
+  [[nodiscard]] bool armed() const { return arm_state() == wire::ARM_ARMED; }
   // As it came last.
   [[nodiscard]] const wire::Measurement& measurement() const { return measurement_; }
-  [[nodiscard]] bool finished() const {
-    return status_.arm == wire::ARM_FINISHED || status_.arm == wire::ARM_REFUSED;
-  }
+  [[nodiscard]] bool finished() const { return is<Ended>(); }
 
   [[nodiscard]] const std::shared_ptr<SourceRequests>& requests() const { return requests_; }
-  [[nodiscard]] wire::ArmState arm_state() const { return status_.arm; }
+  [[nodiscard]] wire::ArmState arm_state() const { return arm_of(state_); }
   // Whether its recipe names this source; false once it is finished.
   [[nodiscard]] bool uses(const std::string& source) const {
     return streams_ && streams_->contains(source);
@@ -107,7 +105,6 @@ private:
   RunSession(const AnalysisContext& context, const wire::Measurement& measurement,
              std::shared_ptr<SourceRequests> requests, RunPublisher publisher);
   void prepare(const wire::Measurement& measurement, SourceStreams::Begin begin);
-  [[nodiscard]] bool is_of_this_run(const wire::Measurement& measurement);
   void discount_own_stall(Instant now);
   void take_samples(const KnownSources& sources, Instant now);
   void catch_up(Instant now);
@@ -115,22 +112,22 @@ private:
   // Ends this run for the next one.
   void give_way_to(const std::string& next);
   void arm(const KnownSources& sources, Instant now);
-  void report_missing_source(const std::string& sentence, Instant now);
   void watch_sources(Instant now);
   void watch_measurement();
-  [[nodiscard]] std::string taking_over_sentence() const;
   void end_takeover(Instant now);
   void evaluate(Instant now);
   void finish();
   void end_overdue(Instant now);
   [[nodiscard]] bool is_played_to_its_end(Instant now) const;
-  void report_work(Instant now);
-  void report(wire::HealthState health, std::string message);
+  void enter(SessionState state, std::string message);
+  void publish();
+  void begin_arming_again(Instant now);
   void wait_for_source(LostSource lost, Instant now);
   void refuse(std::string message);
   [[nodiscard]] bool lacks_samples(Instant now) const;
-  [[nodiscard]] bool waits_for_source() const {
-    return status_.health == wire::HEALTH_WAITING && !taking_over_;
+  template <class State>
+  [[nodiscard]] bool is() const {
+    return std::holds_alternative<State>(state_);
   }
   [[nodiscard]] bool excitation_over() const {
     return measurement_.state() == wire::MEASUREMENT_DONE ||
@@ -142,28 +139,21 @@ private:
   std::shared_ptr<bus::WakeUp> wake_up_;
   std::string bench_;
   std::string run_;
-  std::string conductor_;
+  RunConductor conductor_;
   std::shared_ptr<SourceRequests> requests_;
   RunPublisher publisher_;
-  RunState status_;
   wire::Measurement measurement_;
   bool excited_by_steps_ = false; // by a generator; files and excitation by hand announce no steps
   std::unique_ptr<RunEvaluator> evaluator_; // until the run is finished or refused
   std::optional<SourceStreams> streams_;    // as long
-  // What was announced while samples were still to be caught up with.
-  std::deque<std::pair<StepAnnouncement, Instant>> announced_; // and when it was heard
-  std::optional<bool> excitation_ended_;                       // true: aborted
-  bool other_run_said_ = false;
-  bool is_resumed_ = false;  // by another conductor, and its sources were not seen to be the run's
-  bool taking_over_ = false; // what was measured before is not evaluated yet
+  PendingAnnouncements announced_;
   Instant created_;
-  Instant arms_since_; // since when it has the bench to itself
-  Instant starting_;   // when a source had yet to describe itself, the last time
+  SessionState state_;
+  std::string message_; // of the state, for people
   Instant last_heard_of_run_;
   Instant last_progress_;
   Instant worked_;              // when work() was called last
   Instant present_since_;       // since when it has been called without a break
-  Instant waiting_since_{};     // for a source, while WAITING
   std::uint64_t recovered_ = 0; // messages that had to be asked for
   Instant next_command_;
   Instant next_status_;

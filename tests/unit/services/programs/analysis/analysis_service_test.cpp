@@ -97,7 +97,7 @@ TEST_F(AnalysisServiceTest, RefusesARunWhoseSourceNeverCame) {
   dau_.describe();
   dau_.report(wire::SOURCE_RUNNING);
   publish("r1", wire::MEASUREMENT_PLANNED);
-  serve_for(RunSession::arm_limit);
+  serve_for(Arming::limit);
   EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_WAITING);
   serve_for(300ms);
   EXPECT_EQ(newest_status_of("r1").arm(), wire::ARM_REFUSED);

@@ -61,7 +61,7 @@ protected:
       twin.send_nothing();
       work();
     }
-    pass(RunSession::arm_limit - 1s);
+    pass(Arming::limit - 1s);
     EXPECT_EQ(arm_state(), wire::ARM_WAITING);
     acs_.answer(tests::played_run);
     dau_.answer(tests::played_run);
@@ -87,7 +87,7 @@ TEST_F(RunSessionTest, IsNotArmedOnTwinsThatWereSeenBefore) {
   work();
   acs_.answer(tests::played_run);
   dau_.answer(tests::played_run);
-  pass(RunSession::arm_limit + 1s);
+  pass(Arming::limit + 1s);
   EXPECT_EQ(arm_state(), wire::ARM_REFUSED);
   EXPECT_THAT(published_.newest_status().message(),
               testing::HasSubstr("two services send as source 'acs' of bench 'synthetic'"));

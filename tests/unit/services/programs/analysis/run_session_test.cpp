@@ -64,7 +64,7 @@ TEST_F(RunSessionTest, ArmsAlthoughTheFirstCommandsAndTheFirstAnswerAreLost) {
   }
   EXPECT_GE(lost, 3);
   EXPECT_EQ(arm_state(), wire::ARM_ARMED);
-  EXPECT_LT(clock_.elapsed(), RunSession::arm_limit);
+  EXPECT_LT(clock_.elapsed(), Arming::limit);
 }
 
 class RunSessionArming : public RunSessionTest, public testing::WithParamInterface<int> {
@@ -73,7 +73,7 @@ protected:
     bool described;
     std::optional<wire::SourceState> state;
     std::string sentence;
-    std::chrono::seconds limit = RunSession::arm_limit;
+    std::chrono::seconds limit = Arming::limit;
   };
   // What keeps the DAU from being armed.
   static Case case_of(int number) {
@@ -87,11 +87,11 @@ protected:
     case 3:
       return {false, wire::SOURCE_STARTING,
               "source 'dau' of bench 'synthetic' has not described its channels yet: no packets",
-              RunSession::present_limit};
+              Arming::present_limit};
     default:
       return {true, wire::SOURCE_RUNNING,
               "source 'dau' of bench 'synthetic' does not answer in its sample stream",
-              RunSession::present_limit};
+              Arming::present_limit};
     }
   }
 };
@@ -128,7 +128,7 @@ TEST_F(RunSessionTest, ArmsWithASourceThatComesJustBeforeTheLimit) {
   describe(acs_);
   work();
   acs_.answer_commands();
-  clock_.advance(RunSession::arm_limit - 300ms);
+  clock_.advance(Arming::limit - 300ms);
   work();
   describe(dau_);
   work();
@@ -144,12 +144,12 @@ TEST_F(RunSessionTest, ArmsWithASourceThatWasRestartedMeanwhile) {
   report(dau_, wire::SOURCE_STARTING, "no packets");
   work();
   acs_.answer_commands();
-  clock_.advance(RunSession::present_limit - 1s);
+  clock_.advance(Arming::present_limit - 1s);
   work();
   EXPECT_EQ(arm_state(), wire::ARM_WAITING);
   describe(dau_);
   work();
-  clock_.advance(RunSession::arm_limit - 1s);
+  clock_.advance(Arming::limit - 1s);
   work();
   dau_.answer_commands();
   work();

@@ -1,0 +1,28 @@
+#include "services/programs/analysis/session_sentences.hpp"
+
+#include <fmt/core.h>
+
+namespace dyncal::services {
+
+using namespace std::chrono_literals;
+
+std::string taking_over_sentence(const SourceStreams& streams) {
+  return fmt::format("taking the run over; its sources have repeated {} messages so far",
+                     streams.recovered());
+}
+
+std::string work_sentence(const RunEvaluator& evaluator, const SourceStreams& streams,
+                          std::chrono::nanoseconds waited) {
+  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(waited);
+  if (evaluator.is_evaluating() && seconds > 1s) {
+    return fmt::format("evaluating a step, for {} s so far", seconds.count());
+  }
+  if (streams.is_catching_up() && (streams.recovered() > 0 || seconds > 0s)) {
+    return fmt::format("catching up with what the sources have sent: {} messages so far, none for "
+                       "{} s",
+                       streams.recovered(), seconds.count());
+  }
+  return "";
+}
+
+} // namespace dyncal::services

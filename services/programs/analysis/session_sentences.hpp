@@ -1,0 +1,19 @@
+// What a run at the analysis service says of its work, for people. Plain functions.
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "services/evaluation/run_evaluator.hpp"
+#include "services/programs/analysis/source_streams.hpp"
+
+namespace dyncal::services {
+
+[[nodiscard]] std::string taking_over_sentence(const SourceStreams& streams);
+
+// What takes longer than a result should, so that anyone who waits for results goes on waiting;
+// empty where nothing does. `waited`: since the last progress.
+[[nodiscard]] std::string work_sentence(const RunEvaluator& evaluator, const SourceStreams& streams,
+                                        std::chrono::nanoseconds waited);
+
+} // namespace dyncal::services
