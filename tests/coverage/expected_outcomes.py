@@ -12,6 +12,7 @@ import faults
 from expected_row import LOSSES, MAGNITUDE, MEAN, PHASE, RATE, VALUE, Row
 from judgement import (
     COVERED,
+    COVERED_AND_NARROW,
     COVERED_AS_STUDENT,
     COVERED_NO_FLAG,
     COVERED_NO_MORE,
@@ -49,7 +50,9 @@ EXPECTED = [
     Row("mean of 1", MEAN, COVERED_NO_FLAG),
     # Two sweeps have one degree of freedom for what they share: as wide as the k that they state.
     Row("mean of 2", MEAN, COVERED_AS_STUDENT),
-    *(Row(f"mean of {n}", MEAN, COVERED_NO_FLAG) for n in (3, 5, 10)),
+    # Of three it is somewhat too large still: 97.6 % are covered, U is 1.1 times 2 rms.
+    Row("mean of 3", MEAN, COVERED_AND_NARROW),
+    *(Row(f"mean of {n}", MEAN, COVERED_NO_FLAG) for n in (5, 10)),
     Row("mean of 2, runs scatter", MEAN, COVERED_AS_STUDENT),
     *(Row(f"mean of {n}, runs scatter", MEAN, COVERED_NO_MORE) for n in (3, 5, 10)),
     Row("free-running series", VALUE, COVERED),
