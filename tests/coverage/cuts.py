@@ -63,6 +63,7 @@ EQUAL = 1e-12
 EQUAL_WITH_HUM_U = 0.01
 MARGIN_S = 0.15  # beside a step, whose frames of the search a cut may touch
 BEYOND = 0.01
+OPPOSITE_ENDS = 0.15  # of the cuts of two records
 BLOCK_S = (0.02, 1.0)  # length of a block that is cut from anywhere
 UNCERTAIN = "step_number_uncertain"
 # Steps of one frequency and level can be told by their phases alone: some draws leave too few. One
@@ -147,9 +148,30 @@ def draw_steps(run, rng, repetition):
     return [(place, place) for place in places]
 
 
+def draw_opposite_ends(run, rng, names):
+    """Of one step one record lacks the begin and what comes before, the other one the end alone; or
+    the other way round: neither end is in both."""
+    step = run.steps[rng.integers(len(run.steps))]
+    length_s = step.end_s - step.begin_s
+    early_s = step.begin_s + rng.uniform(0.1, 0.7) * length_s
+    late_s = step.begin_s + rng.uniform(0.3, 0.9) * length_s
+    outer, inner = rng.permutation(names)
+    if rng.random() < 0.5:
+        return {
+            str(outer): [(late_s, math.inf)],
+            str(inner): [(step.begin_s - rng.uniform(0.0, 0.4), early_s)],
+        }
+    return {
+        str(outer): [(-math.inf, early_s)],
+        str(inner): [(late_s, step.end_s + rng.uniform(0.0, 0.4))],
+    }
+
+
 def draw_cut(run, rng):
     """By record, the intervals of true time that are cut from it."""
     names = list(run.epochs_ns)
+    if len(names) == 2 and rng.random() < OPPOSITE_ENDS:
+        return draw_opposite_ends(run, rng, names)
     chosen = [names, names[:1], names[-1:]][rng.integers(3)]
     alike = rng.random() < 0.5
     cuts = {}

@@ -46,6 +46,20 @@ bool are_equal_frequencies(const ExcitationInBoth& one, const ExcitationInBoth& 
          equal_frequency_rel;
 }
 
+double instant_tolerance_s(const ExcitationInBoth& one, const ExcitationInBoth& other,
+                           const ClockRate& rate) {
+  const double between_s = std::abs(seconds(other.first->begin_ns() - one.first->begin_ns()));
+  return instant_margin_frames * (frame_s(one) + frame_s(other)) + max_rate_error(rate) * between_s;
+}
+
+bool has_whole_begin(const ExcitationInBoth& pair) {
+  return !pair.first->begin_is_cut && !pair.second->begin_is_cut;
+}
+
+bool has_whole_end(const ExcitationInBoth& pair) {
+  return !pair.first->end_is_cut && !pair.second->end_is_cut;
+}
+
 } // namespace
 
 bool have_same_frequency(const FoundExcitation& a, const FoundExcitation& b) {
@@ -66,9 +80,7 @@ ClockRate clock_rate(std::span<const ExcitationInBoth> pairs) {
 
 bool instants_agree(const ExcitationInBoth& one, const ExcitationInBoth& other,
                     const ClockRate& rate) {
-  const double between_s = std::abs(seconds(other.first->begin_ns() - one.first->begin_ns()));
-  const double tolerance_s =
-      instant_margin_frames * (frame_s(one) + frame_s(other)) + max_rate_error(rate) * between_s;
+  const double tolerance_s = instant_tolerance_s(one, other, rate);
   const auto agree = [&](auto end_of_one, auto end_of_other) {
     const double excess =
         excess_s((other.first->*end_of_other)() - (one.first->*end_of_one)(),
@@ -78,6 +90,29 @@ bool instants_agree(const ExcitationInBoth& one, const ExcitationInBoth& other,
   constexpr auto begin = &FoundExcitation::begin_ns;
   constexpr auto end = &FoundExcitation::end_ns;
   return agree(begin, begin) || agree(end, end) || agree(begin, end) || agree(end, begin);
+}
+
+bool rests_agree(const ExcitationInBoth& one, const ExcitationInBoth& other, const ClockRate& rate,
+                 double longest_s) {
+  const bool begins = has_whole_begin(one);
+  if (has_whole_begin(other) || has_whole_end(other) || (!begins && !has_whole_end(one))) {
+    return false;
+  }
+  const auto edge = begins ? &FoundExcitation::begin_ns : &FoundExcitation::end_ns;
+  const auto since_edge_s = [&](std::int64_t first_ns, std::int64_t second_ns) { // in either clock
+    return std::pair((1.0 + rate.rel) * seconds(first_ns - (one.first->*edge)()),
+                     seconds(second_ns - (one.second->*edge)()));
+  };
+  const auto [begin, begin_in_second] =
+      since_edge_s(other.first->begin_ns(), other.second->begin_ns());
+  const auto [end, end_in_second] = since_edge_s(other.first->end_ns(), other.second->end_ns());
+  const double tolerance_s = instant_tolerance_s(one, other, rate);
+  // What is not cut off there is the begin, or the end, of the whole.
+  return (other.first->begin_is_cut || begin <= begin_in_second + tolerance_s) &&
+         (other.second->begin_is_cut || begin_in_second <= begin + tolerance_s) &&
+         (other.first->end_is_cut || end >= end_in_second - tolerance_s) &&
+         (other.second->end_is_cut || end_in_second >= end - tolerance_s) &&
+         std::max(end, end_in_second) - std::min(begin, begin_in_second) <= longest_s + tolerance_s;
 }
 
 double lateness_s(const ExcitationInBoth& one, const ExcitationInBoth& other,
@@ -156,14 +191,20 @@ struct OffsetRange { // of the anchor, by its begin and end
   double most_s = 0.0;
 };
 
+// By the ends that are whole in both records. REQUIRES: one is.
 OffsetRange offset_range(const ExcitationInBoth& anchor, const ClockRate& rate) {
   const auto by = [&](std::int64_t first_ns, std::int64_t second_ns) {
     return excess_s(first_ns - anchor.first->window.middle_ns,
                     second_ns - anchor.second->window.middle_ns, rate) +
            before_middle_s(*anchor.second) - (1.0 + rate.rel) * before_middle_s(*anchor.first);
   };
-  const double begin_s = by(anchor.first->begin_ns(), anchor.second->begin_ns());
-  const double end_s = by(anchor.first->end_ns(), anchor.second->end_ns());
+  double begin_s = by(anchor.first->begin_ns(), anchor.second->begin_ns());
+  double end_s = by(anchor.first->end_ns(), anchor.second->end_ns());
+  if (!has_whole_begin(anchor)) {
+    begin_s = end_s;
+  } else if (!has_whole_end(anchor)) {
+    end_s = begin_s;
+  }
   const double margin_s = instant_margin_frames * frame_s(anchor);
   return {std::min(begin_s, end_s) - margin_s, std::max(begin_s, end_s) + margin_s};
 }
@@ -172,10 +213,17 @@ OffsetRange offset_range(const ExcitationInBoth& anchor, const ClockRate& rate) 
 
 std::optional<bool> phases_have_one_offset(std::span<const ExcitationInBoth> pairs,
                                            const ClockRate& rate) {
+  const auto has_whole_edge = [](const ExcitationInBoth& pair) {
+    return has_whole_begin(pair) || has_whole_end(pair);
+  };
   const ExcitationInBoth& anchor = *std::max_element(
-      pairs.begin(), pairs.end(), [](const ExcitationInBoth& a, const ExcitationInBoth& b) {
-        return a.first->window.frequency_hz < b.first->window.frequency_hz;
+      pairs.begin(), pairs.end(), [&](const ExcitationInBoth& a, const ExcitationInBoth& b) {
+        return std::pair(has_whole_edge(a), a.first->window.frequency_hz) <
+               std::pair(has_whole_edge(b), b.first->window.frequency_hz);
       });
+  if (!has_whole_edge(anchor)) {
+    return std::nullopt;
+  }
   const double half_period_s = 0.5 / anchor.second->window.frequency_hz;
   const auto [least_s, most_s] = offset_range(anchor, rate);
   const auto least = static_cast<std::int64_t>(std::ceil(least_s / half_period_s));

@@ -41,6 +41,11 @@ constexpr double max_clock_rate_rel = 1e-3;
 
 [[nodiscard]] bool instants_agree(const ExcitationInBoth& one, const ExcitationInBoth& other,
                                   const ClockRate& rate);
+// Of a pair of which neither end is whole in both records, as where one has a hole and the other
+// one ends within the step: what is left of it in both may be of one excitation of up to
+// `longest_s`. False where an end of `other` is whole in both, or none of `one`.
+[[nodiscard]] bool rests_agree(const ExcitationInBoth& one, const ExcitationInBoth& other,
+                               const ClockRate& rate, double longest_s);
 // How much later the other one begins in the second clock than it should.
 [[nodiscard]] double lateness_s(const ExcitationInBoth& one, const ExcitationInBoth& other,
                                 const ClockRate& rate);

@@ -27,12 +27,25 @@ struct Proposal {
   bool is_natural = false;
 };
 
+std::int64_t longest_ns(const RecordedExcitations& first, const RecordedExcitations& second) {
+  std::int64_t whole_ns = 0, any_ns = 0;
+  for (const auto* found : {&first.found, &second.found}) {
+    for (const FoundExcitation& one : *found) {
+      const std::int64_t length_ns = one.end_ns() - one.begin_ns();
+      any_ns = std::max(any_ns, length_ns);
+      whole_ns = std::max(whole_ns, one.begin_is_cut || one.end_is_cut ? 0 : length_ns);
+    }
+  }
+  return whole_ns > 0 ? whole_ns : any_ns;
+}
+
 class Proposals {
 public:
   Proposals(std::size_t planned, const RecordedExcitations& first,
             const RecordedExcitations& second)
       : is_one_complete_(std::max(first.found.size(), second.found.size()) >= planned),
-        first_record_(first), second_record_(second), first_(first.found), second_(second.found) {}
+        first_record_(first), second_record_(second), first_(first.found), second_(second.found),
+        longest_ns_(longest_ns(first, second)) {}
 
   [[nodiscard]] std::vector<Proposal> all() const;
 
@@ -49,11 +62,18 @@ private:
   void compare(const std::vector<Places>& pairs, Proposal& proposal) const;
   [[nodiscard]] bool is_natural(const std::vector<Places>& pairs) const;
 
+  [[nodiscard]] bool agree(const ExcitationInBoth& known, const Places& pair,
+                           const ClockRate& rate) const {
+    return instants_agree(known, at(pair), rate) ||
+           rests_agree(known, at(pair), rate, 1e-9 * static_cast<double>(longest_ns_));
+  }
+
   bool is_one_complete_; // one record shows as many as are planned
   const RecordedExcitations& first_record_;
   const RecordedExcitations& second_record_;
   const std::vector<FoundExcitation>& first_;
   const std::vector<FoundExcitation>& second_;
+  std::int64_t longest_ns_; // of those that no record has cut; of all where it has cut all
 };
 
 std::vector<ExcitationInBoth> Proposals::in_both(const std::vector<Places>& pairs) const {
@@ -72,19 +92,18 @@ std::vector<Proposals::Places> Proposals::pairs_with(const Places& anchor,
   const std::int64_t offset_ns = known.second->begin_ns() - known.first->begin_ns();
   std::size_t next = 0;
   for (std::size_t i = 0; i < first_.size() && next < second_.size(); ++i) {
+    const std::int64_t reach_ns = std::max(longest_ns_, first_[i].end_ns() - first_[i].begin_ns());
     // What has ended long before cannot be a partner any more.
     while (next < second_.size() &&
-           second_[next].end_ns() - offset_ns <
-               first_[i].begin_ns() - (first_[i].end_ns() - first_[i].begin_ns()) &&
-           !instants_agree(known, at({i, next}), rate)) {
+           second_[next].end_ns() - offset_ns < first_[i].begin_ns() - reach_ns &&
+           !agree(known, {i, next}, rate)) {
       ++next;
     }
     for (std::size_t j = next; j < second_.size(); ++j) {
-      if (second_[j].begin_ns() - offset_ns >
-          first_[i].end_ns() + (first_[i].end_ns() - first_[i].begin_ns())) {
+      if (second_[j].begin_ns() - offset_ns > first_[i].end_ns() + reach_ns) {
         break;
       }
-      if (have_same_frequency(first_[i], second_[j]) && instants_agree(known, at({i, j}), rate)) {
+      if (have_same_frequency(first_[i], second_[j]) && agree(known, {i, j}, rate)) {
         pairs.emplace_back(i, j);
         next = j + 1;
         break;

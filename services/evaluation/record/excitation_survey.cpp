@@ -13,6 +13,7 @@
 namespace dyncal::services {
 namespace {
 
+constexpr double cut_frames = 1.2; // a frame at an edge counts when most of it is filled
 constexpr std::int64_t beginning_of_time = std::numeric_limits<std::int64_t>::min();
 constexpr std::int64_t kept_ns = 2'000'000'000; // of what may yet become an excitation
 constexpr double kept_frames = 4.0;
@@ -193,6 +194,19 @@ void ExcitationSurvey::join_parts(std::vector<FoundExcitation>& found) const {
   found = std::move(joined);
 }
 
+void ExcitationSurvey::note_cut_ends(std::vector<FoundExcitation>& found) const {
+  for (FoundExcitation& one : found) {
+    const auto margin_ns =
+        static_cast<std::int64_t>(cut_frames * static_cast<double>(one.frame_ns));
+    one.begin_is_cut = one.begin_ns() - result_.recorded.begin_ns <= margin_ns;
+    one.end_is_cut = result_.recorded.end_ns - one.end_ns() <= margin_ns;
+    for (const TimeInterval& hole : result_.holes) {
+      one.begin_is_cut = one.begin_is_cut || std::abs(one.begin_ns() - hole.end_ns) <= margin_ns;
+      one.end_is_cut = one.end_is_cut || std::abs(hole.begin_ns - one.end_ns()) <= margin_ns;
+    }
+  }
+}
+
 RecordedExcitations ExcitationSurvey::result() const {
   RecordedExcitations result = result_;
   auto& found = result.found;
@@ -207,6 +221,7 @@ RecordedExcitations ExcitationSurvey::result() const {
     return one.window.amplitude < hum_rel * level_range_ * loudest;
   });
   join_parts(found);
+  note_cut_ends(found);
   if (samples_ > 0 && !intervals_ns_.empty()) {
     std::vector<std::int64_t> intervals_ns = intervals_ns_;
     result.untrusted_part = static_cast<double>(untrusted_) / static_cast<double>(samples_);

@@ -49,6 +49,7 @@ private:
   void note_samples(std::size_t samples);
   [[nodiscard]] bool are_parts_of_one(const FoundExcitation& a, const FoundExcitation& b) const;
   void join_parts(std::vector<FoundExcitation>& found) const;
+  void note_cut_ends(std::vector<FoundExcitation>& found) const;
   void forget();
 
   ChannelName searched_;

@@ -20,6 +20,9 @@ struct FoundExcitation {
   // End of the excitation before it, or of the part of the same one that came before.
   std::int64_t search_from_ns = std::numeric_limits<std::int64_t>::min();
   std::optional<double> level_m_s2{}; // of the reference, where it is of this record
+  // It may have begun before, or gone on behind: the record begins or ends there, or has a hole.
+  bool begin_is_cut = false;
+  bool end_is_cut = false;
 
   [[nodiscard]] std::int64_t begin_ns() const { return window.excited_begin_ns; }
   [[nodiscard]] std::int64_t end_ns() const { return window.off_ns; }

@@ -341,6 +341,38 @@ TEST_F(StepAlignment, ARecordWithoutAnyStepHasNone) {
   EXPECT_THAT(schedule_.problems, Each(IsEmpty())) << "other causes are likelier";
 }
 
+// One record ends within a step of which the other one lacks the begin: no end of it is in both.
+TEST_F(StepAlignment, AStepOfWhichEachRecordHasAnotherEndShiftsNothing) {
+  plan({40, 50, 125, 40, 50, 125});
+  std::size_t joined = 0;
+  for (std::size_t step = 1; step < run_.size(); ++step) {
+    for (const auto& [ends_s, begins_s] :
+         {std::pair(1.2, 0.4), std::pair(0.5, 0.5), std::pair(0.4, 1.1)}) {
+      auto acs = record("acs", acs_clock, {});
+      acs.found.resize(step + 1);
+      acs.found.back().window.off_ns = acs_clock.at(run_[step].begin_s + ends_s);
+      acs.found.back().end_is_cut = true;
+      acs.recorded.end_ns = acs.found.back().end_ns();
+      acs.length_s = 1e-9 * static_cast<double>(acs.recorded.end_ns - acs.recorded.begin_ns);
+      auto dau = record("dau", dau_clock, {});
+      FoundExcitation& rest = dau.found[step];
+      rest.window.excited_begin_ns = dau_clock.at(run_[step].begin_s + begins_s);
+      rest.begin_is_cut = true;
+      dau.holes.push_back({dau_clock.at(run_[step].begin_s - 0.2), rest.begin_ns()});
+      align({acs, dau});
+      for (std::size_t i = 0; i < run_.size(); ++i) {
+        const bool is_shown = schedule_.records[0][i] && schedule_.records[1][i];
+        joined += is_shown ? 1 : 0;
+        if (is_shown && i != step) {
+          EXPECT_EQ(of_acs()[i], static_cast<int>(i)) << step << ", " << ends_s;
+          EXPECT_EQ(of_dau()[i], static_cast<int>(i)) << step << ", " << ends_s;
+        }
+      }
+    }
+  }
+  EXPECT_GE(joined, 30U); // of 75 that both records show
+}
+
 // Any whole steps from either record: what both have is joined with itself, or with nothing.
 TEST_F(StepAlignment, NoStepIsEverJoinedWithAnother) {
   std::mt19937 random(11);
