@@ -215,13 +215,14 @@ SOURCES_OF_NOISE = {  # whose rows have which subject
 
 def span_ns(point, source):
     of_source = [s for s in point["source_samples"] if s["source"] == source]
-    return of_source[0]["first_stamp_ns"], of_source[0]["last_stamp_ns"]
+    return of_source[0]["first_stamp_ns"], of_source[0]["last_stamp_ns"], of_source[0]["used"]
 
 
 def variance_of_change(point, whole, quantity, sources):
     """Of the noise that fewer samples, or others in their place, make of a value: relative, or in
     rad^2.
-    With u^2 = s^2 / n: u_cut^2 + u_whole^2 - 2 u_whole^2 n_both / n_cut."""
+    With u^2 = s^2 / n: u_cut^2 + u_whole^2 - 2 u_whole^2 n_both / n_cut; where s, which is an
+    estimate too, came out larger of the whole step, by that of the cut one."""
     column = "u_magnitude_rel" if quantity == "magnitude" else "u_phase_rad"
     noise2 = [
         {row["subject"]: row[column] ** 2 for row in one["budget"] if row["kind"] == "noise of"}
@@ -231,10 +232,10 @@ def variance_of_change(point, whole, quantity, sources):
     for subject, cut2 in noise2[0].items():
         usual = [name for name, subjects in SOURCES_OF_NOISE.items() if subject in subjects]
         source = usual[0] if usual and usual[0] in sources else "acs"
-        begin, end = span_ns(point, source)
-        whole_begin, whole_end = span_ns(whole, source)
+        begin, end, used = span_ns(point, source)
+        whole_begin, whole_end, whole_used = span_ns(whole, source)
         both = max(0, min(end, whole_end) - max(begin, whole_begin)) / (end - begin)
-        whole2 = noise2[1].get(subject, cut2)
+        whole2 = min(noise2[1].get(subject, cut2), cut2 * used / whole_used)
         variance += max(0.0, cut2 + whole2 - 2.0 * whole2 * both)
     return variance
 
