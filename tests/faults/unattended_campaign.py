@@ -215,6 +215,8 @@ def unattended(arguments, number):
             row.kind, limit_s = "heard", HEARD_S
             if HEARD not in laboratory.guard_words():
                 row.kind, limit_s = "asked", ASKED_S + BEGINS_S.get(fault, 0.0)
+            if fault == "ignores-off":  # that it is on after OFF is found by asking
+                limit_s = max(limit_s, ASKED_S)
             has_own_guard = drawn["death"] == "killed" and drawn["fault_s"] >= drawn["dies_s"]
             if drawn["guard_dies_s"] is not None:
                 back_s = began_s + drawn["guard_dies_s"] + drawn["guard_away_s"]
