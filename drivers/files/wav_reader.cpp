@@ -1,9 +1,14 @@
 #include "drivers/files/wav_reader.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <fstream>
 #include <optional>
 #include <sndfile.h>
+#include <span>
+#include <string_view>
 
 #include "drivers/files/file_channels.hpp"
 
@@ -39,6 +44,53 @@ std::string name_of_subtype(int format) {
   return known ? info.name : "an unknown codec";
 }
 
+constexpr const char* wanted_formats = "write integers of 8 to 32 bits or floating-point numbers";
+// Of RIFF; what they leave out says in a form of its own what it holds (65534).
+constexpr std::array values_as_they_are{1U, 3U, 65534U};
+
+std::uint32_t little_endian(std::span<const unsigned char> bytes) {
+  std::uint32_t value = 0;
+  for (std::size_t i = bytes.size(); i > 0; --i) {
+    value = value << 8U | bytes[i - 1];
+  }
+  return value;
+}
+
+// The format of a WAV file that the library does not read; empty where it is none.
+std::optional<std::uint32_t> format_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::array<unsigned char, 12> head{};
+  const auto read = [&](std::size_t count) {
+    file.read(reinterpret_cast<char*>(head.data()), static_cast<std::streamsize>(count));
+    return static_cast<bool>(file);
+  };
+  const auto is = [&](std::size_t at, std::string_view name) {
+    return std::equal(name.begin(), name.end(), head.begin() + static_cast<std::ptrdiff_t>(at));
+  };
+  if (!read(12) || !is(0, "RIFF") || !is(8, "WAVE")) {
+    return std::nullopt;
+  }
+  while (read(8)) {
+    const std::uint32_t size = little_endian(std::span(head).subspan(4, 4));
+    if (is(0, "fmt ")) {
+      return read(2) ? std::optional(little_endian(std::span(head).first(2))) : std::nullopt;
+    }
+    file.seekg(static_cast<std::streamoff>(size) + size % 2, std::ios::cur);
+  }
+  return std::nullopt;
+}
+
+std::string why_not_read(const std::string& path) {
+  const auto format = format_of(path);
+  const bool as_they_are =
+      !format || std::find(values_as_they_are.begin(), values_as_they_are.end(), *format) !=
+                     values_as_they_are.end();
+  return as_they_are
+             ? path + ": cannot be read as WAV (" + sf_strerror(nullptr) + ")"
+             : path + ": holds what a codec made of the values (format " + std::to_string(*format) +
+                   " of WAV), which cannot be read; " + wanted_formats;
+}
+
 } // namespace
 
 void WavReader::Close::operator()(sf_private_tag* file) const {
@@ -55,15 +107,12 @@ Expected<std::unique_ptr<WavReader>> WavReader::open(const FileSettings& setting
   SF_INFO info{};
   reader->file_.reset(sf_open(reader->path_.c_str(), SFM_READ, &info));
   if (!reader->file_) {
-    return fail(ErrorCode::malformed,
-                reader->path_ + ": cannot be read as WAV (" + sf_strerror(nullptr) + ")");
+    return fail(ErrorCode::malformed, why_not_read(reader->path_));
   }
   const std::optional<int> bits = bits_of(info.format);
   if (!bits) {
-    return fail(ErrorCode::malformed,
-                reader->path_ + ": holds " + name_of_subtype(info.format) +
-                    ", which does not keep every value; write integers of 8 to 32 bits or "
-                    "floating-point numbers");
+    return fail(ErrorCode::malformed, reader->path_ + ": holds " + name_of_subtype(info.format) +
+                                          ", which does not keep every value; " + wanted_formats);
   }
   reader->all_samples_ = static_cast<std::uint64_t>(std::max<sf_count_t>(info.frames, 0));
   std::vector<std::string> names;
