@@ -7,6 +7,7 @@
 #include <numeric>
 #include <vector>
 
+#include "analysis/base/chi_squared_limit.hpp"
 #include "analysis/base/statistics.hpp"
 
 namespace dyncal::analysis {
@@ -19,9 +20,12 @@ constexpr double seen_one = 4.5;        // u: large enough to be compared with o
 constexpr std::size_t enough_seen = 3;  // so many tell how it depends on the drive
 constexpr double driven_alike = 1.1;    // ratio of excitations
 constexpr double driven_unlike = 1.5;
-constexpr double much_noisier = 3.0;   // than the usual step
-constexpr double few_amplitudes = 3.0; // see the header
-constexpr double clearly_better = 4.0; // ratio of the variances
+constexpr double much_noisier = 3.0;       // than the usual step
+constexpr double few_amplitudes = 3.0;     // see the header
+constexpr double clearly_better = 4.0;     // ratio of the variances
+constexpr double beyond_accounted = 3.719; // normal quantile, once in 10^4
+constexpr double beyond_beside = 2.5;      // ratio of the variances
+constexpr double noise_of_hann = 1.5;      // variance, to that of the whole record's coefficient
 
 // Normal deviate of a ratio of variances (Wilson and Hilferty).
 double deviate_of_f(double ratio, double degrees, double degrees_of_noise) {
@@ -52,6 +56,20 @@ bool is_significant(std::span<const MeasuredBackground> measured) {
   }
   const double n = static_cast<double>(measured.size());
   return one || !(deviate_of_f(shown / noise, 2.0 * n, noise_degrees * n) < significant_sd);
+}
+
+// Noise of a width raises what is beside the frequency too; but u holds what the step itself shows,
+// and a record of few pieces may show little.
+bool exceeds(std::span<const MeasuredBackground> measured, double accounted) {
+  double shown = 0.0, beside = 0.0;
+  for (const auto& [line, excitation] : measured) {
+    shown += 0.5 * line.amplitude * line.amplitude;
+    beside += line.u_component * line.u_component;
+  }
+  const double n = static_cast<double>(measured.size());
+  const double held = noise_of_hann * n * accounted * accounted;
+  return held > 0.0 && shown > held * chi_squared_limit(2.0 * n, beyond_accounted) &&
+         shown > beyond_beside * beside;
 }
 
 double mean_of_larger_half(std::vector<double> squares) {
@@ -103,11 +121,11 @@ std::vector<MeasuredAmplitude> with_shared_noise(std::span<const MeasuredBackgro
 } // namespace
 
 BackgroundPower background_power(std::span<const MeasuredBackground> measured, double excitation,
-                                 bool constant) {
+                                 bool constant, double accounted) {
   if (measured.empty()) {
     return {};
   }
-  if (!is_significant(measured)) {
+  if (!is_significant(measured) && !exceeds(measured, accounted)) {
     return {expected_square(with_shared_noise(measured)), false};
   }
   const Growth growth = constant ? Growth::none : growth_of(measured, excitation);

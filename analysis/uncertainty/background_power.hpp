@@ -4,10 +4,12 @@
 //   z = sum a_i^2 / sum 2 u_i^2      1 where there is noise alone: about F of 2 n and 12 n degrees
 //
 // significant   z exceeds what noise gives 3 times in 100 000 (Wilson and Hilferty), or one a_i
-//               exceeds 8.4 u: h^2 is the mean of the larger half of a_i^2 - 2 u_i^2, so that what
-//               comes and goes is not averaged away, nor one disturbed step taken for all; times
-//               1 + 3 / n^2, for one or two amplitudes of narrow-band noise say little of its power
-//               (with it 94 % are covered for n = 1, 96 % and more from n = 2 on).
+//               exceeds 8.4 u, or all of them what u of the step holds of noise already (once in
+//               10^4) and 2.5 times the noise beside, which noise of a width raises too: h^2 is the
+//               mean of the larger half of a_i^2 - 2 u_i^2, so that what comes and goes is not
+//               averaged away, nor one disturbed step taken for all; times 1 + 3 / n^2, for one or
+//               two amplitudes of narrow-band noise say little of its power (with it 94 % are
+//               covered for n = 1, 96 % and more from n = 2 on).
 // else          h^2 = expected_square() (line_power.hpp): what is not there costs little.
 //
 // What grows with the drive is larger where more is driven: each a_i comes with the amplitude A_i
@@ -34,7 +36,9 @@ struct BackgroundPower {
 };
 
 // 0 and not significant without measurements. `constant`: it is known not to grow with the drive.
+// `accounted`: what u of the step holds of noise at its frequency, of either component; 0: unknown.
 [[nodiscard]] BackgroundPower background_power(std::span<const MeasuredBackground> measured,
-                                               double excitation, bool constant = false);
+                                               double excitation, bool constant = false,
+                                               double accounted = 0.0);
 
 } // namespace dyncal::analysis

@@ -17,7 +17,10 @@ using Complex = std::complex<double>;
 
 constexpr std::size_t min_values = 4;
 constexpr std::size_t max_lines = 16; // to either side
-constexpr double prior_of_white = 0.8;
+constexpr double prior_of_white = 0.7;
+// Of magnitude and phase together, to each by itself: of few pieces of noise one of the two may
+// look white by chance.
+constexpr double prior_of_together = 0.9;
 constexpr double looked_at_quantile = 2.05; // once in 50 for each of five bands
 constexpr double next_strength = 3.0;
 constexpr double largest_strength = 30.0; // times what the largest line shows
@@ -286,8 +289,9 @@ MeanFactor factor_of_narrow_band_noise(std::span<const Complex> values, double v
   const Hypotheses phase = Hypotheses::by_itself(lines.phase);
   Hypotheses of_magnitude = Hypotheses::together(lines);
   Hypotheses of_phase = of_magnitude;
-  of_magnitude.append(magnitude, phase.log_evidence());
-  of_phase.append(phase, magnitude.log_evidence());
+  const double apart = std::log((1.0 - prior_of_together) / prior_of_together);
+  of_magnitude.append(magnitude, apart + phase.log_evidence());
+  of_phase.append(phase, apart + magnitude.log_evidence());
   return {of_magnitude.half_width(), of_phase.half_width()};
 }
 

@@ -8,9 +8,9 @@
 // 1 is white noise, g_j the periodogram over a record of length T of noise that forgets with e^{-a
 // t} (a = pi times its width) about a frequency that is d away. Nothing is known of a, d and s
 // beforehand: all of a grid (a T from 0.75 to 50, d T up to 11, s by steps of 3) have the weight
-// that the C_j give them, white noise alone a prior weight of 0.8. Noise beside a sine moves
+// that the C_j give them, white noise alone a prior weight of 0.7. Noise beside a sine moves
 // magnitude and phase alike; what changes sensitivity or delay does not: both are hypotheses, the
-// second with magnitude and phase by themselves.
+// second with magnitude and phase by themselves and a prior weight of 0.1.
 //
 // The mean is then off by a mixture of normal distributions. `magnitude` and `phase` are half of
 // what holds 95.45 % of it, over that of white noise: so the factor 2 covers, though few pieces are

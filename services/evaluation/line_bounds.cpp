@@ -32,28 +32,71 @@ double square_of(const analysis::MeasuredAmplitude& line) {
   return std::max(0.0, line.amplitude * line.amplitude - 2.0 * line.u_component * line.u_component);
 }
 
-void add_row(Contribution row, const ChannelLines& channel, double u2, StepResult& result) {
-  if (!(u2 > 0.0)) {
+// Squares of u, relative and rad.
+struct Variances {
+  double magnitude = 0.0;
+  double phase = 0.0;
+
+  friend Variances operator*(double factor, const Variances& one) {
+    return {factor * one.magnitude, factor * one.phase};
+  }
+};
+
+Variances alike(const ChannelLines& channel, double u2) {
+  return {channel.counts_in_magnitude ? u2 : 0.0, u2};
+}
+
+void add_row(Contribution row, const Variances& u2, StepResult& result) {
+  if (!(u2.phase > 0.0 || u2.magnitude > 0.0)) {
     return;
   }
-  const double u = std::sqrt(u2);
   row.distribution = analysis::Distribution::arcsine;
-  row.u_magnitude_rel = channel.counts_in_magnitude ? u : 0.0;
-  row.u_phase_rad = u;
+  row.u_magnitude_rel = std::sqrt(u2.magnitude);
+  row.u_phase_rad = std::sqrt(u2.phase);
+  result.u_magnitude = std::hypot(result.u_magnitude, row.u_magnitude_rel * result.magnitude);
+  result.u_phase_rad = std::hypot(result.u_phase_rad, row.u_phase_rad);
   result.budget.push_back(std::move(row));
-  if (channel.counts_in_magnitude) {
-    result.u_magnitude = std::hypot(result.u_magnitude, u * result.magnitude);
-  }
-  result.u_phase_rad = std::hypot(result.u_phase_rad, u);
 }
 
 // Half of it may come again in every repetition.
-void add_half_repeating(Contribution row, const ChannelLines& channel, double u2,
-                        StepResult& result) {
+void add_half_repeating(Contribution row, const Variances& u2, StepResult& result) {
   for (const Repeats repeats : {Repeats::anew, Repeats::common}) {
     row.repeats = repeats;
-    add_row(row, channel, 0.5 * u2, result);
+    add_row(row, 0.5 * u2, result);
   }
+}
+
+// What the scatter along the record shows beyond white noise: u of the result holds it already.
+Variances scatter_of(const StepResult& result) {
+  Variances largest;
+  for (const Contribution& row : result.budget) {
+    if (row.kind == ContributionKind::structure && row.repeats == Repeats::anew) {
+      largest.magnitude = std::max(largest.magnitude, row.u_magnitude_rel * row.u_magnitude_rel);
+      largest.phase = std::max(largest.phase, row.u_phase_rad * row.u_phase_rad);
+    }
+  }
+  return largest;
+}
+
+// u of either component that a result holds of noise at its frequency; 0 where it is of shots,
+// which noise of one record says nothing of.
+double noise_held(const StepResult& result) {
+  double square = 0.0;
+  for (const Contribution& row : result.budget) {
+    if (row.kind == ContributionKind::shots) {
+      return 0.0;
+    }
+    if (row.kind == ContributionKind::fit_noise) {
+      square += row.u_phase_rad * row.u_phase_rad;
+    }
+  }
+  const Variances scatter = scatter_of(result);
+  return std::sqrt(square + std::min(scatter.magnitude, scatter.phase));
+}
+
+// How much of it is beyond what is held.
+double share_beyond(double held, double all) {
+  return all > 0.0 ? std::max(0.0, 1.0 - held / all) : 0.0;
 }
 
 } // namespace
@@ -84,7 +127,7 @@ void LineBounds::add(const StepResult& result) {
     const auto take = [&](const std::vector<MeasuredLine>& lines, MeasuredLines& all) {
       for (const MeasuredLine& line : lines) {
         all[{channel.channel, line.kind, line.line_hz, std::min(line.order, first_high_order)}]
-            .push_back({where, line.measured, channel.amplitude});
+            .push_back({where, line.measured, channel.amplitude, channel.duration_s});
       }
     };
     take(channel.measured, driven_);
@@ -126,15 +169,19 @@ std::optional<double> LineBounds::driven_to_quiet(const Line& line,
 }
 
 LineBounds::Bound LineBounds::bound_of(const Line& line, const StepOfChannel& where,
-                                       double excitation) const {
+                                       double excitation, const HeldNoise& held) const {
   std::vector<analysis::MeasuredBackground> measured;
+  double u_held = held.u;
   for (const Measured& one : driven(line)) {
     measured.push_back({one.line, one.excitation});
+    if (one.duration_s > 0.0) { // what is white is larger in shorter records
+      u_held = std::max(u_held, held.u * std::sqrt(held.duration_s / one.duration_s));
+    }
   }
   const auto ratio = driven_to_quiet(line, where);
   const bool constant = ratio && *ratio > like_quiet && *ratio < 1.0 / like_quiet;
   const analysis::BackgroundPower power =
-      analysis::background_power(measured, excitation, constant);
+      analysis::background_power(measured, excitation, constant, u_held);
   Bound bound{power.square, !measured.empty(), power.significant};
   for (const Measured& quiet : in_quiet(line)) {
     if (quiet.where == where) {
@@ -150,7 +197,7 @@ LineBounds::Bound LineBounds::bound_of_mains(const ChannelLines& channel,
                                              const analysis::UnresolvedLine& line,
                                              const StepOfChannel& where) const {
   Bound bound =
-      bound_of({channel.channel, LineKind::mains, line.line_hz, 0}, where, channel.amplitude);
+      bound_of({channel.channel, LineKind::mains, line.line_hz, 0}, where, channel.amplitude, {});
   if (bound.from_driven_steps) {
     return bound;
   }
@@ -175,7 +222,8 @@ std::optional<double> LineBounds::square_of_harmonic(const std::string& channel,
   return analysis::square_of_amplitude(amplitudes);
 }
 
-double LineBounds::settle_mains(const ChannelLines& channel, StepResult& result) const {
+LineBounds::SettledMains LineBounds::settle_mains(const ChannelLines& channel,
+                                                  StepResult& result) const {
   double u2 = 0.0;
   double beats = 0.0;
   for (const analysis::UnresolvedLine& line : channel.unresolved) {
@@ -195,23 +243,38 @@ double LineBounds::settle_mains(const ChannelLines& channel, StepResult& result)
       beats += analysis::largest_beat_rel(line, h, channel.amplitude, channel.duration_s);
     }
   }
-  add_half_repeating({.kind = ContributionKind::mains_hum, .subject = channel.subject}, channel, u2,
-                     result);
-  return beats;
+  add_half_repeating({.kind = ContributionKind::mains_hum, .subject = channel.subject},
+                     alike(channel, u2), result);
+  return {u2, beats};
 }
 
-void LineBounds::settle_background(const ChannelLines& channel, StepResult& result) const {
-  const bool beside_mains =
-      std::any_of(channel.unresolved.begin(), channel.unresolved.end(), is_of_mains);
-  if (beside_mains || !(channel.amplitude > 0.0)) {
-    return;
+double LineBounds::background_of(const ChannelLines& channel, const StepResult& result) const {
+  if (!(channel.amplitude > 0.0)) {
+    return 0.0;
   }
-  const Bound bound =
-      bound_of({channel.channel, LineKind::background, channel.frequency_hz, 0},
-               {channel.channel, result.step, result.repetition}, channel.amplitude);
-  if (bound.significant) {
-    add_half_repeating({.kind = ContributionKind::background, .subject = channel.subject}, channel,
-                       0.5 * bound.square / (channel.amplitude * channel.amplitude), result);
+  const Bound bound = bound_of({channel.channel, LineKind::background, channel.frequency_hz, 0},
+                               {channel.channel, result.step, result.repetition}, channel.amplitude,
+                               {noise_held(result) * channel.amplitude, channel.duration_s});
+  return bound.significant ? 0.5 * bound.square / (channel.amplitude * channel.amplitude) : 0.0;
+}
+
+void LineBounds::settle_backgrounds(std::span<const double> of_mains, StepResult& result) const {
+  std::vector<Variances> backgrounds;
+  Variances all;
+  for (std::size_t i = 0; i < result.lines.size(); ++i) {
+    const ChannelLines& channel = result.lines[i];
+    backgrounds.push_back(
+        alike(channel, std::max(0.0, background_of(channel, result) - of_mains[i])));
+    all.magnitude += backgrounds.back().magnitude;
+    all.phase += backgrounds.back().phase;
+  }
+  const Variances scatter = scatter_of(result);
+  const double of_magnitude = share_beyond(scatter.magnitude, all.magnitude);
+  const double of_phase = share_beyond(scatter.phase, all.phase);
+  for (std::size_t i = 0; i < backgrounds.size(); ++i) {
+    add_half_repeating({.kind = ContributionKind::background, .subject = result.lines[i].subject},
+                       {of_magnitude * backgrounds[i].magnitude, of_phase * backgrounds[i].phase},
+                       result);
   }
 }
 
@@ -230,19 +293,22 @@ void LineBounds::settle_harmonics(const ChannelLines& channel, StepResult& resul
         analysis::line_uncertainty(line, std::sqrt(*square), 1.0, channel.duration_s).u_phase_rad;
     u2 += u * u;
   }
-  add_row({.kind = ContributionKind::folded_harmonic, .subject = channel.subject}, channel, u2,
-          result);
+  add_row({.kind = ContributionKind::folded_harmonic, .subject = channel.subject},
+          alike(channel, u2), result);
 }
 
 StepResult LineBounds::settled(StepResult result) const {
   result.flags.erase(std::remove_if(result.flags.begin(), result.flags.end(), is_of_line),
                      result.flags.end());
   double beats = 0.0;
+  std::vector<double> of_mains;
   for (const ChannelLines& channel : result.lines) {
-    beats += settle_mains(channel, result);
-    settle_background(channel, result);
+    const SettledMains mains = settle_mains(channel, result);
+    beats += mains.beats;
+    of_mains.push_back(mains.u2);
     settle_harmonics(channel, result);
   }
+  settle_backgrounds(of_mains, result);
   if (result.change &&
       std::hypot(result.change->magnitude_rel, result.change->phase_rad) <= beats) {
     result.change.reset();

@@ -12,9 +12,10 @@
 // quiet time does, in this proportion. A line of the mains that no driven step shows apart is not
 // there where its kindred are not (low multiples of the same parity); else it keeps its flag,
 // whatever quiet time shows, for an amplifier may hum while it drives. So does a harmonic that
-// nothing shows. Apart from the mains, only what is significant counts. A line of the mains that
-// beats with the excitation is no change within the step: that flag goes where a significant line
-// may make as large a one.
+// nothing shows. Whatever else is at the frequency counts where it is significant, by what it
+// exceeds the mains and the scatter along the step's own record, which hold it too. A line of the
+// mains that beats with the excitation is no change within the step: that flag goes where a
+// significant line may make as large a one.
 //
 // Hum is a bounded sine: whatever its phase, the error is at most h L, which is 2 u for u = h / 2.
 // It may come with the same phase in every repetition (a generator locked to the mains, steps at a
@@ -27,6 +28,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -53,6 +55,7 @@ private:
     StepOfChannel where;
     analysis::MeasuredAmplitude line;
     double excitation = 0.0;
+    double duration_s = 0.0;
   };
   using MeasuredLines = std::map<Line, std::vector<Measured>>;
 
@@ -61,22 +64,31 @@ private:
     bool from_driven_steps = false;
     bool significant = false;
   };
+  struct HeldNoise {
+    double u = 0.0; // in the unit of the channel; 0: not known
+    double duration_s = 0.0;
+  };
 
   [[nodiscard]] bool is_new(const StepOfChannel& where, std::uint32_t attempt);
   [[nodiscard]] const std::vector<Measured>& driven(const Line& line) const;
   [[nodiscard]] const std::vector<Measured>& in_quiet(const Line& line) const;
   [[nodiscard]] std::optional<double> driven_to_quiet(const Line& line,
                                                       const StepOfChannel& where) const;
-  [[nodiscard]] Bound bound_of(const Line& line, const StepOfChannel& where,
-                               double excitation) const;
+  [[nodiscard]] Bound bound_of(const Line& line, const StepOfChannel& where, double excitation,
+                               const HeldNoise& held) const;
   [[nodiscard]] Bound bound_of_mains(const ChannelLines& channel,
                                      const analysis::UnresolvedLine& line,
                                      const StepOfChannel& where) const;
   [[nodiscard]] std::optional<double> square_of_harmonic(const std::string& channel,
                                                          int order) const;
-  // Returns by how much the value may seem to change along the step (largest_beat_rel()).
-  [[nodiscard]] double settle_mains(const ChannelLines& channel, StepResult& result) const;
-  void settle_background(const ChannelLines& channel, StepResult& result) const;
+  struct SettledMains {
+    double u2 = 0.0;    // relative
+    double beats = 0.0; // by how much the value may seem to change (largest_beat_rel())
+  };
+  [[nodiscard]] SettledMains settle_mains(const ChannelLines& channel, StepResult& result) const;
+  // u^2 of magnitude and phase, before anything of it is held already.
+  [[nodiscard]] double background_of(const ChannelLines& channel, const StepResult& result) const;
+  void settle_backgrounds(std::span<const double> of_mains, StepResult& result) const;
   void settle_harmonics(const ChannelLines& channel, StepResult& result) const;
 
   std::map<StepOfChannel, std::uint32_t> known_; // with the attempt

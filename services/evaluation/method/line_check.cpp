@@ -39,12 +39,8 @@ WantedLine wanted_line(const analysis::UnresolvedLine& line) {
                                       : WantedLine{LineKind::harmonic, 0.0, line.order};
 }
 
-bool is_of_mains(const WantedLine& line) {
-  return line.kind == LineKind::mains;
-}
-
-// What a step cannot tell from its excitation: lines of the mains with their kindred, and
-// harmonics; without the mains whatever else there may be at its frequency.
+// What a step cannot tell from its excitation: lines of the mains with their kindred, harmonics,
+// and whatever else there may be at its frequency.
 std::vector<WantedLine> wanted_of(double frequency_hz,
                                   const std::vector<analysis::UnresolvedLine>& unresolved) {
   std::vector<WantedLine> wanted;
@@ -54,9 +50,7 @@ std::vector<WantedLine> wanted_of(double frequency_hz,
       wanted.push_back({LineKind::mains, kindred_hz, 0});
     }
   }
-  if (std::none_of(wanted.begin(), wanted.end(), is_of_mains)) {
-    wanted.push_back({LineKind::background, frequency_hz, 0});
-  }
+  wanted.push_back({LineKind::background, frequency_hz, 0});
   return wanted;
 }
 

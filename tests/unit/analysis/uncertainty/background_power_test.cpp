@@ -43,6 +43,23 @@ TEST(BackgroundPower, NoiseIsSeldomSignificantAndCostsLittle) {
   }
 }
 
+// Noise of a width raises what is beside the frequency too; the step itself may show nothing of it.
+TEST(BackgroundPower, WhatExceedsTheNoiseThatIsHeldIsSignificant) {
+  const std::vector<MeasuredBackground> broad{{{6.0, 1.5}, 10.0}, {{5.0, 1.4}, 10.0}};
+  EXPECT_FALSE(background_power(broad, 10.0).significant);
+  EXPECT_FALSE(background_power(broad, 10.0, false, 2.0).significant);
+  const BackgroundPower beyond = background_power(broad, 10.0, false, 0.8);
+  EXPECT_TRUE(beyond.significant);
+  EXPECT_NEAR(beyond.square, (36.0 - 2.0 * 2.25) * (1.0 + 3.0 / 4.0), 0.01);
+  std::mt19937_64 random(8);
+  int significant = 0;
+  for (int run = 0; run < 2000; ++run) { // noise of 1 by Hann's window, as it is held
+    const auto noise = draw(0.0, 2, random);
+    significant += background_power(noise, 10.0, false, 1.0 / std::sqrt(1.5)).significant;
+  }
+  EXPECT_LE(significant, 4);
+}
+
 TEST(BackgroundPower, WhatManyStepsShowIsSignificant) {
   std::mt19937_64 random(6);
   for (int run = 0; run < 100; ++run) {

@@ -161,6 +161,40 @@ TEST(LineBounds, WhatOtherStepsShowAtTheFrequencyOfAStepIsItsBackground) {
   EXPECT_TRUE(settled.flags.empty());
 }
 
+// Both are the same noise about the frequency: the scatter along the record, what others show.
+TEST(LineBounds, ABackgroundCountsBeyondTheScatterAlongTheRecord) {
+  for (const double scatter : {0.0005, 0.0008}) {
+    StepResult step = result(1, {sensor(10.0)});
+    step.budget = {{.kind = analysis::ContributionKind::structure,
+                    .subject = "the ratio of the signals",
+                    .u_magnitude_rel = scatter,
+                    .u_phase_rad = 0.0}};
+    LineBounds bounds;
+    bounds.add(step);
+    add_others(bounds, {LineKind::background, 80.0, 0, {0.01, 1e-5}});
+    const StepResult settled = bounds.settled(step);
+    ASSERT_EQ(settled.budget.size(), 3U);
+    double magnitude = 0.0;
+    for (const analysis::Contribution& row : settled.budget) {
+      magnitude += row.u_magnitude_rel * row.u_magnitude_rel;
+    }
+    EXPECT_NEAR(std::sqrt(magnitude), std::max(scatter, 0.001 / std::sqrt(2.0)), 1e-6);
+    EXPECT_NEAR(total_phase(settled), 0.001 / std::sqrt(2.0), 1e-6); // nothing was held of it
+  }
+}
+
+TEST(LineBounds, ABackgroundBesideTheMainsCountsBeyondThem) {
+  LineBounds bounds;
+  add_others(bounds, {LineKind::mains, 50.0, 0, {0.01, 1e-5}});
+  StepResult step = beside(at_50_hz, 10.0);
+  step.lines.front().frequency_hz = 63.0; // where they all show 0.5
+  const StepResult settled = bounds.settled(step);
+  EXPECT_NEAR(total_phase(settled), 0.05 / std::sqrt(2.0), 1e-5);
+  ASSERT_EQ(settled.budget.size(), 4U);
+  EXPECT_EQ(settled.budget[0].kind, analysis::ContributionKind::mains_hum);
+  EXPECT_EQ(settled.budget[2].kind, analysis::ContributionKind::background);
+}
+
 TEST(LineBounds, NoiseIsNoBackground) {
   LineBounds bounds;
   const StepResult step = result(1, {sensor(10.0)});

@@ -46,8 +46,10 @@ TEST(LineCheck, MeasuresOnlyWhatAStepOfTheRecipeNeeds) {
   EXPECT_TRUE(lines_of(recipe_of({"80", "160"}), 80.0).measured.empty()); // a harmonic
   const ChannelLines lines = lines_of(recipe_of({"80", "50.1"}), 80.0);
   EXPECT_TRUE(lines.unresolved.empty());
-  ASSERT_EQ(lines.measured.size(), 2U); // 50 Hz and its kindred
+  ASSERT_EQ(lines.measured.size(), 3U); // 50 Hz and its kindred, and what else is at 50.1 Hz
   EXPECT_EQ(lines.measured[1].line_hz, 150.0);
+  EXPECT_EQ(lines.measured[2].kind, LineKind::background);
+  EXPECT_EQ(lines.measured[2].line_hz, 50.1);
   EXPECT_EQ(lines.measured[0].kind, LineKind::mains);
   EXPECT_NEAR(lines.measured[0].measured.amplitude, 0.02,
               4.0 * lines.measured[0].measured.u_component);
