@@ -95,7 +95,7 @@ private:
   bool receiver_on_this_host_ = false;
   std::chrono::microseconds queue_look_interval_;
   Clock::time_point queue_looked_at_;
-  bool queue_full_ = false;
+  std::size_t may_wait_bytes_ = 0; // there at the last look, and sent since
 };
 
 } // namespace dyncal::drivers::virtual_bench
