@@ -48,21 +48,23 @@ WatchedNetwork::join(const NetworkOptions& options, const std::string& program,
                      std::function<void(const std::string& why)> when_deaf) {
   // First, so that what comes meanwhile is noticed.
   std::string interface_name = interface_called(options.interface_name);
+  NetworkChanges changes;
   AddressesAtStart start{addresses_of(interface_name), {}};
   auto joined = join_network(options, program);
   if (!joined) {
     return fail(joined.error());
   }
   return std::unique_ptr<WatchedNetwork>(
-      new WatchedNetwork(std::move(*joined), std::move(interface_name), std::move(start), asked,
-                         std::move(when_deaf)));
+      new WatchedNetwork(std::move(*joined), std::move(interface_name), std::move(changes),
+                         std::move(start), asked, std::move(when_deaf)));
 }
 
 WatchedNetwork::WatchedNetwork(bus::Participant joined, std::string interface_name,
-                               AddressesAtStart start, const std::stop_token& asked,
+                               NetworkChanges changes, AddressesAtStart start,
+                               const std::stop_token& asked,
                                std::function<void(const std::string&)> when_deaf)
     : participant(std::move(joined)), announced_(participant.own_addresses()),
-      interface_(std::move(interface_name)), start_(std::move(start)),
+      interface_(std::move(interface_name)), changes_(std::move(changes)), start_(std::move(start)),
       when_deaf_(std::move(when_deaf)), asked_(asked, [this] { stop_.request_stop(); }),
       thread_([this](const std::stop_token& ended) { look(ended); }) {}
 
@@ -74,7 +76,7 @@ void WatchedNetwork::look(const std::stop_token& ended) {
   std::string why_before;
   auto since = Clock::now();
   while (!bell.wait_for(lock, ended, look_interval, [&] { return ended.stop_requested(); })) {
-    const Addresses now = addresses_of(interface_);
+    const Addresses now = changes_.any() ? addresses_of(interface_) : before;
     start_.announced = announced_->get();
     if (const std::string change = difference(before, now); !change.empty()) {
       spdlog::warn("addresses of this host: {}; this program is heard at {}, as it has announced",

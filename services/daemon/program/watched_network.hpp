@@ -1,7 +1,8 @@
 // A participant of the bus that notices when others can no longer hear it, because the addresses of
 // this host have changed (address_change.hpp).
 //
-// A thread looks at the addresses twice a second and logs what has changed. Where the program is
+// A thread looks at the addresses where the kernel announces a change, within half a second, and
+// logs what has changed. Where the program is
 // deaf for `settling_time` on end, it asks for the end of the program, which then fails, so that
 // the service manager starts it again with the addresses that there are (RestartSec=2 of its unit):
 // it is heard again within ten seconds. A run goes on then as after a restart of the program.
@@ -22,6 +23,7 @@
 #include <thread>
 
 #include "services/daemon/program/address_change.hpp"
+#include "services/daemon/program/network_changes.hpp"
 #include "services/daemon/program/program.hpp"
 
 namespace dyncal::services {
@@ -51,13 +53,15 @@ public:
   [[nodiscard]] Expected<void> outcome(Expected<void> served) const;
 
 private:
-  WatchedNetwork(bus::Participant joined, std::string interface_name, AddressesAtStart start,
-                 const std::stop_token& asked, std::function<void(const std::string&)> when_deaf);
+  WatchedNetwork(bus::Participant joined, std::string interface_name, NetworkChanges changes,
+                 AddressesAtStart start, const std::stop_token& asked,
+                 std::function<void(const std::string&)> when_deaf);
   void look(const std::stop_token& ended);
   void end(const std::string& why, const std::stop_token& ended);
 
   std::shared_ptr<const bus::OwnAddresses> announced_;
   std::string interface_; // the only one that counts; empty: all
+  NetworkChanges changes_;
   AddressesAtStart start_;
   std::function<void(const std::string&)> when_deaf_;
   std::stop_source stop_;

@@ -34,18 +34,28 @@ public:
   void turned() { manager_.turned(); }
   void stopping() { manager_.stopping(); }
 
+  // Figures that are served to nobody are left out: a main loop may report them a thousand times a
+  // second.
   void report(const wire::SourceStatus& status, std::uint64_t messages_written) {
-    services::report(status, messages_written, store_);
+    if (server_) {
+      services::report(status, messages_written, store_);
+    }
   }
-  void report(const AnalysisFigures& figures) { services::report(figures, store_); }
-  void report(const RecorderFigures& figures) { services::report(figures, store_); }
-  void report(const GuardFigures& figures) { services::report(figures, store_); }
-  void report(const WebFigures& figures) { services::report(figures, store_); }
+  template <class Figures>
+  void report(const Figures& figures) {
+    if (server_) {
+      services::report(figures, store_);
+    }
+  }
   void report_malformed_messages(std::uint64_t count) {
-    services::report_malformed_messages(count, store_);
+    if (server_) {
+      services::report_malformed_messages(count, store_);
+    }
   }
   void report_refused_packets(std::uint64_t count) {
-    services::report_refused_packets(count, store_);
+    if (server_) {
+      services::report_refused_packets(count, store_);
+    }
   }
 
 private:
