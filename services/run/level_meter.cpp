@@ -12,7 +12,6 @@
 namespace dyncal::services {
 namespace {
 
-constexpr double kept_s = 20.0;
 constexpr double max_drift = 1e-4; // of two clocks
 constexpr double min_hum_hz = 4.0; // a second is enough to hear it
 constexpr std::size_t max_samples = std::size_t{1} << 22U;
@@ -55,7 +54,7 @@ Expected<LevelMeter> LevelMeter::create(bus::Participant& participant, const std
   return LevelMeter(std::move(reference), std::move(*descriptions), std::move(*samples));
 }
 
-void LevelMeter::take(double bench_time_s) {
+void LevelMeter::take(double bench_time_s, double kept_s) {
   descriptions_.take([&](const wire::SourceDescription& description) {
     if (description.source() == reference_.source) {
       record_.describe(from_message(description));

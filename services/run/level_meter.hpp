@@ -41,8 +41,10 @@ public:
                                                    const std::string& bench, ChannelName reference,
                                                    const std::shared_ptr<bus::WakeUp>& wake_up);
 
-  // Takes what has come; `bench_time_s` is the bench's time now.
-  void take(double bench_time_s);
+  static constexpr double usually_kept_s = 20.0;
+  // Takes what has come; `bench_time_s` is the bench's time now. Keeps the newest samples, `kept_s`
+  // long: at least the windows that are asked for.
+  void take(double bench_time_s, double kept_s = usually_kept_s);
 
   // No level while there is no full window of samples from after `bench_time_s`.
   [[nodiscard]] Expected<LevelReading> level_after(double bench_time_s,

@@ -7,8 +7,8 @@
 namespace dyncal::services {
 namespace {
 
-// Memory is given back once this many forgotten samples lead the buffers.
-constexpr std::size_t forgotten_worth_moving = std::size_t{1} << 16U;
+// Memory is given back once this many forgotten samples lead the buffers, and half of them.
+constexpr std::size_t forgotten_worth_moving = std::size_t{1} << 12U;
 
 // More losses than this at a time are told apart no further: the oldest two become one.
 constexpr std::size_t max_gaps = std::size_t{1} << 16U;

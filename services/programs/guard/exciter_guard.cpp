@@ -16,6 +16,7 @@ using State = ExciterWatch::State;
 
 constexpr std::chrono::milliseconds look_interval{100};
 constexpr std::chrono::milliseconds status_write_limit{50}; // it is repeated
+constexpr std::chrono::seconds longest_between_steps{2};    // of a run that does not pause
 
 wire::ServiceStatus status_of(const ProgramIdentity& own, const GuardedExciter& exciter) {
   wire::ServiceStatus status;
@@ -202,8 +203,17 @@ void ExciterGuard::look_at_reference() {
                    clock_.now());
 }
 
+// A guard that starts with what was driven switches off the same as one that starts with a step
+// that has just ended, and the next step would be written anyway.
+bool ExciterGuard::is_between_steps() const {
+  DrivenRun driven = watch_.run();
+  driven.has_ended = false;
+  return watch_.run().is_conducted && driven == recorded_ &&
+         clock_.now() - watch_.heard_at() < longest_between_steps;
+}
+
 void ExciterGuard::keep_record() {
-  if (watch_.run() == recorded_) {
+  if (watch_.run() == recorded_ || is_between_steps()) {
     return;
   }
   recorded_ = watch_.run();

@@ -86,6 +86,7 @@ private:
   void take_messages();
   void act();
   void look_at_reference();
+  [[nodiscard]] bool is_between_steps() const;
   void keep_record();
   void report();
   void publish();

@@ -9,6 +9,8 @@
 
 #include "analysis/base/frequency.hpp"
 #include "analysis/base/phasor.hpp"
+#include "services/evaluation/record/channel_level.hpp"
+#include "services/run/level_settling.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -45,10 +47,18 @@ ReferenceWatch::ReferenceWatch(bus::Participant& participant, std::string bench,
     : participant_(participant), bench_(std::move(bench)), reference_(std::move(reference)),
       wake_up_(std::move(wake_up)) {
   for (const double frequency_hz : planned_hz) {
+    longest_window_s_ = std::max(longest_window_s_, level_window_s(frequency_hz));
     if (frequency_hz >= 1.0) { // it does not hum below
       planned_hz_.push_back(text_of(frequency_hz));
     }
   }
+}
+
+// No longer than what is asked for, since all of it is held in memory.
+double ReferenceWatch::kept_s(double frequency_hz) const {
+  const double window_s = frequency_hz > 0.0 ? level_window_s(frequency_hz) : 0.0;
+  return std::min(std::max(window_s, longest_window_s_) + level_slack_s,
+                  LevelMeter::usually_kept_s);
 }
 
 void ReferenceWatch::look(Phase phase, double frequency_hz, Instant heard, Instant now) {
@@ -66,7 +76,7 @@ void ReferenceWatch::look(Phase phase, double frequency_hz, Instant heard, Insta
     meter_.emplace(std::move(*meter));
     quiet_m_s2_.clear();
   }
-  meter_->take(seconds(now));
+  meter_->take(seconds(now), kept_s(frequency_hz));
   if (phase == Phase::quiet && phase_ == Phase::off) {
     phase = Phase::off; // of the run before, which may still go on
   }

@@ -61,6 +61,7 @@ public:
   [[nodiscard]] const std::string& still_driven() const { return still_driven_; }
 
 private:
+  [[nodiscard]] double kept_s(double frequency_hz) const;
   void enter(Phase phase, double frequency_hz, Instant now);
   void listen_for_hum();
   void measure(Instant heard, Instant now);
@@ -72,6 +73,7 @@ private:
   std::string bench_;
   ChannelName reference_;
   std::vector<std::string> planned_hz_;
+  double longest_window_s_ = 0.0; // of them
   std::shared_ptr<bus::WakeUp> wake_up_;
   std::optional<LevelMeter> meter_; // while it is watched
   Phase phase_ = Phase::unwatched;

@@ -208,6 +208,53 @@ TEST_F(ExciterGuardTest, SwitchesOffWhatWasDrivenBeforeItsHostWentDown) {
   EXPECT_TRUE(std::filesystem::is_empty(folder_.path())) << "nothing is driven any more";
 }
 
+TEST_F(ExciterGuardTest, WritesOnceAStepWhatIsDrivenAndThatTheRunHasPaused) {
+  const std::filesystem::path file = folder_.path() / "b1.json";
+  report(wire::MEASUREMENT_RUNNING);
+  for (int step = 0; step < 5; ++step) {
+    announce(wire::EXCITATION_STEADY);
+    pass(300ms);
+    report(wire::MEASUREMENT_RUNNING);
+    pass(300ms);
+    const auto written = std::filesystem::last_write_time(file);
+    announce(wire::EXCITATION_DONE);
+    pass(1500ms);
+    EXPECT_EQ(std::filesystem::last_write_time(file), written) << "step " << step;
+  }
+  const DrivenRecord record(folder_.path(), "b1", "192.0.2.7:5025");
+  EXPECT_FALSE(record.read().has_ended);
+  pass(1s); // it pauses
+  EXPECT_TRUE(record.read().has_ended);
+  announce(wire::EXCITATION_STEADY);
+  pass(300ms);
+  EXPECT_FALSE(record.read().has_ended);
+  announce(wire::EXCITATION_DONE);
+  report(wire::MEASUREMENT_DONE);
+  pass(300ms);
+  EXPECT_TRUE(record.read().has_ended) << "at once where the run is over";
+}
+
+// The power fails between two steps.
+TEST_F(ExciterGuardTest, SwitchesOffWhatWasAboutToBeDrivenWhenItsHostWentDown) {
+  report(wire::MEASUREMENT_RUNNING);
+  announce(wire::EXCITATION_STEADY);
+  pass(500ms);
+  report(wire::MEASUREMENT_RUNNING);
+  pass(300ms);
+  announce(wire::EXCITATION_DONE);
+  pass(500ms);
+  for (const bool is_on : {false, true}) {
+    output_.is_on = is_on;
+    guard_.reset();
+    excitation_ = conductor_.writer(bus::topics::excitation, "b2").value(); // what it wrote is gone
+    measurement_ = conductor_.writer(bus::topics::measurement, "b2").value();
+    guard_ = start();
+    pass(3500ms);
+    EXPECT_FALSE(output_.is_on);
+    EXPECT_EQ(tries_, is_on ? 1 : 0);
+  }
+}
+
 TEST_F(ExciterGuardTest, SaysWhatItLeavesOn) {
   announce(wire::EXCITATION_STEADY);
   pass(100ms);
