@@ -89,14 +89,22 @@ std::string about_full_queue(const HostView& host) {
   return "";
 }
 
-// Why packets of hosts come, but no answer.
-std::string about_no_answer(const HostView& host) {
+// Empty where trial connections show nothing of it.
+std::string about_bad_link(const HostView& host) {
   for (const auto& [address, tried] : host.tried) {
     if (tried.in_time + tried.late > 0 && tried.missed_part() > bad_link) {
       return fmt::format("the link is overloaded or bad: of {} trial connections to {} {} were "
                          "answered in time, {} late, the others not",
                          tried.begun, address, tried.in_time, tried.late);
     }
+  }
+  return "";
+}
+
+// Why packets of hosts come, but no answer.
+std::string about_no_answer(const HostView& host) {
+  if (std::string bad = about_bad_link(host); !bad.empty()) {
+    return bad;
   }
   if (host.tried.empty()) {
     return "what this host sends does not arrive there (a firewall, a way that is cut in one "
@@ -139,9 +147,12 @@ std::string about_others(const LaboratoryView& view, const HostView& host) {
     return fmt::format("{} answer{}, but no dyncal-analysis is among them: start one",
                        fmt::join(names, ", "), names.size() == 1 ? "s" : "");
   }
-  return fmt::format("nothing is heard in DDS domain {}{}: where the network carries no multicast, "
-                     "each program needs --peer with the address of the others",
-                     view.domain, view.announced_by_multicast ? ", by multicast neither" : "");
+  const std::string bad = about_bad_link(host); // to a peer that was named
+  return fmt::format("nothing is heard in DDS domain {}{}: {}", view.domain,
+                     view.announced_by_multicast ? ", by multicast neither" : "",
+                     bad.empty() ? "where the network carries no multicast, each program needs "
+                                   "--peer with the address of the others"
+                                 : bad);
 }
 
 } // namespace

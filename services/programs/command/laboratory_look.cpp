@@ -55,6 +55,17 @@ std::optional<doctor::AnnouncementListener> open_listener(const NetworkOptions& 
   return std::move(*listener);
 }
 
+// Those that announce programs; where there are none, as on an overloaded way to this host, those
+// that were named.
+std::set<std::string> silent_hosts(const LaboratoryLook& found, const NetworkOptions& network) {
+  auto hosts = doctor::announcing_hosts(found.view, found.host);
+  if (hosts.empty()) {
+    const auto peers = bus::resolve_peers(network.peers).value_or(std::vector<std::string>());
+    hosts.insert(peers.begin(), peers.end());
+  }
+  return hosts;
+}
+
 } // namespace
 
 Expected<void> look_at_laboratory(const NetworkOptions& network, double seconds,
@@ -78,7 +89,7 @@ Expected<void> look_at_laboratory(const NetworkOptions& network, double seconds,
   found.host.queues_after = doctor::send_queues();
   found.view.domain = network.domain;
   if (!doctor::analysis_is_heard(found.view)) {
-    found.host.tried = doctor::try_hosts(doctor::announcing_hosts(found.view, found.host), stop);
+    found.host.tried = doctor::try_hosts(silent_hosts(found, network), stop);
   }
   judge(found);
   return {};

@@ -64,6 +64,18 @@ TEST_F(UnheardAnalysis, TellsALinkThatIsOverloadedFromAWayThatIsCut) {
               AllOf(HasSubstr("a way that is cut in one direction"), Not(HasSubstr("overloaded"))));
 }
 
+TEST_F(UnheardAnalysis, TellsAnOverloadedWayBackFromWhichNothingComes) {
+  host_.tried["10.98.0.1"] = {.begun = 40, .in_time = 9, .late = 20}; // named with --peer
+  EXPECT_THAT(why(), AllOf(HasSubstr("nothing is heard in DDS domain 7, by multicast neither: the "
+                                     "link is overloaded or bad: of 40 trial connections to "
+                                     "10.98.0.1 9 were answered in time"),
+                           Not(HasSubstr("--peer"))));
+  for (const unsigned in_time : {0U, 40U}) { // it is off, or hears programs of its own alone
+    host_.tried["10.98.0.1"] = {.begun = 40, .in_time = in_time, .late = 0};
+    EXPECT_THAT(why(), AllOf(HasSubstr("--peer"), Not(HasSubstr("overloaded"))));
+  }
+}
+
 TEST_F(UnheardAnalysis, TellsAFirewallThatLetsTcpThrough) {
   view_.announced_from.insert("10.98.0.1");
   host_.tried["10.98.0.1"] = {.begun = 40, .in_time = 40, .late = 0};
