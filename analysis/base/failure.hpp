@@ -3,12 +3,13 @@
 // Each layer names its own codes (analysis/base/error.hpp, drivers/error.hpp,
 // services/base/error.hpp), so that a caller can tell from the type which layer failed. The
 // sentence is for the person at the bench: what, where (file, line, key, address) and what to do
-// about it. Functions return tl::expected and end in `return fail(code, sentence)`. Plain data, any
-// thread.
+// about it. Functions return tl::expected and end in `return fail(code, sentence)`; an error of a
+// function that they call they hand on by DYNCAL_TRY. Plain data, any thread.
 #pragma once
 
 #include <string>
 #include <tl/expected.hpp>
+#include <type_traits>
 #include <utility>
 
 namespace dyncal {
@@ -30,4 +31,48 @@ template <class Code>
   return tl::unexpected(std::move(failure));
 }
 
+// Whether no value is lost when only the error of such an outcome is looked at.
+template <class Outcome>
+inline constexpr bool may_lose_value =
+    std::is_lvalue_reference_v<Outcome> ||
+    std::is_void_v<typename std::remove_cvref_t<Outcome>::value_type>;
+
 } // namespace dyncal
+
+// Goes on with the value of a call, or returns its error as it is:
+//
+//   DYNCAL_TRY(const auto record, read_record(path)); // declares the value
+//   DYNCAL_TRY(settings.rate_hz, read_rate(text));    // assigns it
+//   DYNCAL_TRY(write_record(path, record));           // there is none
+//   DYNCAL_TRY(outcome);                              // what has a name keeps it, and its value
+//
+// A statement of its own in a function or lambda whose tl::expected has the same type of error.
+// Value and error are moved, those of an outcome with a name copied; what a function gives by
+// reference can be declared as one.
+//
+// Write the block (`if (!outcome) { ... return fail(...); }`) where the sentence needs more words,
+// or something is to be undone or said first. Give the outcome a name where the call has a lambda
+// of several statements: no debugger steps through the argument of a macro.
+// services/decisions/17 has what was refused.
+#define DYNCAL_TRY(first, ...)                                                                     \
+  DYNCAL_TRY_JOIN(DYNCAL_TRY_OUTCOME, __VA_OPT__(_VALUE))(first __VA_OPT__(, ) __VA_ARGS__)
+
+#define DYNCAL_TRY_JOIN(first, second) DYNCAL_TRY_JOIN_EXPANDED(first, second)
+#define DYNCAL_TRY_JOIN_EXPANDED(first, second) first##second
+
+#define DYNCAL_TRY_OUTCOME(call)                                                                   \
+  if (auto&& dyncal_outcome = call; !dyncal_outcome) {                                             \
+    static_assert(::dyncal::may_lose_value<decltype(dyncal_outcome)>,                              \
+                  "name the value: DYNCAL_TRY(const auto value, call)");                           \
+    return ::dyncal::fail(std::forward<decltype(dyncal_outcome)>(dyncal_outcome).error());         \
+  }
+
+#define DYNCAL_TRY_OUTCOME_VALUE(declaration, ...)                                                 \
+  DYNCAL_TRY_NAMED(DYNCAL_TRY_JOIN(dyncal_outcome_, __LINE__), declaration, __VA_ARGS__)
+
+#define DYNCAL_TRY_NAMED(outcome, declaration, ...)                                                \
+  auto&& outcome = __VA_ARGS__;                                                                    \
+  if (!outcome) {                                                                                  \
+    return ::dyncal::fail(std::forward<decltype(outcome)>(outcome).error());                       \
+  }                                                                                                \
+  declaration = *std::forward<decltype(outcome)>(outcome)

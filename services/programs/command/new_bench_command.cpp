@@ -121,9 +121,7 @@ Expected<std::string> write_files(BenchDraft draft, const std::filesystem::path&
   const bool own_dbc = draft.sensor == bench_draft::SensorKind::can && draft.dbc.empty();
   const std::string dbc_name = path.stem().string() + "-sensor.dbc";
   const std::filesystem::path dbc_path = path.parent_path() / dbc_name;
-  if (auto free = bench_draft::check_new_file(path); !free) {
-    return fail(free.error()); // before a DBC file is written for nothing
-  }
+  DYNCAL_TRY(bench_draft::check_new_file(path)); // before a DBC file is written for nothing
   if (own_dbc) {
     if (auto written = bench_draft::write_new_file(dbc_path, bench_draft::dbc_text()); !written) {
       return fail(written.error());
