@@ -53,7 +53,7 @@ inline constexpr bool may_lose_value =
 // Write the block (`if (!outcome) { ... return fail(...); }`) where the sentence needs more words,
 // or something is to be undone or said first. Give the outcome a name where the call has a lambda
 // of several statements: no debugger steps through the argument of a macro.
-// services/decisions/17 has what was refused.
+// services/decisions/17-errors-handed-on.md has what was refused.
 #define DYNCAL_TRY(first, ...)                                                                     \
   DYNCAL_TRY_JOIN(DYNCAL_TRY_OUTCOME, __VA_OPT__(_VALUE))(first __VA_OPT__(, ) __VA_ARGS__)
 

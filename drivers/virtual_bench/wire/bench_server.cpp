@@ -67,9 +67,7 @@ Expected<void> BenchServer::open() {
   auto generator = listen_tcp(settings_.generator_listen);
   auto unit = connect_udp(settings_.dau);
   for (const auto* opened : {&acs, &generator, &unit}) {
-    if (!*opened) {
-      return fail(opened->error());
-    }
+    DYNCAL_TRY(*opened);
   }
   if (triggered_) {
     if (auto done = triggered_->open(); !done) {
