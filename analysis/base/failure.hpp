@@ -9,7 +9,6 @@
 
 #include <string>
 #include <tl/expected.hpp>
-#include <type_traits>
 #include <utility>
 
 namespace dyncal {
@@ -31,19 +30,13 @@ template <class Code>
   return tl::unexpected(std::move(failure));
 }
 
-// Whether no value is lost when only the error of such an outcome is looked at.
-template <class Outcome>
-inline constexpr bool may_lose_value =
-    std::is_lvalue_reference_v<Outcome> ||
-    std::is_void_v<typename std::remove_cvref_t<Outcome>::value_type>;
-
 } // namespace dyncal
 
 // Goes on with the value of a call, or returns its error as it is:
 //
 //   DYNCAL_TRY(const auto record, read_record(path)); // declares the value
 //   DYNCAL_TRY(settings.rate_hz, read_rate(text));    // assigns it
-//   DYNCAL_TRY(write_record(path, record));           // there is none
+//   DYNCAL_TRY(write_record(path, record));           // has none, or it is not needed
 //   DYNCAL_TRY(outcome);                              // what has a name keeps it, and its value
 //
 // A statement of its own in a function or lambda whose tl::expected has the same type of error.
@@ -62,8 +55,6 @@ inline constexpr bool may_lose_value =
 
 #define DYNCAL_TRY_OUTCOME(call)                                                                   \
   if (auto&& dyncal_outcome = call; !dyncal_outcome) {                                             \
-    static_assert(::dyncal::may_lose_value<decltype(dyncal_outcome)>,                              \
-                  "name the value: DYNCAL_TRY(const auto value, call)");                           \
     return ::dyncal::fail(std::forward<decltype(dyncal_outcome)>(dyncal_outcome).error());         \
   }
 

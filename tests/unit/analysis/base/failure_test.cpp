@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -75,6 +76,16 @@ TEST(Try, TakesCallsWithoutAValue) {
   EXPECT_EQ(steps, 3);
   EXPECT_FALSE(both(false, true));
   EXPECT_EQ(steps, 3);
+}
+
+TEST(Try, DropsAValueThatIsNotNeeded) {
+  const auto checked = [](bool ok) -> Expected<std::string> {
+    DYNCAL_TRY(number(ok));
+    return "7 is one";
+  };
+  EXPECT_EQ(checked(true), "7 is one");
+  ASSERT_FALSE(checked(false));
+  EXPECT_EQ(checked(false).error().code, Code::refused);
 }
 
 TEST(Try, AssignsTheValueAndLeavesTheOldOneWhereThereIsAnError) {
