@@ -17,7 +17,7 @@ NO_CODE = re.compile(
     re.S | re.X,
 )
 OPENING = re.compile(
-    r"""\bnamespace \s* (?P<namespace>[\w:]*) \s* \{
+    r"""\bnamespace \s* (?P<namespace>(?:inline\s+|[\w:])*) \s* \{
       | \b(?:struct|class|enum|union) \s+ (?P<type>\w+) \s* (?:final\s*)? (?::(?!:)[^;{()]*)? \{
       | \{ | \}""",
     re.X,
