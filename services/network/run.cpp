@@ -229,6 +229,7 @@ void Run::take(const wire::Measurement& measurement, const Limits& limits, Insta
   announced = state_of(measurement.state());
   message = one_line(measurement.message());
   planned_utc_ns = measurement.planned_utc_ns();
+  answer = {measurement.answered_command(), one_line(measurement.answer())};
   const std::vector<Step> before = plan ? std::move(plan->steps) : std::vector<Step>{};
   plan = Plan{.method =
                   from_wire(measurement.method()).value_or(EvaluationMethod::sample_timestamping),

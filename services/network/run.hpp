@@ -81,6 +81,12 @@ struct AnalysisReport {
   bus::Clock::Instant heard{};
 };
 
+// Of the conductor, to a Command.
+struct CommandAnswer {
+  std::uint64_t command = 0; // its id; 0: none was answered
+  std::string refusal;       // empty: it is obeyed
+};
+
 struct Run {
   using Instant = bus::Clock::Instant;
   using ResultKey = std::tuple<std::uint32_t, std::uint32_t, std::string>; // step, repetition,
@@ -92,6 +98,7 @@ struct Run {
   std::string message;               // why it was aborted, or why nothing is excited for now
   std::int64_t planned_utc_ns = 0;   // 0: not known
   std::optional<Plan> plan;
+  CommandAnswer answer{}; // the last one
   std::optional<Excitation> now;
   std::optional<AnalysisReport> analysis;
   std::map<ResultKey, StepResult> results;

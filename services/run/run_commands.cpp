@@ -1,6 +1,9 @@
 #include "services/run/run_commands.hpp"
 
+#include <algorithm>
 #include <utility>
+
+#include <fmt/core.h>
 
 #include "services/contract/topics.hpp"
 
@@ -13,39 +16,80 @@ constexpr const char* conductor = "conductor";
 
 Expected<RunCommands> RunCommands::open(bus::Participant& participant, bus::Clock& clock,
                                         const std::string& bench, std::string run,
+                                        std::set<std::uint32_t> steps,
                                         const std::shared_ptr<bus::WakeUp>& wake_up) {
   auto reader = participant.reader(bus::topics::command, bench, wake_up);
   if (!reader) {
     return fail(reader.error());
   }
-  return RunCommands(clock, std::move(run), std::move(*reader));
+  return RunCommands(clock, std::move(run), std::move(steps), std::move(*reader));
 }
 
-void RunCommands::take() {
+void RunCommands::take(bool excites) {
   reader_.take([&](const wire::Command& command) {
     if (command.target() == conductor && command.run() == run_) {
-      obey(command);
+      answer(command, excites);
     }
   });
 }
 
-void RunCommands::obey(const wire::Command& command) {
+void RunCommands::answer(const wire::Command& command, bool excites) {
+  if (command.id() == 0) {
+    static_cast<void>(obey(command, excites)); // who gives no id knows no answer
+    return;
+  }
+  const auto known = std::find_if(known_.begin(), known_.end(),
+                                  [&](const Answer& one) { return one.command == command.id(); });
+  if (known == known_.end()) {
+    known_.push_back({command.id(), obey(command, excites)});
+    answers_.push_back(known_.back());
+  } else {
+    answers_.push_back(*known);
+  }
+  if (known_.size() > remembered) {
+    known_.pop_front();
+  }
+  if (answers_.size() > remembered) {
+    answers_.pop_front();
+  }
+}
+
+std::optional<RunCommands::Answer> RunCommands::take_answer() {
+  if (answers_.empty()) {
+    return std::nullopt;
+  }
+  Answer first = std::move(answers_.front());
+  answers_.pop_front();
+  return first;
+}
+
+std::string RunCommands::obey(const wire::Command& command, bool excites) {
   const std::string sender = command.sender().empty() ? "?" : command.sender();
+  if (!excites && command.kind() != wire::COMMAND_ABORT) {
+    return "the run excites no step any more";
+  }
   switch (command.kind()) {
   case wire::COMMAND_PAUSE:
     paused_by_ = sender;
-    break;
+    return "";
   case wire::COMMAND_CONTINUE:
     paused_by_.reset();
-    break;
+    return "";
   case wire::COMMAND_ABORT:
     aborted_by_ = sender;
-    break;
+    return "";
   case wire::COMMAND_REPEAT:
-    ask_for(command.step(), sender);
-    break;
-  default: // of a later contract
-    break;
+    if (!steps_.contains(command.step())) {
+      return fmt::format("the run's plan has no step {}", command.step());
+    }
+    if (command.id() == 0) {
+      ask_for(command.step(), sender);
+    } else {
+      repeats_.insert(command.step());
+    }
+    return "";
+  default:
+    return "its conductor does not know this command: it is of a later contract";
   }
 }
 

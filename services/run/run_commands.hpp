@@ -1,14 +1,16 @@
 // What others have asked the conductor of a run to do, by Command messages to the target
 // "conductor": pause, continue, end the run, excite a step once more.
 //
-// Commands of other runs and to other targets are left out. Who commands repeats it until its
-// effect shows, so each may come more than once, even after the effect: a step that has begun again
-// meanwhile is not asked for once more by the last of them. Commands of one sender for one step are
-// one command while they come within `repetition_limit` of each other. Belongs to one thread.
+// Commands of other runs and to other targets are left out. Who commands repeats it until it is
+// answered, so each may come more than once, even late: a command is obeyed once by its id, and
+// answered as often as it comes. Those without an id are of programs of the first contract: REPEAT
+// of one sender for one step is one command while it comes within `repetition_limit` of the last
+// time. The ids of the last `remembered` commands are known. Belongs to one thread.
 #pragma once
 
 #include <chrono>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <memory>
 #include <optional>
@@ -26,13 +28,23 @@ namespace dyncal::services {
 class RunCommands {
 public:
   static constexpr std::chrono::seconds repetition_limit{2};
+  static constexpr std::size_t remembered = 64;
 
-  // Fails (network) as readers do. `clock` outlives the object.
+  struct Answer {
+    std::uint64_t command = 0;
+    std::string refusal; // empty: it is obeyed
+  };
+
+  // `steps`: of the plan. Fails (network) as readers do. `clock` outlives the object.
   [[nodiscard]] static Expected<RunCommands> open(bus::Participant& participant, bus::Clock& clock,
                                                   const std::string& bench, std::string run,
+                                                  std::set<std::uint32_t> steps,
                                                   const std::shared_ptr<bus::WakeUp>& wake_up);
 
-  void take();
+  // `excites`: steps may still be excited.
+  void take(bool excites = true);
+  // To the commands that came, one after the other; nothing when all are given.
+  [[nodiscard]] std::optional<Answer> take_answer();
   // The sender of the command, "?" without a name.
   [[nodiscard]] const std::optional<std::string>& paused_by() const { return paused_by_; }
   [[nodiscard]] const std::optional<std::string>& aborted_by() const { return aborted_by_; }
@@ -40,14 +52,21 @@ public:
   [[nodiscard]] std::set<std::uint32_t> take_repeats();
 
 private:
-  RunCommands(bus::Clock& clock, std::string run, bus::Reader<wire::Command> reader)
-      : clock_(&clock), run_(std::move(run)), reader_(std::move(reader)) {}
-  void obey(const wire::Command& command);
+  RunCommands(bus::Clock& clock, std::string run, std::set<std::uint32_t> steps,
+              bus::Reader<wire::Command> reader)
+      : clock_(&clock), run_(std::move(run)), steps_(std::move(steps)), reader_(std::move(reader)) {
+  }
+  void answer(const wire::Command& command, bool excites);
+  // Returns why it does not.
+  [[nodiscard]] std::string obey(const wire::Command& command, bool excites);
   void ask_for(std::uint32_t step, const std::string& sender);
 
   bus::Clock* clock_;
   std::string run_;
+  std::set<std::uint32_t> steps_;
   bus::Reader<wire::Command> reader_;
+  std::deque<Answer> known_;   // of the last commands with an id
+  std::deque<Answer> answers_; // that are still to be given
   std::optional<std::string> paused_by_;
   std::optional<std::string> aborted_by_;
   std::set<std::uint32_t> repeats_;

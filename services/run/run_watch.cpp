@@ -1,5 +1,6 @@
 #include "services/run/run_watch.hpp"
 
+#include <set>
 #include <utility>
 
 #include <fmt/core.h>
@@ -22,7 +23,11 @@ Expected<std::unique_ptr<RunWatch>> RunWatch::open(bus::Participant& participant
   const std::string bench = measurement.bench().to_string();
   const std::string run = measurement.run().to_string();
   auto messages = RunMessages::open(participant, clock, bench, run, std::move(generator), wake_up);
-  auto commands = RunCommands::open(participant, clock, bench, run, wake_up);
+  std::set<std::uint32_t> steps;
+  for (const wire::PlannedStep& step : measurement.steps()) {
+    steps.insert(step.step());
+  }
+  auto commands = RunCommands::open(participant, clock, bench, run, std::move(steps), wake_up);
   if (auto error = first_error(messages, commands)) {
     return fail(*error);
   }
@@ -68,7 +73,13 @@ void RunWatch::look_without_hold() {
       notice(*sentence);
     }
   }
-  commands_.take();
+  commands_.take(measurement_.state() == wire::MEASUREMENT_PLANNED ||
+                 measurement_.state() == wire::MEASUREMENT_RUNNING);
+  while (const auto answer = commands_.take_answer()) {
+    measurement_.answered_command(answer->command);
+    measurement_.answer(answer->refusal);
+    set_state(measurement_.state(), measurement_.message());
+  }
   if (clock_.now() - measurement_published_ > alive_interval) {
     set_state(measurement_.state(), measurement_.message());
   }

@@ -95,7 +95,7 @@ TEST_F(WebActions, ConductARun) {
   const std::string run = started_run(1);
   ASSERT_NE(run, "");
   EXPECT_EQ(command("pause", run)["message"], "pause: done");
-  const json paused = visitor_->ask(address);
+  const json paused = bench_until([](const json& bench) { return bench["state"] == "paused"; });
   EXPECT_EQ(paused["state"], "paused") << paused;
   EXPECT_THAT(paused["message"], HasSubstr("dyncal-web"));
 
@@ -106,7 +106,7 @@ TEST_F(WebActions, ConductARun) {
 
   const json asked = command("repeat", run, 1);
   EXPECT_EQ(asked["status"], 200) << asked;
-  EXPECT_THAT(asked["message"], HasSubstr("asked to excite step 1 once more"));
+  EXPECT_THAT(asked["message"], HasSubstr("step 1 is excited once more"));
   const json unknown = command("repeat", run, 99);
   EXPECT_EQ(unknown["status"], 409);
   EXPECT_THAT(unknown["message"], HasSubstr("no step 99"));
@@ -173,7 +173,8 @@ TEST_F(WebActions, AbortARunWhichSwitchesTheOutputOff) {
   const json aborted = command("abort", run);
   EXPECT_EQ(aborted["message"], "abort: done") << aborted;
   EXPECT_TRUE(bench_.wait_for_output("OFF"));
-  EXPECT_EQ(visitor_->ask(address)["state"], "aborted");
+  const json ended = bench_until([](const json& bench) { return bench["state"] == "aborted"; });
+  EXPECT_EQ(ended["state"], "aborted") << ended;
   EXPECT_EQ(command("abort", run)["status"], 409) << "nobody conducts it any more";
   EXPECT_THAT(web_->errors(), HasSubstr("/api/bench/live/command of 127.0.0.1: 200"));
   EXPECT_THAT(web_->errors(), HasSubstr("/api/bench/live/command of 127.0.0.1: 409"));

@@ -1,6 +1,7 @@
 #include "services/programs/web/actions.hpp"
 
 #include <algorithm>
+#include <random>
 #include <vector>
 
 #include <fmt/core.h>
@@ -82,45 +83,23 @@ const live::Run* run_of(const live::Laboratory& laboratory, const wire::Command&
   return run != nullptr && run->name == command.run() ? run : nullptr;
 }
 
-// Nothing: the plan has no such step.
-std::optional<std::uint32_t> attempt_of(const live::Run& run, std::uint32_t number) {
-  if (run.plan) {
-    for (const live::Step& step : run.plan->steps) {
-      if (step.step == number) {
-        return step.attempt;
-      }
-    }
-  }
-  return std::nullopt;
-}
-
-struct ConductedRun {
-  std::string conductor;
-  std::optional<std::uint32_t> attempt; // of the commanded step; nothing: the plan does not have it
-};
-
-std::optional<ConductedRun> conducted_run(const live::Laboratory& laboratory,
-                                          const wire::Command& command, bus::Clock::Instant now) {
+// Nothing: no conductor runs it.
+std::optional<std::string> conductor_of(const live::Laboratory& laboratory,
+                                        const wire::Command& command, bus::Clock::Instant now) {
   const live::Run* run = run_of(laboratory, command);
   if (run == nullptr || run->is_over() || !run->conductor_heard || run->is_left_alone(now)) {
     return std::nullopt;
   }
-  return ConductedRun{.conductor = run->plan ? run->plan->conductor : "",
-                      .attempt = attempt_of(*run, command.step())};
+  return run->plan ? run->plan->conductor : "";
 }
 
-// What the command asked for can be seen.
-bool shows(const live::Run& run, const wire::Command& command, std::uint32_t attempt_before) {
-  switch (command.kind()) {
-  case wire::COMMAND_ABORT:
-    return run.is_over();
-  case wire::COMMAND_PAUSE:
-    return run.is_paused();
-  case wire::COMMAND_CONTINUE:
-    return !run.is_paused();
-  default:
-    return attempt_of(run, command.step()).value_or(0) > std::max(attempt_before, 1U);
+std::uint64_t drawn_id() {
+  std::random_device random;
+  std::uint64_t id = 0;
+  while (id == 0) { // which is none
+    id = (std::uint64_t{random()} << 32U) | random();
   }
+  return id;
 }
 
 } // namespace
@@ -213,47 +192,40 @@ void Actions::command(const std::string& bench, const Json& body, const httplib:
   message.run(run.get<std::string>());
   message.sender(options_.sender);
   message.step(has_step ? step.get<std::uint32_t>() : 0);
+  message.id(drawn_id());
   send(message, word, response);
 }
 
 void Actions::send(const wire::Command& command, const std::string& word,
                    httplib::Response& response) {
-  const auto run = cache_.look([&](const live::Laboratory& laboratory) {
-    return conducted_run(laboratory, command, clock_.now());
+  const auto conductor = cache_.look([&](const live::Laboratory& laboratory) {
+    return conductor_of(laboratory, command, clock_.now());
   });
-  if (!run) {
+  if (!conductor) {
     answer_action(false, "", "no conductor is running this run", response);
     return;
   }
-  const bool is_repeat = command.kind() == wire::COMMAND_REPEAT;
-  if (is_repeat && !run->attempt) {
-    answer_action(false, run->conductor,
-                  fmt::format("the run's plan has no step {}", command.step()), response);
-    return;
+  const auto refusal = repeat_until_answered(command);
+  if (!refusal) {
+    answer_action(
+        false, *conductor,
+        fmt::format("the conductor did not answer {} within {} s; one of dyncal 0.1 never "
+                    "does: look whether the effect shows",
+                    word, answer_limit.count()),
+        response);
+  } else if (!refusal->empty()) {
+    answer_action(false, *conductor, *refusal, response);
+  } else if (command.kind() == wire::COMMAND_REPEAT) {
+    answer_action(
+        true, *conductor,
+        fmt::format("step {} is excited once more after the planned steps", command.step()),
+        response);
+  } else {
+    answer_action(true, *conductor, word + ": done", response);
   }
-  switch (repeat_until_effect(command, run->attempt.value_or(0))) {
-  case Effect::shown:
-    answer_action(true, run->conductor, word + ": done", response);
-    return;
-  case Effect::heard:
-    if (is_repeat) {
-      answer_action(true, run->conductor,
-                    fmt::format("the conductor was asked to excite step {} once more; it does so "
-                                "after the planned steps",
-                                command.step()),
-                    response);
-      return;
-    }
-    break;
-  case Effect::none:
-    break;
-  }
-  answer_action(false, run->conductor,
-                fmt::format("{} had no effect within {} s", word, effect_limit.count()), response);
 }
 
-Actions::Effect Actions::repeat_until_effect(const wire::Command& command,
-                                             std::uint32_t attempt_before) {
+std::optional<std::string> Actions::repeat_until_answered(const wire::Command& command) {
   std::unique_lock lock(mutex_, std::defer_lock);
   if (command.kind() != wire::COMMAND_ABORT) { // which waits for no other command
     lock.lock();
@@ -261,25 +233,25 @@ Actions::Effect Actions::repeat_until_effect(const wire::Command& command,
   auto writer = participant_.writer(bus::topics::command, command.bench().to_string());
   if (!writer) {
     spdlog::error("{}", writer.error().message);
-    return Effect::none;
+    return std::nullopt;
   }
-  const auto end = clock_.now() + effect_limit;
-  bool was_heard = false;
+  const auto end = clock_.now() + answer_limit;
   while (clock_.now() < end) {
-    const auto outcome = writer->write(command, std::chrono::milliseconds(100));
-    was_heard = outcome == bus::WriteOutcome::written && writer->matched_readers() > 0;
+    writer->write(command, std::chrono::milliseconds(100));
     if (!router_.wait_until(clock_.now() + command_interval)) {
       break;
     }
-    const bool is_shown = cache_.look([&](const live::Laboratory& laboratory) {
+    auto refusal = cache_.look([&](const live::Laboratory& laboratory) {
       const live::Run* run = run_of(laboratory, command);
-      return run != nullptr && shows(*run, command, attempt_before);
+      return run != nullptr && run->answer.command == command.id()
+                 ? std::optional(run->answer.refusal)
+                 : std::nullopt;
     });
-    if (is_shown) {
-      return Effect::shown;
+    if (refusal) {
+      return refusal;
     }
   }
-  return was_heard ? Effect::heard : Effect::none;
+  return std::nullopt;
 }
 
 void Actions::list_bench_files(httplib::Response& response) const {

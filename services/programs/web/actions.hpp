@@ -1,8 +1,8 @@
 // What visitors with the token may do: command the conductor of a run, and start a run.
 //
-// A command is repeated until its effect shows, for `effect_limit` at most; the answer says what
-// came of it. A step that is to be excited once more may have to wait for the planned ones, longer
-// than any visitor: the answer says that the conductor has been asked. A run is a `dyncal run` of a
+// A command is repeated until the conductor has answered it, for `answer_limit` at most, and its
+// answer is the visitor's. A step that is to be excited once more may have to wait for the planned
+// ones, longer than any visitor. A run is a `dyncal run` of a
 // bench file of one folder, one at a time of a file; what it prints is in a file beside the runs.
 // It is asked to end when the daemon ends. Every request is logged with its outcome. Any thread;
 // one command at a time, but for an abort, which waits for none.
@@ -37,7 +37,7 @@ struct ActionOptions {
 
 class Actions {
 public:
-  static constexpr std::chrono::seconds effect_limit{3};
+  static constexpr std::chrono::seconds answer_limit{3};
   static constexpr std::chrono::milliseconds command_interval{250};
 
   // All outlive the object.
@@ -54,11 +54,9 @@ private:
                                   TokenUse use = TokenUse::ordinary);
   void command(const std::string& bench, const nlohmann::ordered_json& body,
                const httplib::Request& request, httplib::Response& response);
-  enum class Effect { none, heard, shown };
-
   void send(const wire::Command& command, const std::string& word, httplib::Response& response);
-  [[nodiscard]] Effect repeat_until_effect(const wire::Command& command,
-                                           std::uint32_t attempt_before);
+  // Returns why the conductor does not obey, "" where it does; nothing: it has not answered.
+  [[nodiscard]] std::optional<std::string> repeat_until_answered(const wire::Command& command);
   void start_run(const std::string& name, httplib::Response& response);
   void list_bench_files(httplib::Response& response) const;
 

@@ -18,7 +18,8 @@ protected:
   bus::Participant runner_ = network_.join("runner");
   bus::Participant other_ = network_.join("other");
   RunCommands commands_ =
-      RunCommands::open(runner_, clock_, "b", "r1", std::make_shared<bus::WakeUp>()).value();
+      RunCommands::open(runner_, clock_, "b", "r1", {1, 2, 4}, std::make_shared<bus::WakeUp>())
+          .value();
   bus::Writer<wire::Command> writer_ = other_.writer(bus::topics::command, "b").value();
 
   static wire::ServiceStatus status(wire::ArmState arm, wire::HealthState health = wire::HEALTH_OK,
@@ -102,27 +103,6 @@ TEST_F(RunOutlookTest, LeavesOutCommandsToOthersAndAboutOtherRuns) {
   command(wire::COMMAND_REPEAT, "r2", "conductor", 4);
   EXPECT_EQ(look(status(wire::ARM_ARMED)).kind, Kind::well);
   EXPECT_TRUE(commands_.take_repeats().empty());
-}
-
-TEST_F(RunOutlookTest, AStepThatIsAskedForAgainAndAgainIsAskedForOnce) {
-  command(wire::COMMAND_REPEAT, "r1", "conductor", 4);
-  command(wire::COMMAND_REPEAT, "r1", "conductor", 2);
-  command(wire::COMMAND_REPEAT, "r1", "conductor", 4);
-  EXPECT_EQ(commands_.take_repeats(), (std::set<std::uint32_t>{2, 4}));
-  EXPECT_TRUE(commands_.take_repeats().empty());
-}
-
-TEST_F(RunOutlookTest, ACommandThatIsStillRepeatedAsksForNoSecondRepeat) {
-  command(wire::COMMAND_REPEAT, "r1", "conductor", 4);
-  EXPECT_EQ(commands_.take_repeats().size(), 1U);
-  for (int i = 0; i < 10; ++i) { // the step is being excited meanwhile
-    clock_.advance(RunCommands::repetition_limit);
-    command(wire::COMMAND_REPEAT, "r1", "conductor", 4);
-  }
-  EXPECT_TRUE(commands_.take_repeats().empty());
-  clock_.advance(RunCommands::repetition_limit + 1ns);
-  command(wire::COMMAND_REPEAT, "r1", "conductor", 4);
-  EXPECT_EQ(commands_.take_repeats().size(), 1U) << "a wish of its own";
 }
 
 } // namespace
