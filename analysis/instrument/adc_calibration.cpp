@@ -258,36 +258,33 @@ points_of_one_amplitude(std::span<const AdcCalibrationPoint> sorted) {
 Expected<AdcResponse> adc_response_at(std::span<const AdcCalibrationPoint> all_points,
                                       double frequency_hz,
                                       std::optional<double> test_amplitude_vpp) {
-  auto points = of_one_amplitude(all_points, test_amplitude_vpp);
-  if (!points) {
-    return fail(points.error());
-  }
-  const double lowest = points->front().frequency_hz;
-  const double highest = points->back().frequency_hz;
+  DYNCAL_TRY(auto points, of_one_amplitude(all_points, test_amplitude_vpp));
+  const double lowest = points.front().frequency_hz;
+  const double highest = points.back().frequency_hz;
   if (!(frequency_hz >= lowest * (1.0 - 1e-9) && frequency_hz <= highest * (1.0 + 1e-9))) {
     return fail(ErrorCode::out_of_calibration,
                 number(frequency_hz) +
                     " Hz is outside the range in which the ADC was calibrated, " + number(lowest) +
                     " Hz to " + number(highest) + " Hz");
   }
-  if (points->size() == 1) {
-    const AdcCalibrationPoint& only = points->front();
+  if (points.size() == 1) {
+    const AdcCalibrationPoint& only = points.front();
     return AdcResponse{only.gain, only.phase_lag_rad, only.u_gain, only.u_phase_lag_rad};
   }
 
   const auto twice =
-      std::adjacent_find(points->begin(), points->end(), [](const auto& a, const auto& b) {
+      std::adjacent_find(points.begin(), points.end(), [](const auto& a, const auto& b) {
         return same(a.frequency_hz, b.frequency_hz);
       });
-  if (twice != points->end()) {
+  if (twice != points.end()) {
     return fail(ErrorCode::invalid_argument,
                 "the ADC calibration has " + number(twice->frequency_hz) +
                     " Hz twice: first make one point of repeated measurements");
   }
-  const std::vector<bool> ambiguous = unwrap(*points);
-  const FrontEnd model = approximate(*points);
+  const std::vector<bool> ambiguous = unwrap(points);
+  const FrontEnd model = approximate(points);
   std::vector<double> f, gains, lags, u_gains, u_lags;
-  for (const AdcCalibrationPoint& point : *points) {
+  for (const AdcCalibrationPoint& point : points) {
     f.push_back(point.frequency_hz);
     gains.push_back(std::log(point.gain) - model.log_gain_at(point.frequency_hz));
     lags.push_back(point.phase_lag_rad - model.lag_at(point.frequency_hz));

@@ -155,18 +155,15 @@ Expected<ReferenceResponse> response_on(const Curve& curve, double frequency_hz)
 
 Expected<ReferenceResponse> reference_response_at(std::span<const ReferenceCalibrationPoint> points,
                                                   double frequency_hz, double level_m_s2) {
-  const auto curves = curves_of_levels(points);
-  if (!curves) {
-    return fail(curves.error());
+  DYNCAL_TRY(const auto curves, curves_of_levels(points));
+  if (curves.size() == 1) {
+    return response_on(curves.begin()->second, frequency_hz);
   }
-  if (curves->size() == 1) {
-    return response_on(curves->begin()->second, frequency_hz);
-  }
-  const auto above = curves->lower_bound(level_m_s2);
-  if (above == curves->end() || (above == curves->begin() && above->first > level_m_s2)) {
+  const auto above = curves.lower_bound(level_m_s2);
+  if (above == curves.end() || (above == curves.begin() && above->first > level_m_s2)) {
     return fail(ErrorCode::out_of_calibration,
-                "the reference was calibrated from " + number(curves->begin()->first) + " to " +
-                    number(curves->rbegin()->first) + " m/s^2, not at " + number(level_m_s2) +
+                "the reference was calibrated from " + number(curves.begin()->first) + " to " +
+                    number(curves.rbegin()->first) + " m/s^2, not at " + number(level_m_s2) +
                     " m/s^2");
   }
   const auto upper = response_on(above->second, frequency_hz);

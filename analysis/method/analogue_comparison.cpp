@@ -31,13 +31,10 @@ Budget systematic_rows(double w, const ReferenceResponse& response,
 } // namespace
 
 Expected<ComparisonResult> evaluate_analogue(const AnalogueInput& input) {
-  auto system = fit_channels_of_one_clock(input.frequency, input.frequency_search_rel,
-                                          input.stamps_ns, input.reference, input.dut);
-  if (!system) {
-    return fail(system.error());
-  }
-  const BlocksOfClock blocks = learn_from_blocks(*system);
-  const RecordedChannel& reference = system->pilot;
+  DYNCAL_TRY(auto system, fit_channels_of_one_clock(input.frequency, input.frequency_search_rel,
+                                                    input.stamps_ns, input.reference, input.dut));
+  const BlocksOfClock blocks = learn_from_blocks(system);
+  const RecordedChannel& reference = system.pilot;
   const double w = reference.result.frequency.angular();
   const std::complex<double> link = std::polar(1.0, w * input.channel_delay_s) /
                                     reference.phasor() * input.reference_response.phasor();
@@ -46,8 +43,8 @@ Expected<ComparisonResult> evaluate_analogue(const AnalogueInput& input) {
   ComparisonResult result{reference.result, {}, {}};
   add_knock(reference, result.findings);
   const StampBeat beat = stamp_beat(input.frequency, input.stamps_ns);
-  for (std::size_t i = 0; i < system->others.size(); ++i) {
-    const RecordedChannel& dut = system->others[i];
+  for (std::size_t i = 0; i < system.others.size(); ++i) {
+    const RecordedChannel& dut = system.others[i];
     Budget budget;
     add_sensor_rows(budget, dut, 0.0);
     budget.append(noise);
@@ -65,13 +62,10 @@ Expected<ComparisonResult> evaluate_analogue(const AnalogueInput& input) {
 }
 
 Expected<ComparisonResult> evaluate_absolute_time(const AbsoluteTimeInput& input) {
-  auto acs = fit_channels_of_one_clock(input.frequency, input.frequency_search_rel,
-                                       input.reference_stamps_ns, input.reference, {});
-  if (!acs) {
-    return fail(acs.error());
-  }
-  const BlocksOfClock blocks = learn_from_blocks(*acs);
-  const RecordedChannel& reference = acs->pilot;
+  DYNCAL_TRY(auto acs, fit_channels_of_one_clock(input.frequency, input.frequency_search_rel,
+                                                 input.reference_stamps_ns, input.reference, {}));
+  const BlocksOfClock blocks = learn_from_blocks(acs);
+  const RecordedChannel& reference = acs.pilot;
   ComparisonResult result{reference.result, {}, {}};
   add_knock(reference, result.findings);
   const double w = reference.result.frequency.angular();
@@ -88,20 +82,18 @@ Expected<ComparisonResult> evaluate_absolute_time(const AbsoluteTimeInput& input
       .stamp_jitter_s = input.systematic.stamp_jitter_s,
       .stamp_beat = stamp_beat(input.frequency, input.dut_stamps_ns, input.systematic.dut_tick_s)};
   for (const ChannelSamples& channel : input.dut) {
-    auto point = evaluate_own_clock_channel(reference.result, input.reference_stamps_ns.front(),
-                                            {.link = link,
-                                             .noise = noise,
-                                             .systematic = systematic,
-                                             .reference = reference,
-                                             .sync = std::nullopt,
-                                             .denominator = blocks.pilot,
-                                             .alignment = {},
-                                             .noise_unknown = reference.noise_unknown},
-                                            input.dut_stamps_ns, channel, clock, result.findings);
-    if (!point) {
-      return fail(point.error());
-    }
-    result.points.push_back(std::move(*point));
+    DYNCAL_TRY(auto point,
+               evaluate_own_clock_channel(reference.result, input.reference_stamps_ns.front(),
+                                          {.link = link,
+                                           .noise = noise,
+                                           .systematic = systematic,
+                                           .reference = reference,
+                                           .sync = std::nullopt,
+                                           .denominator = blocks.pilot,
+                                           .alignment = {},
+                                           .noise_unknown = reference.noise_unknown},
+                                          input.dut_stamps_ns, channel, clock, result.findings));
+    result.points.push_back(std::move(point));
   }
   return result;
 }

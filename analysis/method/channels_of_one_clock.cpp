@@ -157,11 +157,8 @@ Expected<std::vector<RecordedChannel>> fit_channels(const Frequency& frequency,
                                                     double u_frequency_hz,
                                                     std::span<const std::int64_t> stamps_ns,
                                                     std::span<const ChannelSamples> all) {
-  const auto channels = values_of(all, stamps_ns);
-  if (!channels) {
-    return fail(channels.error());
-  }
-  auto fits = fit_sine_beside_disturbances(frequency, middle_ns(stamps_ns), stamps_ns, *channels,
+  DYNCAL_TRY(const auto channels, values_of(all, stamps_ns));
+  auto fits = fit_sine_beside_disturbances(frequency, middle_ns(stamps_ns), stamps_ns, channels,
                                            all.front().mains_hz);
   if (!fits) {
     return of_channel(names_of(all), fits.error());
@@ -174,12 +171,9 @@ Expected<std::vector<RecordedChannel>>
 fit_channels_of_pilot(const Frequency& nominal, double frequency_search_rel,
                       std::span<const std::int64_t> stamps_ns,
                       std::span<const ChannelSamples> all) {
-  const auto channels = values_of(all, stamps_ns);
-  if (!channels) {
-    return fail(channels.error());
-  }
+  DYNCAL_TRY(const auto channels, values_of(all, stamps_ns));
   auto pilot = fit_pilot_beside_disturbances(nominal, frequency_search_rel, middle_ns(stamps_ns),
-                                             stamps_ns, *channels, all.front().mains_hz);
+                                             stamps_ns, channels, all.front().mains_hz);
   if (!pilot) {
     return of_channel(all.front().name, pilot.error());
   }
@@ -198,29 +192,22 @@ Expected<ChannelsOfOneClock> fit_channels_of_one_clock(const Frequency& nominal,
                                                        std::span<const ChannelSamples> others) {
   std::vector<ChannelSamples> all{pilot};
   all.insert(all.end(), others.begin(), others.end());
-  auto recorded = frequency_search_rel > 0.0
-                      ? fit_channels_of_pilot(nominal, frequency_search_rel, stamps_ns, all)
-                      : fit_channels(nominal, 0.0, stamps_ns, all);
-  if (!recorded) {
-    return fail(recorded.error());
-  }
-  if (const auto excited = require_excitation(recorded->front()); !excited) {
-    return fail(excited.error());
-  }
-  ChannelsOfOneClock system{std::move(recorded->front()), {}};
-  system.others.assign(std::make_move_iterator(recorded->begin() + 1),
-                       std::make_move_iterator(recorded->end()));
+  DYNCAL_TRY(auto recorded,
+             frequency_search_rel > 0.0
+                 ? fit_channels_of_pilot(nominal, frequency_search_rel, stamps_ns, all)
+                 : fit_channels(nominal, 0.0, stamps_ns, all));
+  DYNCAL_TRY(require_excitation(recorded.front()));
+  ChannelsOfOneClock system{std::move(recorded.front()), {}};
+  system.others.assign(std::make_move_iterator(recorded.begin() + 1),
+                       std::make_move_iterator(recorded.end()));
   return system;
 }
 
 Expected<RecordedChannel> fit_weak_channel(const Frequency& frequency,
                                            std::span<const std::int64_t> stamps_ns,
                                            const ChannelSamples& channel) {
-  auto recorded = fit_channels(frequency, 0.0, stamps_ns, std::span(&channel, 1));
-  if (!recorded) {
-    return fail(recorded.error());
-  }
-  return std::move(recorded->front());
+  DYNCAL_TRY(auto recorded, fit_channels(frequency, 0.0, stamps_ns, std::span(&channel, 1)));
+  return std::move(recorded.front());
 }
 
 Expected<void> require_excitation(const RecordedChannel& recorded) {

@@ -49,24 +49,21 @@ evaluate_own_clock_channel(const ChannelFit& pilot, std::int64_t pilot_first_ns,
                            const OwnClockLink& link, std::span<const std::int64_t> dut_stamps_ns,
                            const ChannelSamples& dut, const OwnClockUncertainty& clock,
                            StepFindings& findings) {
-  auto sensor = fit_weak_channel(pilot.frequency, dut_stamps_ns, dut);
-  if (!sensor) {
-    return fail(sensor.error());
-  }
+  DYNCAL_TRY(auto sensor, fit_weak_channel(pilot.frequency, dut_stamps_ns, dut));
   const std::optional<RatioInBlocks> ratio = ratio_in_blocks(
-      *sensor, link, static_cast<double>(dut_stamps_ns.front() - pilot_first_ns) * 1e-9);
+      sensor, link, static_cast<double>(dut_stamps_ns.front() - pilot_first_ns) * 1e-9);
   const double turns =
-      pilot.frequency.reduced_turns(sensor->result.phase_origin_ns - pilot.phase_origin_ns);
+      pilot.frequency.reduced_turns(sensor.result.phase_origin_ns - pilot.phase_origin_ns);
   Budget budget;
-  add_sensor_rows(budget, *sensor, clock.stamp_jitter_s);
+  add_sensor_rows(budget, sensor, clock.stamp_jitter_s);
   add_jitter(budget, pilot.frequency.angular(), clock.stamp_jitter_s,
-             static_cast<double>(sensor->result.fit.samples));
+             static_cast<double>(sensor.result.fit.samples));
   budget.append(link.noise);
   add_ratio_rows(budget, ratio, budget.u_magnitude_rel(), budget.u_phase_rad());
   // The middles of the two records are apart: an error of the frequency turns one against the
   // other.
   const double distance_s =
-      static_cast<double>(sensor->result.phase_origin_ns - pilot.phase_origin_ns) * 1e-9;
+      static_cast<double>(sensor.result.phase_origin_ns - pilot.phase_origin_ns) * 1e-9;
   budget.add({.kind = ContributionKind::record_frequency,
               .degrees_of_freedom = pilot.fit.degrees_of_freedom,
               .u_phase_rad = 2.0 * std::numbers::pi * pilot.u_frequency_hz * std::abs(distance_s)});
@@ -74,10 +71,10 @@ evaluate_own_clock_channel(const ChannelFit& pilot, std::int64_t pilot_first_ns,
               .u_phase_rad = pilot.frequency.angular() * clock.clock_offset_s});
   add_beat_rows(budget, "the sensor's", pilot.frequency.angular(), clock.stamp_beat, {});
   budget.append(link.systematic);
-  findings.points.push_back(findings_of(ratio, link.noise_unknown || sensor->noise_unknown));
-  add_knock(*sensor, findings);
+  findings.points.push_back(findings_of(ratio, link.noise_unknown || sensor.noise_unknown));
+  add_knock(sensor, findings);
   return transfer_point(
-      *sensor, link.link * factor_of(ratio) * std::polar(1.0, -2.0 * std::numbers::pi * turns),
+      sensor, link.link * factor_of(ratio) * std::polar(1.0, -2.0 * std::numbers::pi * turns),
       budget);
 }
 

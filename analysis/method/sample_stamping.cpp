@@ -150,24 +150,22 @@ Expected<void> add_own_clock_points(const SampleStampingInput& input, const Reco
   const StampBeat dut_beat =
       stamp_beat(input.frequency, input.dut_stamps_ns, input.systematic.dut_tick_s);
   for (const ChannelSamples& dut : input.dut) {
-    auto point = evaluate_own_clock_channel(pilot.result, input.dau_stamps_ns.front(),
-                                            {.link = with.link,
-                                             .noise = with.noise,
-                                             .systematic = with.systematic,
-                                             .reference = with.reference,
-                                             .sync = dau_blocks.pilot,
-                                             .denominator = with.blocks,
-                                             .alignment = with.alignment,
-                                             .noise_unknown = with.noise_unknown},
-                                            input.dut_stamps_ns, dut,
-                                            {.clock_offset_s = input.systematic.clock_offset_s,
-                                             .stamp_jitter_s = 0.0,
-                                             .stamp_beat = dut_beat},
-                                            result.findings);
-    if (!point) {
-      return fail(point.error());
-    }
-    result.points.push_back(std::move(*point));
+    DYNCAL_TRY(auto point,
+               evaluate_own_clock_channel(pilot.result, input.dau_stamps_ns.front(),
+                                          {.link = with.link,
+                                           .noise = with.noise,
+                                           .systematic = with.systematic,
+                                           .reference = with.reference,
+                                           .sync = dau_blocks.pilot,
+                                           .denominator = with.blocks,
+                                           .alignment = with.alignment,
+                                           .noise_unknown = with.noise_unknown},
+                                          input.dut_stamps_ns, dut,
+                                          {.clock_offset_s = input.systematic.clock_offset_s,
+                                           .stamp_jitter_s = 0.0,
+                                           .stamp_beat = dut_beat},
+                                          result.findings));
+    result.points.push_back(std::move(point));
   }
   return {};
 }
@@ -175,52 +173,43 @@ Expected<void> add_own_clock_points(const SampleStampingInput& input, const Reco
 } // namespace
 
 Expected<SampleStampingResult> evaluate_sample_stamping(const SampleStampingInput& input) {
-  auto acs =
-      fit_channels_of_one_clock(input.frequency, input.frequency_search_rel, input.acs_stamps_ns,
-                                input.sync_acs, std::span(&input.reference, 1));
-  if (!acs) {
-    return fail(acs.error());
-  }
+  DYNCAL_TRY(auto acs, fit_channels_of_one_clock(input.frequency, input.frequency_search_rel,
+                                                 input.acs_stamps_ns, input.sync_acs,
+                                                 std::span(&input.reference, 1)));
   const bool own_clock = !input.dut_stamps_ns.empty();
-  auto dau = fit_channels_of_one_clock(
-      input.frequency, input.frequency_search_rel, input.dau_stamps_ns, input.sync_dau,
-      own_clock ? std::span<const ChannelSamples>{} : std::span<const ChannelSamples>(input.dut));
-  if (!dau) {
-    return fail(dau.error());
-  }
-  const RecordedChannel& reference = acs->others.front();
-  if (const auto excited = require_excitation(reference); !excited) {
-    return fail(excited.error());
-  }
+  DYNCAL_TRY(auto dau,
+             fit_channels_of_one_clock(input.frequency, input.frequency_search_rel,
+                                       input.dau_stamps_ns, input.sync_dau,
+                                       own_clock ? std::span<const ChannelSamples>{}
+                                                 : std::span<const ChannelSamples>(input.dut)));
+  const RecordedChannel& reference = acs.others.front();
+  DYNCAL_TRY(require_excitation(reference));
 
-  const BlocksOfClock acs_blocks = learn_from_blocks(*acs);
-  const BlocksOfClock dau_blocks = learn_from_blocks(*dau);
+  const BlocksOfClock acs_blocks = learn_from_blocks(acs);
+  const BlocksOfClock dau_blocks = learn_from_blocks(dau);
 
-  const std::complex<double> link = link_of(input, *acs, dau->pilot);
-  const Budget noise = common_noise(input, *acs, dau->pilot);
+  const std::complex<double> link = link_of(input, acs, dau.pilot);
+  const Budget noise = common_noise(input, acs, dau.pilot);
   const StampBeat dau_beat =
       stamp_beat(input.frequency, input.dau_stamps_ns, input.systematic.dau_tick_s);
-  const Budget systematic = systematic_rows(input, *acs, dau->pilot, dau_beat);
+  const Budget systematic = systematic_rows(input, acs, dau.pilot, dau_beat);
   const Comparison with{.link = link,
                         .noise = noise,
                         .systematic = systematic,
                         .reference = reference,
                         .blocks = acs_blocks.beside_pilot(0),
-                        .alignment = alignment_of(input, *acs, dau->pilot),
+                        .alignment = alignment_of(input, acs, dau.pilot),
                         .noise_unknown = reference.noise_unknown,
                         .stamp_beat = dau_beat};
-  SampleStampingResult result{reference.result, acs->pilot.result, dau->pilot.result, {}, {}};
+  SampleStampingResult result{reference.result, acs.pilot.result, dau.pilot.result, {}, {}};
   add_knock(reference, result.findings);
-  for (std::size_t i = 0; i < dau->others.size(); ++i) {
-    result.points.push_back(evaluate_channel(input, dau->others[i], dau->pilot,
+  for (std::size_t i = 0; i < dau.others.size(); ++i) {
+    result.points.push_back(evaluate_channel(input, dau.others[i], dau.pilot,
                                              dau_blocks.beside_pilot(i), with, result.findings));
-    add_knock(dau->others[i], result.findings);
+    add_knock(dau.others[i], result.findings);
   }
   if (own_clock) {
-    if (const auto added = add_own_clock_points(input, dau->pilot, dau_blocks, with, result);
-        !added) {
-      return fail(added.error());
-    }
+    DYNCAL_TRY(add_own_clock_points(input, dau.pilot, dau_blocks, with, result));
   }
   return result;
 }

@@ -228,11 +228,7 @@ Expected<SeriesChannelResult> evaluate_channel(const ShotEvaluation& shots, std:
   if (agreement) {
     turn_to_own_rate(*agreement, channel.shots);
   }
-  auto mean = mean_of_repetitions(channel.shots);
-  if (!mean) {
-    return fail(mean.error());
-  }
-  channel.mean = std::move(*mean);
+  DYNCAL_TRY(channel.mean, mean_of_repetitions(channel.shots));
   return channel;
 }
 
@@ -259,23 +255,15 @@ Expected<SeriesStampingResult> evaluate_series_stamping(const SeriesStampingInpu
   if (const auto problem = problem_with(input)) {
     return fail(*problem);
   }
-  const auto acs =
-      fit_channels_of_one_clock(input.frequency, input.frequency_search_rel, input.acs_stamps_ns,
-                                input.sync_acs, std::span(&input.reference, 1));
-  if (!acs) {
-    return fail(acs.error());
-  }
-  const RecordedChannel& reference = acs->others.front();
-  if (const auto excited = require_excitation(reference); !excited) {
-    return fail(excited.error());
-  }
-  const ChannelFit& sync = acs->pilot.result;
+  DYNCAL_TRY(const auto acs, fit_channels_of_one_clock(input.frequency, input.frequency_search_rel,
+                                                       input.acs_stamps_ns, input.sync_acs,
+                                                       std::span(&input.reference, 1)));
+  const RecordedChannel& reference = acs.others.front();
+  DYNCAL_TRY(require_excitation(reference));
+  const ChannelFit& sync = acs.pilot.result;
   const double w = sync.frequency.angular();
 
-  const auto triggers = fit_triggers(input, sync.frequency);
-  if (!triggers) {
-    return fail(triggers.error());
-  }
+  DYNCAL_TRY(const auto triggers, fit_triggers(input, sync.frequency));
   const EquidistantAxis axis(1.0 / input.nominal_rate_hz);
   const std::vector<std::int64_t> stamps =
       axis.stamps_ns(input.shots.front().series.front().size());
@@ -286,31 +274,25 @@ Expected<SeriesStampingResult> evaluate_series_stamping(const SeriesStampingInpu
   if (!pilot) {
     return fail(of_channel(input.channels.front(), pilot.error()));
   }
-  const auto rate = real_rate_from_apparent_frequency(
-      input.nominal_rate_hz, sync.frequency.hz(), sync.u_frequency_hz,
-      axis.hz(pilot->frequency.hz()), axis.hz(pilot->u_frequency_hz));
-  if (!rate) {
-    return fail(rate.error());
-  }
+  DYNCAL_TRY(const auto rate, real_rate_from_apparent_frequency(
+                                  input.nominal_rate_hz, sync.frequency.hz(), sync.u_frequency_hz,
+                                  axis.hz(pilot->frequency.hz()), axis.hz(pilot->u_frequency_hz)));
 
   // Everything that is the same for all shots: the reference's phasor against sync, and the way
   // from trigger point to sample 0.
   const std::complex<double> link =
-      unit_phasor(acs->pilot.phasor()) / reference.phasor() * input.reference_response.phasor() *
+      unit_phasor(acs.pilot.phasor()) / reference.phasor() * input.reference_response.phasor() *
       std::polar(1.0, -w * (input.dso_delay_s + input.start_latency_s + input.reference_delay_s));
-  const Budget common = common_budget(input, *acs, w,
+  const Budget common = common_budget(input, acs, w,
                                       std::numbers::pi * 1e-9 * static_cast<double>(stamps.back()) *
                                           pilot->u_frequency_hz);
-  SeriesStampingResult result{reference.result, sync, {}, {}, *rate, {}};
-  add_trigger_phases(*triggers, result);
-  const ShotEvaluation shots{input, pilot->frequency,          stamps, *triggers,
+  SeriesStampingResult result{reference.result, sync, {}, {}, rate, {}};
+  add_trigger_phases(triggers, result);
+  const ShotEvaluation shots{input, pilot->frequency,          stamps, triggers,
                              link,  w * input.start_scatter_s, common};
   for (std::size_t c = 0; c < input.channels.size(); ++c) {
-    auto channel = evaluate_channel(shots, c);
-    if (!channel) {
-      return fail(channel.error());
-    }
-    result.channels.push_back(std::move(*channel));
+    DYNCAL_TRY(auto channel, evaluate_channel(shots, c));
+    result.channels.push_back(std::move(channel));
   }
   widen_rate(result.channels.front().agreement, input.shots.size(), result.rate);
   return result;
@@ -328,11 +310,7 @@ Expected<void> apply_start(const StartLatency& start, double sample_s, double an
       shot.u_common_phase_rad = std::hypot(shot.u_common_phase_rad, row.u_phase_rad());
     }
     channel.common_budget.insert(channel.common_budget.end(), row.rows().begin(), row.rows().end());
-    auto mean = mean_of_repetitions(channel.shots);
-    if (!mean) {
-      return fail(mean.error());
-    }
-    channel.mean = std::move(*mean);
+    DYNCAL_TRY(channel.mean, mean_of_repetitions(channel.shots));
   }
   return {};
 }

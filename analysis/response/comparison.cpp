@@ -18,19 +18,15 @@ Expected<double> normalised_error(double x, double u_x, double y, double u_y, do
 
 Expected<ComplexComparison> compare_transfer(const ComparedResult& x, const ComparedResult& y,
                                              const SharedUncertainty& shared) {
-  const auto magnitude =
+  DYNCAL_TRY(
+      const auto magnitude,
       normalised_error(x.magnitude, x.u_magnitude, y.magnitude, y.u_magnitude,
-                       shared.magnitude_rel * shared.magnitude_rel * x.magnitude * y.magnitude);
-  if (!magnitude) {
-    return fail(magnitude.error());
-  }
-  const auto phase = normalised_error(wrap_phase(x.phase_rad - y.phase_rad), x.u_phase_rad, 0.0,
-                                      y.u_phase_rad, shared.phase_rad * shared.phase_rad);
-  if (!phase) {
-    return fail(phase.error());
-  }
-  const double chi_squared = 4.0 * (*magnitude * *magnitude + *phase * *phase);
-  return ComplexComparison{*magnitude, *phase, chi_squared, std::exp(-0.5 * chi_squared)};
+                       shared.magnitude_rel * shared.magnitude_rel * x.magnitude * y.magnitude));
+  DYNCAL_TRY(const auto phase,
+             normalised_error(wrap_phase(x.phase_rad - y.phase_rad), x.u_phase_rad, 0.0,
+                              y.u_phase_rad, shared.phase_rad * shared.phase_rad));
+  const double chi_squared = 4.0 * (magnitude * magnitude + phase * phase);
+  return ComplexComparison{magnitude, phase, chi_squared, std::exp(-0.5 * chi_squared)};
 }
 
 } // namespace dyncal::analysis

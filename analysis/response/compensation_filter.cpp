@@ -243,9 +243,7 @@ int taps_for(const CompensationSettings& settings, double stop_hz) {
 
 Expected<CompensationFilter> design_compensation(const FittedResponse& response,
                                                  const CompensationSettings& settings) {
-  if (const auto checked = check(settings); !checked) {
-    return fail(checked.error());
-  }
+  DYNCAL_TRY(check(settings));
   CompensationFilter filter;
   filter.rate_hz = settings.rate_hz;
   filter.cutoff_hz = settings.cutoff_hz;

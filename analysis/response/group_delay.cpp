@@ -212,13 +212,10 @@ Expected<GroupDelay> evaluate_group_delay(std::span<const PhasePoint> points,
         ErrorCode::too_few_samples,
         "a group delay needs the phase at two frequencies with an uncertainty below 0.5 rad");
   }
-  const auto choice = choose_branch(counted);
-  if (!choice) {
-    return fail(choice.error());
-  }
-  const DelayLine& line = choice->branch.line;
+  DYNCAL_TRY(const auto choice, choose_branch(counted));
+  const DelayLine& line = choice.branch.line;
   GroupDelay result;
-  result.alternatives_s = choice->alternatives_s;
+  result.alternatives_s = choice.alternatives_s;
   result.delay_s = line.delay_s;
   result.intercept_rad = wrap_phase(line.intercept_rad);
   result.polarity_inverted = std::abs(result.intercept_rad) > 0.5 * pi;
@@ -235,7 +232,7 @@ Expected<GroupDelay> evaluate_group_delay(std::span<const PhasePoint> points,
   result.u_intercept_rad =
       std::sqrt(birge * line.variance_intercept + common.phase_rad * common.phase_rad);
   result.cov_delay_intercept = birge * line.covariance;
-  result.unwrapped_rad = place_on_line(points, choice->branch.unwrapped_rad, line,
+  result.unwrapped_rad = place_on_line(points, choice.branch.unwrapped_rad, line,
                                        result.intercept_rad - line.intercept_rad);
   result.phase_covariance = covariance_of(points, common);
   return result;

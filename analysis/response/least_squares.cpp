@@ -322,13 +322,10 @@ Expected<LeastSquaresSolution> solve_least_squares(const LeastSquaresProblem& pr
   if (!solution) {
     return solution;
   }
-  const auto minimum = polish(problem, solution->parameters);
-  if (!minimum) {
-    return fail(minimum.error());
-  }
-  const RowMajor covariance = minimum->covariance(problem.variance);
+  DYNCAL_TRY(const auto minimum, polish(problem, solution->parameters));
+  const RowMajor covariance = minimum.covariance(problem.variance);
   solution->covariance.assign(covariance.data(), covariance.data() + covariance.size());
-  solution->rss = minimum->rss();
+  solution->rss = minimum.rss();
   solution->degrees_of_freedom = static_cast<double>(n - p);
   return solution;
 }

@@ -346,27 +346,19 @@ ResponseUncertainty uncertainty_at(const FittedResponse& fit, double frequency_h
 
 Expected<FittedResponse> fit_response(ResponseKind kind, std::span<const ResponsePoint> points,
                                       const CommonResponseUncertainty& common, Loss loss) {
-  if (const auto checked = check(kind, points, common, loss); !checked) {
-    return fail(checked.error());
-  }
+  DYNCAL_TRY(check(kind, points, common, loss));
   std::vector<ResponsePoint> rising(points.begin(), points.end());
   std::stable_sort(rising.begin(), rising.end(),
                    [](const auto& a, const auto& b) { return a.frequency_hz < b.frequency_hz; });
-  const auto weights = response_weights(rising, common);
-  if (!weights) {
-    return fail(weights.error());
-  }
+  DYNCAL_TRY(const auto weights, response_weights(rising, common));
   const Layout layout{kind, 1.0 / (2.0 * pi * rising.back().frequency_hz)};
-  const auto minima = ResponseSearch(layout, rising, *weights, loss).minima();
-  if (!minima) {
-    return fail(minima.error());
-  }
-  const std::size_t chosen = preferred(*minima);
-  const Minimum& best = (*minima)[chosen];
+  DYNCAL_TRY(const auto minima, ResponseSearch(layout, rising, weights, loss).minima());
+  const std::size_t chosen = preferred(minima);
+  const Minimum& best = minima[chosen];
   FittedResponse result = describe(layout, best.inverted, best.solution);
   find_undetermined(layout, best.solution, result);
-  for (std::size_t i = 0; i < minima->size(); ++i) {
-    const Minimum& other = (*minima)[i];
+  for (std::size_t i = 0; i < minima.size(); ++i) {
+    const Minimum& other = minima[i];
     if (i != chosen && other.solution.rss < best.solution.rss + other_delay_chi_squared) {
       result.other_delays.push_back({other.delay_s, other.inverted, other.solution.rss});
     }

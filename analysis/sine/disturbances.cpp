@@ -141,9 +141,7 @@ search_residuals(const Frequency& frequency, std::span<const std::int64_t> stamp
   const Extent extent(stamps_ns);
   ResidualSearch search = search_of(frequency, extent, mains_hz);
   auto residuals = reduce_residuals(search, stamps_ns, channels, fits);
-  if (!residuals) {
-    return fail(residuals.error());
-  }
+  DYNCAL_TRY(residuals);
   std::vector<Disturbances> found(channels.size());
   std::vector<std::span<const double>> drifts;
   bool any_drift = false;
@@ -157,9 +155,7 @@ search_residuals(const Frequency& frequency, std::span<const std::int64_t> stamp
   if (any_drift) { // lines show better without it
     search.drifts = drifts;
     residuals = reduce_residuals(search, stamps_ns, channels, fits);
-    if (!residuals) {
-      return fail(residuals.error());
-    }
+    DYNCAL_TRY(residuals);
   }
   for (std::size_t j = 0; j < channels.size(); ++j) {
     found[j].basis = basis_of(search, (*residuals)[j], frequency, extent);
@@ -212,17 +208,11 @@ Expected<Examination> examine(const Frequency& frequency, std::int64_t phase_ori
                               std::span<const std::int64_t> stamps_ns,
                               std::span<const std::span<const double>> channels,
                               std::span<const double> mains_hz) {
-  auto plain = fit_sine(frequency, phase_origin_ns, stamps_ns, channels);
-  if (!plain) {
-    return fail(plain.error());
-  }
-  auto found =
-      search_residuals(frequency, stamps_ns, channels,
-                       about_middle(*plain, frequency, phase_origin_ns, stamps_ns), mains_hz);
-  if (!found) {
-    return fail(found.error());
-  }
-  return Examination{std::move(*plain), std::move(*found)};
+  DYNCAL_TRY(auto plain, fit_sine(frequency, phase_origin_ns, stamps_ns, channels));
+  DYNCAL_TRY(auto found, search_residuals(
+                             frequency, stamps_ns, channels,
+                             about_middle(plain, frequency, phase_origin_ns, stamps_ns), mains_hz));
+  return Examination{std::move(plain), std::move(found)};
 }
 
 // One of the channels beside what was found in it.
@@ -304,12 +294,8 @@ Expected<FrequencyFit> refine_frequency(FrequencyFit fit, std::vector<CleanedFit
       fit.u_frequency_hz *= rounds.widening();
       return fit;
     }
-    auto next =
-        fit_sine_beside_disturbances(fit.frequency, phase_origin_ns, stamps_ns, channels, mains_hz);
-    if (!next) {
-      return fail(next.error());
-    }
-    undisturbed = std::move(*next);
+    DYNCAL_TRY(undisturbed, fit_sine_beside_disturbances(fit.frequency, phase_origin_ns, stamps_ns,
+                                                         channels, mains_hz));
   }
 }
 
@@ -320,13 +306,11 @@ fit_sine_beside_disturbances(const Frequency& frequency, std::int64_t phase_orig
                              std::span<const std::int64_t> stamps_ns,
                              std::span<const std::span<const double>> channels,
                              std::span<const double> mains_hz) {
-  const auto examined = examine(frequency, phase_origin_ns, stamps_ns, channels, mains_hz);
-  if (!examined) {
-    return fail(examined.error());
-  }
+  DYNCAL_TRY(const auto examined,
+             examine(frequency, phase_origin_ns, stamps_ns, channels, mains_hz));
   std::vector<CleanedFit> result;
   for (std::size_t j = 0; j < channels.size(); ++j) {
-    result.push_back(clean(frequency, *examined, j, phase_origin_ns, stamps_ns, channels[j]));
+    result.push_back(clean(frequency, examined, j, phase_origin_ns, stamps_ns, channels[j]));
   }
   return result;
 }
@@ -339,12 +323,9 @@ Expected<FrequencyFit> fit_frequency_beside_disturbances(
   if (!fit) {
     return fit;
   }
-  auto undisturbed =
-      fit_sine_beside_disturbances(fit->frequency, phase_origin_ns, stamps_ns, channels, mains_hz);
-  if (!undisturbed) {
-    return fail(undisturbed.error());
-  }
-  return refine_frequency(std::move(*fit), std::move(*undisturbed), search_rel, phase_origin_ns,
+  DYNCAL_TRY(auto undisturbed, fit_sine_beside_disturbances(fit->frequency, phase_origin_ns,
+                                                            stamps_ns, channels, mains_hz));
+  return refine_frequency(std::move(*fit), std::move(undisturbed), search_rel, phase_origin_ns,
                           stamps_ns, channels, mains_hz);
 }
 
@@ -354,21 +335,17 @@ Expected<PilotFit> fit_pilot_beside_disturbances(const Frequency& start, double 
                                                  std::span<const std::span<const double>> channels,
                                                  std::span<const double> mains_hz) {
   const auto pilot = channels.first(1);
-  auto fit = fit_sine_and_frequency(start, search_rel, phase_origin_ns, stamps_ns, pilot);
-  if (!fit) {
-    return fail(fit.error());
-  }
-  auto examined = examine(fit->frequency, phase_origin_ns, stamps_ns, channels, mains_hz);
+  DYNCAL_TRY(auto fit,
+             fit_sine_and_frequency(start, search_rel, phase_origin_ns, stamps_ns, pilot));
+  auto examined = examine(fit.frequency, phase_origin_ns, stamps_ns, channels, mains_hz);
   if (!examined) { // perhaps because of another channel
-    examined = examine(fit->frequency, phase_origin_ns, stamps_ns, pilot, mains_hz);
+    examined = examine(fit.frequency, phase_origin_ns, stamps_ns, pilot, mains_hz);
   }
-  if (!examined) {
-    return fail(examined.error());
-  }
+  DYNCAL_TRY(examined);
   std::vector<CleanedFit> cleaned{
-      clean(fit->frequency, *examined, 0, phase_origin_ns, stamps_ns, pilot.front())};
+      clean(fit.frequency, *examined, 0, phase_origin_ns, stamps_ns, pilot.front())};
   if (!cleaned.front().values.empty()) {
-    return refine_frequency(std::move(*fit), std::move(cleaned), search_rel, phase_origin_ns,
+    return refine_frequency(std::move(fit), std::move(cleaned), search_rel, phase_origin_ns,
                             stamps_ns, pilot, mains_hz)
         .map([](const FrequencyFit& refined) {
           return PilotFit{refined.frequency, refined.u_frequency_hz, {}};
@@ -378,9 +355,9 @@ Expected<PilotFit> fit_pilot_beside_disturbances(const Frequency& start, double 
     cleaned.clear();
   }
   for (std::size_t j = 1; j < examined->found.size(); ++j) {
-    cleaned.push_back(clean(fit->frequency, *examined, j, phase_origin_ns, stamps_ns, channels[j]));
+    cleaned.push_back(clean(fit.frequency, *examined, j, phase_origin_ns, stamps_ns, channels[j]));
   }
-  return PilotFit{fit->frequency, fit->u_frequency_hz, std::move(cleaned)};
+  return PilotFit{fit.frequency, fit.u_frequency_hz, std::move(cleaned)};
 }
 
 } // namespace dyncal::analysis

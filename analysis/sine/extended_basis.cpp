@@ -34,9 +34,7 @@ Expected<SineBasis> SineBasis::make(const Record& record, const Frequency& frequ
   }
   frequencies.insert(frequencies.end(), basis.lines.begin(), basis.lines.end());
   for (const Frequency& one : frequencies) {
-    if (const auto nyquist = record.check_nyquist(one); !nyquist) {
-      return fail(nyquist.error());
-    }
+    DYNCAL_TRY(record.check_nyquist(one));
   }
   return SineBasis(record, basis, std::move(frequencies));
 }

@@ -167,24 +167,18 @@ Expected<ChannelSolution> least_squares(Fitter& fitter, const Frequency& frequen
   const std::size_t columns = fitter.basis().columns();
   ChannelSolution result;
   result.coefficients = starting_level(columns, values.front());
-  const auto first = fitter.pass(values, result.coefficients, {}, nullptr, true);
-  if (!first) {
-    return fail(first.error());
-  }
-  const ScaledInverse inverse(first->normal);
+  DYNCAL_TRY(const auto first, fitter.pass(values, result.coefficients, {}, nullptr, true));
+  const ScaledInverse inverse(first.normal);
   if (!inverse.usable()) {
     return fail(indistinct(frequency));
   }
   result.inverse = inverse.matrix();
-  result.coefficients += result.inverse * first->right;
+  result.coefficients += result.inverse * first.right;
   for (int i = 0; i < max_refinements; ++i) {
-    const auto again = fitter.pass(values, result.coefficients, {}, nullptr, false);
-    if (!again) {
-      return fail(again.error());
-    }
-    const Eigen::VectorXd step = result.inverse * again->right;
+    DYNCAL_TRY(const auto again, fitter.pass(values, result.coefficients, {}, nullptr, false));
+    const Eigen::VectorXd step = result.inverse * again.right;
     result.coefficients += step;
-    result.rss = std::max(0.0, again->ee - step.dot(again->right));
+    result.rss = std::max(0.0, again.ee - step.dot(again.right));
     if (step.norm() < settled * result.coefficients.norm()) {
       break; // what this one lacks is far below rounding
     }
@@ -208,17 +202,13 @@ Expected<void> reweight(Fitter& fitter, const Frequency& frequency, Weighting we
   const std::size_t n = values.size();
   std::vector<double> residuals(n), weights(n), work(n);
   auto sums = fitter.pass(values, result.coefficients, {}, &residuals, false);
-  if (!sums) {
-    return fail(sums.error());
-  }
+  DYNCAL_TRY(sums);
   double scale = scale_of(residuals, result.coefficients, work);
   for (int iteration = 0; iteration < max_reweightings; ++iteration) {
     std::transform(residuals.begin(), residuals.end(), weights.begin(),
                    [&](double r) { return robust_weight(weighting, r, scale); });
     sums = fitter.pass(values, result.coefficients, weights, nullptr, true);
-    if (!sums) {
-      return fail(sums.error());
-    }
+    DYNCAL_TRY(sums);
     const ScaledInverse inverse(sums->normal);
     if (!inverse.usable()) {
       return fail(indistinct(frequency));
@@ -227,9 +217,7 @@ Expected<void> reweight(Fitter& fitter, const Frequency& frequency, Weighting we
     result.coefficients += step;
     ++result.iterations;
     sums = fitter.pass(values, result.coefficients, {}, &residuals, false);
-    if (!sums) {
-      return fail(sums.error());
-    }
+    DYNCAL_TRY(sums);
     result.rss = sums->ee;
     // Parameters that move by less than a millionth of their uncertainty stay.
     const double uncertainty = scale * std::sqrt(inverse.matrix().diagonal().maxCoeff());
@@ -318,40 +306,26 @@ Expected<std::vector<ExtendedFit>>
 fit_sine_extended(const Frequency& frequency, const ExtendedBasis& basis, Weighting weighting,
                   std::int64_t phase_origin_ns, std::span<const std::int64_t> stamps_ns,
                   std::span<const std::span<const double>> channels, const Progress& progress) {
-  const auto record = Record::make(stamps_ns, channels, SineBasis::columns_of(basis));
-  if (!record) {
-    return fail(record.error());
-  }
-  auto columns = SineBasis::make(*record, frequency, basis);
-  if (!columns) {
-    return fail(columns.error());
-  }
+  DYNCAL_TRY(const auto record, Record::make(stamps_ns, channels, SineBasis::columns_of(basis)));
+  DYNCAL_TRY(auto columns, SineBasis::make(record, frequency, basis));
   std::int64_t shift_ns = 0;
-  if (__builtin_sub_overflow(phase_origin_ns, record->origin_ns(), &shift_ns)) {
+  if (__builtin_sub_overflow(phase_origin_ns, record.origin_ns(), &shift_ns)) {
     return fail(ErrorCode::invalid_argument,
                 "the phase origin is more than 292 years away from the record");
   }
-  Fitter fitter(*record, std::move(*columns), progress);
+  Fitter fitter(record, std::move(columns), progress);
   std::vector<ExtendedFit> fits;
   for (const std::span<const double> values : channels) {
     fitter.begin_channel(fits.size());
-    auto solution = least_squares(fitter, frequency, values);
-    if (!solution) {
-      return fail(solution.error());
-    }
+    DYNCAL_TRY(auto solution, least_squares(fitter, frequency, values));
     // Tukey's weights have several solutions: they start from Huber's, which has one.
     if (weighting != Weighting::none) {
-      if (const auto done = reweight(fitter, frequency, Weighting::huber, values, *solution);
-          !done) {
-        return fail(done.error());
-      }
+      DYNCAL_TRY(reweight(fitter, frequency, Weighting::huber, values, solution));
     }
     if (weighting == Weighting::tukey) {
-      if (const auto done = reweight(fitter, frequency, weighting, values, *solution); !done) {
-        return fail(done.error());
-      }
+      DYNCAL_TRY(reweight(fitter, frequency, weighting, values, solution));
     }
-    fits.push_back(assemble(fitter.basis(), basis, *solution, values.size(), shift_ns));
+    fits.push_back(assemble(fitter.basis(), basis, solution, values.size(), shift_ns));
   }
   fitter.begin_channel(fits.size());
   if (std::none_of(fits.begin(), fits.end(),

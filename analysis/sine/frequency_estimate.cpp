@@ -249,14 +249,11 @@ Expected<Frequency> estimate_frequency(std::span<const std::int64_t> stamps_ns,
   if (stamps_ns.size() < min_samples) {
     return fail(ErrorCode::too_few_samples, "a frequency estimate needs at least eight samples");
   }
-  const auto interval_ns = median_interval_ns(stamps_ns);
-  if (!interval_ns) {
-    return fail(interval_ns.error());
-  }
+  DYNCAL_TRY(const auto interval_ns, median_interval_ns(stamps_ns));
   std::vector<std::size_t> places;
   for (const std::int64_t stamp : stamps_ns) {
     const auto place =
-        static_cast<std::size_t>((stamp - stamps_ns.front() + *interval_ns / 2) / *interval_ns);
+        static_cast<std::size_t>((stamp - stamps_ns.front() + interval_ns / 2) / interval_ns);
     if (place >= max_grid) {
       break;
     }
@@ -288,7 +285,7 @@ Expected<Frequency> estimate_frequency(std::span<const std::int64_t> stamps_ns,
   if (spectra.total.empty()) {
     return fail(ErrorCode::no_excitation, "all values are the same: there is no sine to find");
   }
-  const double bin_hz = 1e9 / (static_cast<double>(size) * static_cast<double>(*interval_ns));
+  const double bin_hz = 1e9 / (static_cast<double>(size) * static_cast<double>(interval_ns));
   return choose_bin(spectra, bin_hz).map([&](double bin) {
     return Frequency::from_hz(std::max(bin, 0.5) * bin_hz);
   });

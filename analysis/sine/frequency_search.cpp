@@ -36,15 +36,12 @@ Expected<std::vector<Parameters>> levels(const Record& record, const Frequency& 
   for (const auto& channel : record.channels()) {
     start.push_back({0.0, 0.0, channel.front()});
   }
-  const auto sums = accumulate(record, frequency, start, selection);
-  if (!sums) {
-    return fail(sums.error());
-  }
-  if (!all_finite(*sums)) {
+  DYNCAL_TRY(const auto sums, accumulate(record, frequency, start, selection));
+  if (!all_finite(sums)) {
     return fail(record.not_finite());
   }
   for (std::size_t j = 0; j < start.size(); ++j) {
-    start[j].offset += sums->channels[j].e / sums->samples;
+    start[j].offset += sums.channels[j].e / sums.samples;
   }
   return start;
 }
@@ -102,10 +99,7 @@ private:
 // `bin_hz`: of the whole record.
 Expected<GridPoint> search_grid(const Record& record, const Frequency& start,
                                 double half_range_bins, double bin_hz) {
-  const auto level = levels(record, start, {});
-  if (!level) {
-    return fail(level.error());
-  }
+  DYNCAL_TRY(const auto level, levels(record, start, {}));
   const int half = static_cast<int>(std::ceil(half_range_bins / grid_step_bins));
   GridPoint best;
   for (int i = -half; i <= half; ++i) {
@@ -114,11 +108,8 @@ Expected<GridPoint> search_grid(const Record& record, const Frequency& start,
     if (!(frequency.hz() > 0.0)) {
       continue;
     }
-    const auto sums = accumulate(record, frequency, *level);
-    if (!sums) {
-      return fail(sums.error());
-    }
-    const GridPoint point = misfit_of(*sums, *level, bins);
+    DYNCAL_TRY(const auto sums, accumulate(record, frequency, level));
+    const GridPoint point = misfit_of(sums, level, bins);
     if (point.misfit < best.misfit) {
       best = point;
     }
@@ -208,28 +199,22 @@ Expected<Cells> cell_phasors(const Record& record, const Frequency& frequency,
 
 Expected<GridPoint> search_spectrum(const Record& record, const Frequency& start,
                                     double half_range_bins, bool whole) {
-  const auto level = levels(record, start, whole ? Selection{} : part_of(record.size()));
-  if (!level) {
-    return fail(level.error());
-  }
+  DYNCAL_TRY(const auto level, levels(record, start, whole ? Selection{} : part_of(record.size())));
   const std::size_t count = std::bit_ceil(static_cast<std::size_t>(3.0 * half_range_bins));
-  auto cells = cell_phasors(record, start, *level, count, whole);
-  if (!cells) {
-    return fail(cells.error());
-  }
+  DYNCAL_TRY(auto cells, cell_phasors(record, start, level, count, whole));
   const std::size_t length = padding * count;
   std::vector<double> power(length, 0.0);
-  for (std::size_t j = 0; j < level->size(); ++j) {
-    if (!std::isfinite(cells->square[j])) {
+  for (std::size_t j = 0; j < level.size(); ++j) {
+    if (!std::isfinite(cells.square[j])) {
       return fail(record.not_finite());
     }
-    fourier_transform(cells->phasors[j]);
+    fourier_transform(cells.phasors[j]);
     // With the amplitude removed rss falls by 2 |Z|^2 / n; the sum of n log(rss) is what is to be
     // smallest.
-    const double total = cells->square[j] + std::numeric_limits<double>::min();
+    const double total = cells.square[j] + std::numeric_limits<double>::min();
     for (std::size_t k = 0; k < length; ++k) {
       const double explained =
-          std::min(2.0 * std::norm(cells->phasors[j][k]) / (cells->samples * total), 1.0 - 1e-12);
+          std::min(2.0 * std::norm(cells.phasors[j][k]) / (cells.samples * total), 1.0 - 1e-12);
       power[k] -= std::log1p(-explained);
     }
   }
@@ -253,7 +238,7 @@ Expected<GridPoint> search_spectrum(const Record& record, const Frequency& start
   best.bins =
       (static_cast<double>(peak) + std::clamp(between, -0.5, 0.5)) / static_cast<double>(padding);
   best.misfit = -at(peak);
-  best.significance = std::sqrt(std::expm1(at(peak)) * cells->samples);
+  best.significance = std::sqrt(std::expm1(at(peak)) * cells.samples);
   return best;
 }
 
@@ -291,9 +276,7 @@ Expected<Frequency> search_frequency(const Record& record, const Frequency& star
   if (!found && found.error().code == ErrorCode::not_finite) {
     return fail(record.not_finite());
   }
-  if (!found) {
-    return fail(found.error());
-  }
+  DYNCAL_TRY(found);
   return start.shifted_by_hz(found->bins * bin_hz);
 }
 

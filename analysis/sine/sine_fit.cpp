@@ -60,24 +60,21 @@ Expected<Start> pilot(const Record& record, const Frequency& frequency, bool pla
   for (const auto& channel : record.channels()) {
     start.parameters.push_back({0.0, 0.0, channel.front()});
   }
-  const auto sums = pilot_sums(record, frequency, start.parameters);
-  if (!sums) {
-    return fail(sums.error());
-  }
-  if (!all_finite(*sums)) {
+  DYNCAL_TRY(const auto sums, pilot_sums(record, frequency, start.parameters));
+  if (!all_finite(sums)) {
     return fail(record.not_finite());
   }
-  const NormalMatrix matrix(sums->samples, sums->design);
+  const NormalMatrix matrix(sums.samples, sums.design);
   start.plain = plain_allowed && matrix.smallest > 0.1;
   for (std::size_t j = 0; j < start.parameters.size(); ++j) {
     Parameters& p = start.parameters[j];
     if (matrix.smallest > 1e-2) {
-      const Solution solution = solve(matrix, sums->channels[j], p);
+      const Solution solution = solve(matrix, sums.channels[j], p);
       p = solution.p;
-      start.plain &= 0.5 * (p.sine * p.sine + p.cosine * p.cosine) * sums->samples <
+      start.plain &= 0.5 * (p.sine * p.sine + p.cosine * p.cosine) * sums.samples <
                      max_cancellation * solution.rss;
     } else {
-      p.offset += sums->channels[j].e / sums->samples;
+      p.offset += sums.channels[j].e / sums.samples;
     }
   }
   if (start.plain) {
@@ -160,51 +157,40 @@ double SineFit::residual_sd() const {
 Expected<std::vector<SineFit>> fit_sine(const Frequency& frequency, std::int64_t phase_origin_ns,
                                         std::span<const std::int64_t> stamps_ns,
                                         std::span<const std::span<const double>> channels) {
-  const auto record = Record::make(stamps_ns, channels, 3);
-  if (!record) {
-    return fail(record.error());
-  }
-  if (const auto nyquist = record->check_nyquist(frequency); !nyquist) {
-    return fail(nyquist.error());
-  }
+  DYNCAL_TRY(const auto record, Record::make(stamps_ns, channels, 3));
+  DYNCAL_TRY(record.check_nyquist(frequency));
   std::int64_t shift_ns = 0;
-  if (__builtin_sub_overflow(phase_origin_ns, record->origin_ns(), &shift_ns)) {
+  if (__builtin_sub_overflow(phase_origin_ns, record.origin_ns(), &shift_ns)) {
     return fail(ErrorCode::invalid_argument,
                 "the phase origin is more than 292 years away from the record");
   }
-  record->fetch_beginning();
-  const auto grid = sample_grid(record->stamps(), frequency);
-  auto start = pilot(*record, frequency, grid.has_value());
-  if (!start) {
-    return fail(start.error());
-  }
+  record.fetch_beginning();
+  const auto grid = sample_grid(record.stamps(), frequency);
+  DYNCAL_TRY(auto start, pilot(record, frequency, grid.has_value()));
 
   std::vector<SineFit> fits(channels.size());
   constexpr int max_passes = 3;
   for (int pass = 1; pass <= max_passes; ++pass) {
-    const auto sums = grid ? accumulate(*record, frequency, start->parameters, *grid)
-                           : accumulate(*record, frequency, start->parameters);
-    if (!sums) {
-      return fail(sums.error());
+    DYNCAL_TRY(const auto sums, grid ? accumulate(record, frequency, start.parameters, *grid)
+                                     : accumulate(record, frequency, start.parameters));
+    if (!all_finite(sums)) {
+      return fail(record.not_finite());
     }
-    if (!all_finite(*sums)) {
-      return fail(record->not_finite());
-    }
-    const NormalMatrix matrix(sums->samples, sums->design);
+    const NormalMatrix matrix(sums.samples, sums.design);
     if (!matrix.well_conditioned()) {
-      return fail(ill_conditioned(*record, frequency));
+      return fail(ill_conditioned(record, frequency));
     }
     bool again = false;
     for (std::size_t j = 0; j < fits.size(); ++j) {
-      const Solution solution = solve(matrix, sums->channels[j], start->parameters[j]);
-      fits[j] = fit_from(*record, matrix, solution);
-      start->parameters[j] = solution.p;
-      again |= too_far(matrix, solution, start->plain ? 4.0 * max_cancellation : 4.0);
+      const Solution solution = solve(matrix, sums.channels[j], start.parameters[j]);
+      fits[j] = fit_from(record, matrix, solution);
+      start.parameters[j] = solution.p;
+      again |= too_far(matrix, solution, start.plain ? 4.0 * max_cancellation : 4.0);
     }
     if (!again) {
       break;
     }
-    start->plain = false;
+    start.plain = false;
   }
   if (std::none_of(fits.begin(), fits.end(),
                    [](const SineFit& fit) { return is_significant(fit); })) {

@@ -64,15 +64,12 @@ double series_error(const FrequencySeriesSums& sums, const FrequencySolution& so
 }
 
 Expected<void> pass(const Record& record, Selection selection, Estimate& estimate, double& error) {
-  const auto sums =
-      accumulate_frequency_series(record, estimate.frequency, estimate.start, selection);
-  if (!sums) {
-    return fail(sums.error());
-  }
-  if (!all_finite(*sums)) {
+  DYNCAL_TRY(const auto sums,
+             accumulate_frequency_series(record, estimate.frequency, estimate.start, selection));
+  if (!all_finite(sums)) {
     return fail(record.not_finite());
   }
-  const Segment segment = sums->segment();
+  const Segment segment = sums.segment();
   estimate.solution = solve_frequency({&segment, 1}, estimate.start, 0.0, series_limit);
   ++estimate.passes;
   const FrequencySolution& solution = estimate.solution;
@@ -82,7 +79,7 @@ Expected<void> pass(const Record& record, Selection selection, Estimate& estimat
                     std::to_string(estimate.frequency.hz()) +
                     " Hz cannot be told apart in this record; record more periods");
   }
-  error = solution.settled ? series_error(*sums, solution) : series_limit;
+  error = solution.settled ? series_error(sums, solution) : series_limit;
   return {};
 }
 
@@ -99,9 +96,7 @@ Expected<void> iterate(const Record& record, Selection selection, double allowed
                        Estimate& estimate) {
   while (estimate.passes < max_passes) {
     double error = 0.0;
-    if (auto done = pass(record, selection, estimate, error); !done) {
-      return done;
-    }
+    DYNCAL_TRY(pass(record, selection, estimate, error));
     if (error < allowed) {
       return {};
     }
@@ -125,11 +120,8 @@ Expected<void> check_arguments(const Record& record, const Frequency& start, dou
 }
 
 Expected<Estimate> estimate_of(const Record& record, const Frequency& start, double search_rel) {
-  auto found = search_frequency(record, start, search_rel);
-  if (!found) {
-    return fail(found.error());
-  }
-  Estimate estimate{*found, {}, {}, 0};
+  DYNCAL_TRY(auto found, search_frequency(record, start, search_rel));
+  Estimate estimate{found, {}, {}, 0};
   for (const auto& channel : record.channels()) {
     estimate.start.push_back({0.0, 0.0, channel.front()});
   }
@@ -144,7 +136,7 @@ Expected<Estimate> estimate_of(const Record& record, const Frequency& start, dou
       return fail(done.error());
     }
     if (!done) {
-      estimate.frequency = *found;
+      estimate.frequency = found;
     }
     if (done) {
       move_on(record, estimate);
@@ -155,9 +147,7 @@ Expected<Estimate> estimate_of(const Record& record, const Frequency& start, dou
   const std::size_t wanted = std::clamp<std::size_t>(record.size() / 64, 64, grid_call_samples);
   const std::size_t length = wanted / (wanted < grid_samples ? lanes : grid_samples) *
                              (wanted < grid_samples ? lanes : grid_samples);
-  if (const auto done = iterate(record, {length, length}, allowed_error_rad, estimate); !done) {
-    return fail(done.error());
-  }
+  DYNCAL_TRY(iterate(record, {length, length}, allowed_error_rad, estimate));
   return estimate;
 }
 
@@ -167,37 +157,29 @@ Expected<FrequencyFit> fit_sine_and_frequency(const Frequency& start, double sea
                                               std::int64_t phase_origin_ns,
                                               std::span<const std::int64_t> stamps_ns,
                                               std::span<const std::span<const double>> channels) {
-  const auto record = Record::make(stamps_ns, channels, 4);
-  if (!record) {
-    return fail(record.error());
-  }
-  if (const auto checked = check_arguments(*record, start, search_rel); !checked) {
-    return fail(checked.error());
-  }
+  DYNCAL_TRY(const auto record, Record::make(stamps_ns, channels, 4));
+  DYNCAL_TRY(check_arguments(record, start, search_rel));
   std::int64_t shift_ns = 0;
-  if (__builtin_sub_overflow(phase_origin_ns, record->origin_ns(), &shift_ns)) {
+  if (__builtin_sub_overflow(phase_origin_ns, record.origin_ns(), &shift_ns)) {
     return fail(ErrorCode::invalid_argument,
                 "the phase origin is more than 292 years away from the record");
   }
-  const auto estimate = estimate_of(*record, start, search_rel);
-  if (!estimate) {
-    return fail(estimate.error());
-  }
+  DYNCAL_TRY(const auto estimate, estimate_of(record, start, search_rel));
 
   FrequencyFit result{
-      estimate->frequency.shifted_by_hz(radians_to_hz(*record, estimate->solution.delta)),
+      estimate.frequency.shifted_by_hz(radians_to_hz(record, estimate.solution.delta)),
       0.0,
       {},
-      estimate->passes};
-  result.u_frequency_hz = radians_to_hz(*record, estimate->solution.u_delta);
+      estimate.passes};
+  result.u_frequency_hz = radians_to_hz(record, estimate.solution.u_delta);
   const double turns = result.frequency.reduced_turns(shift_ns);
-  const double reference_shift = static_cast<double>(shift_ns) / record->half_span_ns();
+  const double reference_shift = static_cast<double>(shift_ns) / record.half_span_ns();
   // In the middle of the record, where the covariance is that of amplitude and phase alone.
-  const double bins = 1.0 + 2.0 * search_rel * start.hz() * record->span_s();
+  const double bins = 1.0 + 2.0 * search_rel * start.hz() * record.span_s();
   bool excited = false;
   for (std::size_t j = 0; j < channels.size(); ++j) {
-    excited |= is_significant(channel_fit(estimate->solution, j, 0.0, 0.0), bins);
-    result.channels.push_back(channel_fit(estimate->solution, j, reference_shift, turns));
+    excited |= is_significant(channel_fit(estimate.solution, j, 0.0, 0.0), bins);
+    result.channels.push_back(channel_fit(estimate.solution, j, reference_shift, turns));
   }
   if (!excited) {
     return fail(
@@ -206,14 +188,12 @@ Expected<FrequencyFit> fit_sine_and_frequency(const Frequency& start, double sea
             " Hz stands out of the noise in any channel; check frequency, search range and window");
   }
   if (std::abs(result.frequency.hz() - start.hz()) >
-      search_rel * start.hz() + 2.0 / record->span_s()) {
+      search_rel * start.hz() + 2.0 / record.span_s()) {
     return fail(ErrorCode::not_converged,
                 "the frequency moved to " + std::to_string(result.frequency.hz()) +
                     " Hz, outside of the search range; check the start frequency");
   }
-  if (const auto nyquist = record->check_nyquist(result.frequency); !nyquist) {
-    return fail(nyquist.error());
-  }
+  DYNCAL_TRY(record.check_nyquist(result.frequency));
   return result;
 }
 

@@ -189,11 +189,8 @@ private:
 Expected<std::vector<ChannelResiduals>>
 reduce_residuals(const ResidualSearch& search, std::span<const std::int64_t> stamps_ns,
                  std::span<const std::span<const double>> channels, std::span<const SineFit> fits) {
-  const auto record = Record::make(stamps_ns, channels, 3);
-  if (!record) {
-    return fail(record.error());
-  }
-  return Reduction(search, *record, fits).run();
+  DYNCAL_TRY(const auto record, Record::make(stamps_ns, channels, 3));
+  return Reduction(search, record, fits).run();
 }
 
 PlainChannel plain_channel(const SineFit& fit, const LineSet& harmonics,

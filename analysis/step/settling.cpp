@@ -47,12 +47,9 @@ Expected<std::vector<Block>> block_phasors(const Frequency& frequency,
     const auto begin = static_cast<std::size_t>(first - stamps_ns.begin());
     const auto size = static_cast<std::size_t>(last - first);
     const std::array channels{values.subspan(begin, size)};
-    const auto fit =
-        fit_sine(frequency, stamps_ns.front(), stamps_ns.subspan(begin, size), channels);
-    if (!fit) {
-      return fail(fit.error());
-    }
-    blocks.push_back({stamps_ns[begin], {(*fit)[0].sine, (*fit)[0].cosine}});
+    DYNCAL_TRY(const auto fit,
+               fit_sine(frequency, stamps_ns.front(), stamps_ns.subspan(begin, size), channels));
+    blocks.push_back({stamps_ns[begin], {fit[0].sine, fit[0].cosine}});
     first = last;
   }
   return blocks;
@@ -67,23 +64,20 @@ Expected<Settling> find_settling(const Frequency& frequency,
     return fail(ErrorCode::invalid_argument,
                 "settling needs as many stamps as values, and at least two");
   }
-  const auto blocks = block_phasors(frequency, stamps_ns, values);
-  if (!blocks) {
-    return fail(blocks.error());
-  }
+  DYNCAL_TRY(const auto blocks, block_phasors(frequency, stamps_ns, values));
 
-  const std::size_t settled = blocks->size() - blocks->size() / 3;
+  const std::size_t settled = blocks.size() - blocks.size() / 3;
   std::complex<double> mean;
-  for (std::size_t k = settled; k < blocks->size(); ++k) {
-    mean += (*blocks)[k].phasor / static_cast<double>(blocks->size() - settled);
+  for (std::size_t k = settled; k < blocks.size(); ++k) {
+    mean += blocks[k].phasor / static_cast<double>(blocks.size() - settled);
   }
   const double size = std::abs(mean);
   if (!(size > 0.0)) {
     return fail(ErrorCode::no_excitation, "there is no sine whose settling could be found");
   }
   std::vector<double> deviations;
-  for (std::size_t k = settled; k < blocks->size(); ++k) {
-    deviations.push_back(std::abs((*blocks)[k].phasor - mean));
+  for (std::size_t k = settled; k < blocks.size(); ++k) {
+    deviations.push_back(std::abs(blocks[k].phasor - mean));
   }
   // The median of the distance from the centre of a bivariate normal distribution is 1.1774 s.
   const double scatter = upper_median(deviations) / 1.1774;
@@ -92,16 +86,16 @@ Expected<Settling> find_settling(const Frequency& frequency,
   Settling result;
   result.begin_ns = stamps_ns.front();
   result.steady_scatter_rel = scatter / size;
-  for (std::size_t k = 0; k < blocks->size(); ++k) {
-    const double deviation = std::abs((*blocks)[k].phasor - mean);
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    const double deviation = std::abs(blocks[k].phasor - mean);
     if (deviation <= limit) {
       continue;
     }
-    if (k + 1 >= blocks->size() || 2 * k >= blocks->size()) {
+    if (k + 1 >= blocks.size() || 2 * k >= blocks.size()) {
       return fail(ErrorCode::not_converged,
                   "the excitation does not settle: less than half of the record is steady");
     }
-    result.begin_ns = (*blocks)[k + 1].begin_ns;
+    result.begin_ns = blocks[k + 1].begin_ns;
     result.max_deviation = std::max(result.max_deviation, deviation / size);
   }
   result.settling_s = static_cast<double>(result.begin_ns - stamps_ns.front()) * 1e-9;

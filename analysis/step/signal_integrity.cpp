@@ -368,16 +368,10 @@ Expected<SignalIntegrity> measure_integrity(const Frequency& frequency,
                                             const SignalExpectation& expected) {
   const std::span<const double> channel[] = {values};
   const std::int64_t middle_ns = stamps_ns.empty() ? 0 : middle_of_record_ns(stamps_ns);
-  const auto fit = fit_sine(frequency, middle_ns, stamps_ns, channel);
-  if (!fit) {
-    return fail(fit.error());
-  }
+  DYNCAL_TRY(const auto fit, fit_sine(frequency, middle_ns, stamps_ns, channel));
   const ResidualSearch search{.first = {frequency, 2, max_harmonic - 1}};
-  const auto residuals = reduce_residuals(search, stamps_ns, channel, *fit);
-  if (!residuals) {
-    return fail(residuals.error());
-  }
-  return measure_integrity(frequency, plain_channel(fit->front(), search.first, residuals->front()),
+  DYNCAL_TRY(const auto residuals, reduce_residuals(search, stamps_ns, channel, fit));
+  return measure_integrity(frequency, plain_channel(fit.front(), search.first, residuals.front()),
                            stamps_ns, values, expected);
 }
 

@@ -20,9 +20,7 @@ public:
     Draws draws;
     draws.inputs_.assign(inputs.begin(), inputs.end());
     draws.random_.seed(seed);
-    if (const auto checked = propagate_uncertainty(inputs, correlations); !checked) {
-      return fail(checked.error());
-    }
+    DYNCAL_TRY(propagate_uncertainty(inputs, correlations));
     const auto n = static_cast<Eigen::Index>(inputs.size());
     Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(n, n);
     for (const InputCorrelation& correlation : correlations) {
@@ -189,20 +187,14 @@ Expected<std::vector<MonteCarloResult>>
 propagate_distributions(std::span<const InputQuantity> inputs,
                         std::span<const InputCorrelation> correlations, std::size_t outputs,
                         const MeasurementModel& model, const MonteCarloSettings& settings) {
-  auto draws = Draws::prepare(inputs, correlations, settings.seed);
-  if (!draws) {
-    return fail(draws.error());
-  }
+  DYNCAL_TRY(auto draws, Draws::prepare(inputs, correlations, settings.seed));
   std::vector<Trials> trials(outputs, Trials(settings.probability));
   for (std::size_t done = 0; done < std::max(settings.max_trials, batch); done += batch) {
     if (settings.stop.stop_requested()) {
       return fail(ErrorCode::not_converged, "drawing was stopped before its end");
     }
-    const auto stable = draw_batch(*draws, model, trials);
-    if (!stable) {
-      return fail(stable.error());
-    }
-    if (*stable) {
+    DYNCAL_TRY(const auto stable, draw_batch(draws, model, trials));
+    if (stable) {
       break;
     }
   }

@@ -33,24 +33,15 @@ T load(const char* bytes) {
 } // namespace
 
 Expected<void> SocketAcs::connect(milliseconds limit) {
-  const auto address = parse_address(settings_.address);
-  if (!address) {
-    return fail(address.error());
-  }
-  auto connection = TcpConnection::connect(*address, limit, stop_);
-  if (!connection) {
-    return fail(connection.error());
-  }
-  const auto line = connection->read_line(max_description, limit);
-  if (!line) {
-    return fail(line.error());
-  }
-  auto stream = parse_stream_description(*line);
+  DYNCAL_TRY(const auto address, parse_address(settings_.address));
+  DYNCAL_TRY(auto connection, TcpConnection::connect(address, limit, stop_));
+  DYNCAL_TRY(const auto line, connection.read_line(max_description, limit));
+  auto stream = parse_stream_description(line);
   if (!stream) {
     return fail(stream.error().code, settings_.address + ": " + stream.error().message);
   }
   stream_ = std::move(*stream);
-  connection_.emplace(std::move(*connection));
+  connection_.emplace(std::move(connection));
   return {};
 }
 
@@ -121,9 +112,7 @@ Expected<void> SocketAcs::run(SampleSink& sink) {
     if (ended.error().code != ErrorCode::disconnected) {
       return fail(ended.error());
     }
-    if (auto again = connect_again(sink); !again) {
-      return again;
-    }
+    DYNCAL_TRY(connect_again(sink));
     if (stop_.raised()) {
       return {};
     }
@@ -204,10 +193,7 @@ Expected<SampleBlock> SocketAcs::read_frame() {
   std::array<char, 16> header{}; // magic, samples, first_sample
   const std::span<char> bytes(header);
   const auto first = connection_->read_exactly(bytes.first(1), silence_limit);
-  if (const auto read = first.and_then([&] { return read_rest_of_frame(bytes.subspan(1)); });
-      !read) {
-    return fail(read.error());
-  }
+  DYNCAL_TRY(first.and_then([&] { return read_rest_of_frame(bytes.subspan(1)); }));
   SampleBlock frame;
   frame.samples = load<std::uint32_t>(header.data() + 4);
   frame.first_sample = load<std::uint64_t>(header.data() + 8);
@@ -218,9 +204,7 @@ Expected<SampleBlock> SocketAcs::read_frame() {
   const std::size_t channels = stream_.scale.size();
   const std::size_t width = stream_.float64 ? sizeof(double) : sizeof(std::int32_t);
   payload_.resize(frame.samples * channels * width);
-  if (auto read = read_rest_of_frame(payload_); !read) {
-    return fail(read.error());
-  }
+  DYNCAL_TRY(read_rest_of_frame(payload_));
   frame.values.resize(frame.samples * channels);
   for (std::size_t i = 0; i < frame.samples; ++i) {
     for (std::size_t channel = 0; channel < channels; ++channel) {

@@ -37,15 +37,9 @@ Expected<void> play(LogSource& log, SensorStream& stream, Keeper& keeper) {
   auto state = ReadState::more;
   while (state == ReadState::more) {
     std::vector<BusEvent> events;
-    const auto read = log.read(events, std::chrono::milliseconds(0));
-    if (!read) {
-      return fail(read.error());
-    }
-    state = *read;
+    DYNCAL_TRY(state, log.read(events, std::chrono::milliseconds(0)));
     for (const BusEvent& event : events) {
-      if (auto taken = stream.take(event, keeper); !taken) {
-        return taken;
-      }
+      DYNCAL_TRY(stream.take(event, keeper));
     }
   }
   stream.finish(keeper);
@@ -56,26 +50,15 @@ Expected<void> play(LogSource& log, SensorStream& stream, Keeper& keeper) {
 } // namespace
 
 Expected<SourceDescription> LogPlayer::describe() {
-  auto dbc = read_dbc_file(dbc_);
-  if (!dbc) {
-    return fail(dbc.error());
-  }
+  DYNCAL_TRY(auto dbc, read_dbc_file(dbc_));
   Keeper keeper;
-  keeper.warnings = dbc->warnings;
-  const auto stream = SensorStream::create(settings_, std::move(*dbc));
-  if (!stream) {
-    return fail(stream.error());
-  }
+  keeper.warnings = dbc.warnings;
+  DYNCAL_TRY(const auto stream, SensorStream::create(settings_, std::move(dbc)));
   LogSource log(log_, interface_name_, 0.0);
-  const auto link = log.open((*stream)->filters());
-  if (!link) {
-    return fail(link.error());
-  }
+  DYNCAL_TRY(const auto link, log.open(stream->filters()));
   const auto played =
-      (*stream)->begin(*link, keeper).and_then([&] { return play(log, **stream, keeper); });
-  if (!played) {
-    return fail(played.error());
-  }
+      stream->begin(link, keeper).and_then([&] { return play(log, *stream, keeper); });
+  DYNCAL_TRY(played);
   description_ = std::move(keeper.last_description);
   blocks_ = std::move(keeper.blocks);
   warnings_ = std::move(keeper.warnings);

@@ -125,20 +125,18 @@ Expected<void> add_channels(const StreamSettings& settings, SensorLayout& layout
       if (settings.channels.empty() ? is_key : named == settings.channels.end()) {
         continue;
       }
-      auto channel = lay_out_channel(
-          settings, layout, m, i, named == settings.channels.end() ? signal : named->second, dbc);
-      if (!channel) {
-        return fail(channel.error());
-      }
+      DYNCAL_TRY(auto channel,
+                 lay_out_channel(settings, layout, m, i,
+                                 named == settings.channels.end() ? signal : named->second, dbc));
       const bool taken = std::any_of(layout.channels.begin(), layout.channels.end(),
                                      [&](const ChannelLayout& other) {
-                                       return other.description.name == channel->description.name;
+                                       return other.description.name == channel.description.name;
                                      });
       if (taken) {
-        return refused("two signals would be the channel '" + channel->description.name +
+        return refused("two signals would be the channel '" + channel.description.name +
                        "'; name them apart with 'channels'");
       }
-      layout.channels.push_back(std::move(*channel));
+      layout.channels.push_back(std::move(channel));
     }
   }
   if (!unused.empty()) {
@@ -162,11 +160,7 @@ Expected<void> add_keys(const StreamSettings& settings, SensorLayout& layout, co
     }
     return {};
   }
-  auto keys = find_keys(layout, name, dbc);
-  if (!keys) {
-    return fail(keys.error());
-  }
-  layout.keys = std::move(*keys);
+  DYNCAL_TRY(layout.keys, find_keys(layout, name, dbc));
   layout.key_is_time = !settings.time_field.empty();
   if (!layout.key_is_time) {
     layout.key_rate_hz = layout.nominal_rate_hz;
@@ -205,23 +199,15 @@ Expected<void> check_time_source(const StreamSettings& settings, const SensorLay
 
 Expected<SensorLayout> lay_out(const StreamSettings& settings, const DbcFile& dbc) {
   SensorLayout layout;
-  auto messages = choose_messages(settings, dbc);
-  if (!messages) {
-    return fail(messages.error());
-  }
-  layout.messages = std::move(*messages);
+  DYNCAL_TRY(layout.messages, choose_messages(settings, dbc));
   layout.nominal_rate_hz = settings.nominal_rate_hz;
   if (layout.nominal_rate_hz <= 0.0 && layout.messages.front()->cycle_time_s) {
     layout.nominal_rate_hz = 1.0 / *layout.messages.front()->cycle_time_s;
   }
   for (const auto step : {add_keys, add_channels}) {
-    if (auto done = step(settings, layout, dbc); !done) {
-      return fail(done.error());
-    }
+    DYNCAL_TRY(step(settings, layout, dbc));
   }
-  if (auto good = check_time_source(settings, layout); !good) {
-    return fail(good.error());
-  }
+  DYNCAL_TRY(check_time_source(settings, layout));
   return layout;
 }
 

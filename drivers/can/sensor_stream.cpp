@@ -32,11 +32,7 @@ SensorStream::SensorStream(StreamSettings settings, DbcFile dbc)
 
 Expected<std::unique_ptr<SensorStream>> SensorStream::create(StreamSettings settings, DbcFile dbc) {
   std::unique_ptr<SensorStream> stream(new SensorStream(std::move(settings), std::move(dbc)));
-  auto layout = lay_out(stream->settings_, *stream->dbc_);
-  if (!layout) {
-    return fail(layout.error());
-  }
-  stream->layout_ = std::move(*layout);
+  DYNCAL_TRY(stream->layout_, lay_out(stream->settings_, *stream->dbc_));
   stream->index_.emplace(stream->layout_.messages);
   stream->joiner_ = SampleJoiner(stream->layout_.messages.size());
   if (!stream->layout_.keys.empty()) {

@@ -46,38 +46,28 @@ void Oscilloscope::give_up_connection() {
 }
 
 Expected<void> Oscilloscope::connect() {
-  auto connection =
-      ScpiConnection::connect("oscilloscope", settings_.address, settings_.answer_limit, stop_);
-  if (!connection) {
-    return fail(connection.error());
-  }
+  DYNCAL_TRY(auto connection, ScpiConnection::connect("oscilloscope", settings_.address,
+                                                      settings_.answer_limit, stop_));
   // Errors from before this connection are not ours.
-  if (auto cleared = connection->send("*CLS"); !cleared) {
-    return cleared;
-  }
-  const auto identity = connection->query("*IDN?");
-  if (!identity) {
-    return fail(identity.error());
-  }
+  DYNCAL_TRY(connection.send("*CLS"));
+  DYNCAL_TRY(const auto identity, connection.query("*IDN?"));
   commands_ =
-      settings_.family.empty() ? scope_by_identity(*identity) : scope_by_family(settings_.family);
+      settings_.family.empty() ? scope_by_identity(identity) : scope_by_family(settings_.family);
   if (commands_ == nullptr) {
     std::string families;
     for (const ScopeCommands& scope : known_scopes()) {
       families += (families.empty() ? "" : ", ") + std::string(scope.family);
     }
     return fail(ErrorCode::refused,
-                message("'" + shown(*identity) +
+                message("'" + shown(identity) +
                         "' is not a known oscilloscope; name the family it follows (" + families +
                         ")"));
   }
   for (const char* setting : commands_->set_up) {
-    if (auto done = connection->command(setting); !done) {
-      return done;
-    }
+    DYNCAL_TRY(connection.command(setting));
   }
-  identity_ = *identity;
-  connection_.emplace(std::move(*connection));
+  identity_ = identity;
+  connection_.emplace(std::move(connection));
   ++connections_;
   return {};
 }
@@ -94,9 +84,7 @@ Expected<void> Oscilloscope::prepare(const Acquisition& acquisition) {
   }
   wanted_ = acquisition;
   if (!connection_) {
-    if (auto connected = connect(); !connected) {
-      return connected;
-    }
+    DYNCAL_TRY(connect());
   }
   if (prepared_ && *prepared_ == acquisition) {
     return {};
@@ -135,9 +123,7 @@ Expected<void> Oscilloscope::apply(const Acquisition& acquisition) {
   settings.push_back(std::string(commands_->trigger_level) + " " +
                      scpi_decimal(settings_.trigger_level_v));
   for (const std::string& setting : settings) {
-    if (auto done = connection_->command(setting); !done) {
-      return done;
-    }
+    DYNCAL_TRY(connection_->command(setting));
   }
   return {};
 }
@@ -146,19 +132,12 @@ Expected<Shot> Oscilloscope::acquire(milliseconds trigger_limit) {
   if (!wanted_) {
     return fail(ErrorCode::invalid_setting, message("no acquisition is prepared"));
   }
-  if (auto ready = prepare(Acquisition(*wanted_)); !ready) {
-    return fail(ready.error());
-  }
-  if (auto armed = connection_->command(commands_->single); !armed) {
-    return fail(armed.error());
-  }
-  const auto triggered_utc_ns = wait_for_trigger(trigger_limit);
-  if (!triggered_utc_ns) {
-    return fail(triggered_utc_ns.error());
-  }
+  DYNCAL_TRY(prepare(Acquisition(*wanted_)));
+  DYNCAL_TRY(connection_->command(commands_->single));
+  DYNCAL_TRY(const auto triggered_utc_ns, wait_for_trigger(trigger_limit));
   auto shot = read_shot();
   if (shot) {
-    shot->triggered_utc_ns = *triggered_utc_ns;
+    shot->triggered_utc_ns = triggered_utc_ns;
   }
   return shot;
 }
@@ -166,18 +145,13 @@ Expected<Shot> Oscilloscope::acquire(milliseconds trigger_limit) {
 Expected<std::int64_t> Oscilloscope::wait_for_trigger(milliseconds limit) {
   const auto deadline = Clock::now() + limit;
   for (;;) {
-    const auto state = connection_->query(commands_->state);
-    if (!state) {
-      return fail(state.error());
-    }
+    DYNCAL_TRY(const auto state, connection_->query(commands_->state));
     if (std::any_of(commands_->finished.begin(), commands_->finished.end(),
-                    [&](const char* finished) { return *state == finished; })) {
+                    [&](const char* finished) { return state == finished; })) {
       return utc_now_ns();
     }
     if (Clock::now() >= deadline) {
-      if (auto stopped = connection_->command(commands_->stop); !stopped) {
-        return fail(stopped.error());
-      }
+      DYNCAL_TRY(connection_->command(commands_->stop));
       return fail(ErrorCode::timeout,
                   message("no trigger within " + std::to_string(limit.count()) +
                           " ms; is sync connected to input " +
@@ -195,10 +169,7 @@ Expected<Shot> Oscilloscope::read_shot() {
   std::size_t points = 0;
   for (const InputSettings& input : settings_.inputs) {
     Preamble preamble;
-    auto trace = read_trace(input, preamble);
-    if (!trace) {
-      return fail(trace.error());
-    }
+    DYNCAL_TRY(auto trace, read_trace(input, preamble));
     if (shot.traces.empty()) {
       shot.first_sample_s = preamble.first_sample_s();
       shot.interval_s = preamble.x_increment_s;
@@ -208,43 +179,30 @@ Expected<Shot> Oscilloscope::read_shot() {
       give_up_connection();
       return fail(ErrorCode::malformed, message("the traces of one shot have different time axes"));
     }
-    shot.traces.push_back(std::move(*trace));
+    shot.traces.push_back(std::move(trace));
   }
   return shot;
 }
 
 Expected<Preamble> Oscilloscope::read_preamble(const InputSettings& input) {
-  if (auto done =
-          connection_->command(":WAVeform:SOURce " + for_input(commands_->input_name, input.input));
-      !done) {
-    return fail(done.error());
-  }
+  DYNCAL_TRY(
+      connection_->command(":WAVeform:SOURce " + for_input(commands_->input_name, input.input)));
   // Read back: an instrument that is one answer behind is found out here.
-  const auto source = connection_->query(":WAVeform:SOURce?");
-  if (!source) {
-    return fail(source.error());
-  }
-  if (*source != for_input(commands_->input_name_short, input.input)) {
+  DYNCAL_TRY(const auto source, connection_->query(":WAVeform:SOURce?"));
+  if (source != for_input(commands_->input_name_short, input.input)) {
     give_up_connection();
     return fail(ErrorCode::malformed,
-                message("answers :WAVeform:SOURce? with '" + shown(*source) + "' instead of " +
+                message("answers :WAVeform:SOURce? with '" + shown(source) + "' instead of " +
                         for_input(commands_->input_name_short, input.input)));
   }
   if (commands_->points != nullptr) {
     const std::size_t points = commands_->memory_depth != nullptr
                                    ? next_power_of_ten(prepared_->points)
                                    : prepared_->points;
-    if (auto done =
-            connection_->command(std::string(commands_->points) + " " + std::to_string(points));
-        !done) {
-      return fail(done.error());
-    }
+    DYNCAL_TRY(connection_->command(std::string(commands_->points) + " " + std::to_string(points)));
   }
-  const auto answer = connection_->query(":WAVeform:PREamble?");
-  if (!answer) {
-    return fail(answer.error());
-  }
-  auto preamble = parse_preamble(*answer);
+  DYNCAL_TRY(const auto answer, connection_->query(":WAVeform:PREamble?"));
+  auto preamble = parse_preamble(answer);
   if (!preamble) {
     give_up_connection();
     return fail(ErrorCode::malformed, message(preamble.error().message));
@@ -253,11 +211,7 @@ Expected<Preamble> Oscilloscope::read_preamble(const InputSettings& input) {
 }
 
 Expected<Trace> Oscilloscope::read_trace(const InputSettings& input, Preamble& preamble) {
-  const auto answer = read_preamble(input);
-  if (!answer) {
-    return fail(answer.error());
-  }
-  preamble = *answer;
+  DYNCAL_TRY(preamble, read_preamble(input));
   Trace trace{input.name, {}, preamble.y_increment_v};
   while (trace.volts.size() < preamble.points) {
     const std::size_t wanted =
@@ -266,22 +220,17 @@ Expected<Trace> Oscilloscope::read_trace(const InputSettings& input, Preamble& p
       const std::string first = std::to_string(trace.volts.size() + 1);
       const std::string last = std::to_string(trace.volts.size() + wanted);
       for (const std::string& part : {":WAVeform:STARt " + first, ":WAVeform:STOP " + last}) {
-        if (auto done = connection_->command(part); !done) {
-          return fail(done.error());
-        }
+        DYNCAL_TRY(connection_->command(part));
       }
     }
-    const auto codes = connection_->query_block(":WAVeform:DATA?", wanted);
-    if (!codes) {
-      return fail(codes.error());
-    }
-    if (codes->size() != wanted) {
+    DYNCAL_TRY(const auto codes, connection_->query_block(":WAVeform:DATA?", wanted));
+    if (codes.size() != wanted) {
       give_up_connection();
       return fail(ErrorCode::malformed,
-                  message("a block of " + std::to_string(codes->size()) + " bytes where " +
+                  message("a block of " + std::to_string(codes.size()) + " bytes where " +
                           std::to_string(wanted) + " samples were asked for"));
     }
-    append_volts(preamble, commands_->voltage, *codes, trace.volts);
+    append_volts(preamble, commands_->voltage, codes, trace.volts);
   }
   return trace;
 }

@@ -25,14 +25,9 @@ std::string_view next_lines(std::string_view& rest) {
 } // namespace
 
 Expected<std::unique_ptr<CsvReader>> CsvReader::open(const FileSettings& settings) {
-  auto file = MappedFile::open(settings.path);
-  if (!file) {
-    return fail(file.error());
-  }
-  std::unique_ptr<CsvReader> reader(new CsvReader(settings, std::move(*file)));
-  if (auto header = reader->read_header(); !header) {
-    return fail(header.error());
-  }
+  DYNCAL_TRY(auto file, MappedFile::open(settings.path));
+  std::unique_ptr<CsvReader> reader(new CsvReader(settings, std::move(file)));
+  DYNCAL_TRY(reader->read_header());
   return reader;
 }
 
@@ -65,11 +60,7 @@ Expected<void> CsvReader::read_header() {
                     "source in a bench file, --nominal-rate of a command); one of them must tell "
                     "the time");
   }
-  auto described = describe_file_channels(settings_, layout_.channels);
-  if (!described) {
-    return fail(described.error());
-  }
-  description_ = std::move(*described);
+  DYNCAL_TRY(description_, describe_file_channels(settings_, layout_.channels));
   return {};
 }
 
@@ -105,9 +96,7 @@ Expected<bool> CsvReader::next_stretch() {
     rows_ = ahead_.front().rows.get();
     ahead_.pop_front();
     read_ahead();
-    if (const auto order = check_numbers(); !order) {
-      return fail(order.error());
-    }
+    DYNCAL_TRY(check_numbers());
   }
   return true;
 }
@@ -154,11 +143,8 @@ SampleBlock CsvReader::next_piece(std::size_t samples) {
 }
 
 Expected<SampleBlock> CsvReader::read(std::size_t samples) {
-  const auto more = next_stretch();
+  DYNCAL_TRY(const auto more, next_stretch());
   if (!more) {
-    return fail(more.error());
-  }
-  if (!*more) {
     return SampleBlock{};
   }
   SampleBlock block = next_piece(samples);

@@ -94,17 +94,10 @@ bool take_number(std::string_view& line, Number& value) {
 } // namespace
 
 Expected<std::unique_ptr<DumpReader>> DumpReader::open(const FileSettings& settings) {
-  auto file = MappedFile::open(settings.path);
-  if (!file) {
-    return fail(file.error());
-  }
-  std::unique_ptr<DumpReader> reader(new DumpReader(settings, std::move(*file)));
-  if (auto described = reader->read_description(); !described) {
-    return fail(described.error());
-  }
-  if (auto named = reader->read_names(); !named) {
-    return fail(named.error());
-  }
+  DYNCAL_TRY(auto file, MappedFile::open(settings.path));
+  std::unique_ptr<DumpReader> reader(new DumpReader(settings, std::move(file)));
+  DYNCAL_TRY(reader->read_description());
+  DYNCAL_TRY(reader->read_names());
   return reader;
 }
 
@@ -147,11 +140,7 @@ Expected<void> DumpReader::read_description() {
   if (names.empty()) {
     return malformed("describes no channel");
   }
-  auto described = describe_file_channels(settings_, names);
-  if (!described) {
-    return fail(described.error());
-  }
-  description_ = std::move(*described);
+  DYNCAL_TRY(description_, describe_file_channels(settings_, names));
   description_.device = text_in(json, "Name");
   description_.stamp_instant = StampInstant::data_ready_edge;
   for (std::size_t i = 0; i < columns_.size(); ++i) {
@@ -249,19 +238,17 @@ double DumpReader::share_read() const {
 Expected<SampleBlock> DumpReader::read(std::size_t samples) {
   std::vector<Row> rows;
   while (rows.size() < samples) {
-    auto row =
-        waiting_ ? Expected<std::optional<Row>>(std::exchange(waiting_, std::nullopt)) : next_row();
+    DYNCAL_TRY(auto row, waiting_
+                             ? Expected<std::optional<Row>>(std::exchange(waiting_, std::nullopt))
+                             : next_row());
     if (!row) {
-      return fail(row.error());
-    }
-    if (!*row) {
       break;
     }
-    if (!rows.empty() && (*row)->number != rows.back().number + 1) {
-      waiting_ = std::move(*row);
+    if (!rows.empty() && row->number != rows.back().number + 1) {
+      waiting_ = std::move(row);
       break;
     }
-    rows.push_back(std::move(**row));
+    rows.push_back(std::move(*row));
   }
   SampleBlock block;
   block.samples = rows.size();

@@ -29,11 +29,8 @@ std::int64_t stamp_of(const SampleBlock& block, std::size_t i) {
 
 template <class Reader>
 Expected<std::unique_ptr<SampleReader>> open_as(const FileSettings& settings) {
-  auto reader = Reader::open(settings);
-  if (!reader) {
-    return fail(reader.error());
-  }
-  return std::unique_ptr<SampleReader>(std::move(*reader));
+  DYNCAL_TRY(auto reader, Reader::open(settings));
+  return std::unique_ptr<SampleReader>(std::move(reader));
 }
 
 // What a file is that its name calls text, by its first bytes: "" where they may be text.
@@ -91,22 +88,15 @@ Expected<std::unique_ptr<SampleReader>> open_reader(const FileSettings& settings
 } // namespace
 
 Expected<SourceDescription> FileSource::describe() {
-  auto reader = open_reader(settings_);
-  if (!reader) {
-    return fail(reader.error());
-  }
-  reader_ = std::move(*reader);
+  DYNCAL_TRY(reader_, open_reader(settings_));
   // Two samples tell the pace, and a file that is wrong from its first row on is refused before
   // anything is announced.
-  auto first = reader_->read(2);
-  if (!first) {
-    return fail(first.error());
-  }
-  if (first->samples == 0) {
+  DYNCAL_TRY(auto first, reader_->read(2));
+  if (first.samples == 0) {
     return fail(ErrorCode::malformed,
                 settings_.path.string() + ": no samples below the names of the columns");
   }
-  first_ = std::move(*first);
+  first_ = std::move(first);
   return description();
 }
 
@@ -154,11 +144,7 @@ Expected<void> FileSource::run(SampleSink& sink) {
         block.flags.begin(), block.flags.end(), [](auto flags) { return flags != 0; }));
     sink.take(std::move(block));
     sink.count(counts);
-    auto next = reader_->read(samples);
-    if (!next) {
-      return fail(next.error());
-    }
-    block = std::move(*next);
+    DYNCAL_TRY(block, reader_->read(samples));
   }
   return {};
 }

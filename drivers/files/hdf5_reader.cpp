@@ -65,9 +65,7 @@ Expected<std::unique_ptr<Hdf5Reader>> Hdf5Reader::open(const FileSettings& setti
         .and_then([&] { return reader->describe(); })
         .and_then([&] { return reader->find_end(); });
   }();
-  if (!opened) {
-    return fail(opened.error());
-  }
+  DYNCAL_TRY(opened);
   return reader;
 }
 
@@ -106,16 +104,9 @@ Expected<std::string> Hdf5Reader::group_name() const {
 }
 
 Expected<void> Hdf5Reader::open_file() {
-  auto file = open_hdf5(settings_.path);
-  if (!file) {
-    return fail(file.error());
-  }
-  file_ = std::move(*file);
-  const auto name = group_name();
-  if (!name) {
-    return fail(name.error());
-  }
-  place_ = "RAWDATA/" + *name;
+  DYNCAL_TRY(file_, open_hdf5(settings_.path));
+  DYNCAL_TRY(const auto name, group_name());
+  place_ = "RAWDATA/" + name;
   group_ = Hdf5Handle(H5Gopen2(file_.id(), place_.c_str(), H5P_DEFAULT), H5Gclose);
   return group_.is_open() ? Expected<void>{} : malformed("is not a group");
 }
@@ -162,11 +153,8 @@ Expected<void> Hdf5Reader::open_quantities() {
   for (const auto& [name, quantity] :
        {std::pair("Absolutetime", &stamps_), std::pair("Absolutetime_uncertainty", &uncertainties_),
         std::pair("Sample_number", &numbers_)}) {
-    auto opened = open_dataset(name);
-    if (!opened) {
-      return fail(opened.error());
-    }
-    *quantity = std::move(*opened);
+    DYNCAL_TRY(auto opened, open_dataset(name));
+    *quantity = std::move(opened);
     const Hdf5Handle space(H5Dget_space(quantity->dataset.id()), H5Sclose);
     const hssize_t points = H5Sget_simple_extent_npoints(space.id());
     if (quantity->rows != 1 || points <= 0) {
@@ -180,14 +168,11 @@ Expected<void> Hdf5Reader::open_quantities() {
     if (is_of_time(name) && name != "Stamp_flags") {
       continue;
     }
-    auto opened = open_dataset(name);
-    if (!opened) {
-      return fail(opened.error());
-    }
+    DYNCAL_TRY(auto opened, open_dataset(name));
     if (name == "Stamp_flags") {
-      flags_ = std::move(*opened);
+      flags_ = std::move(opened);
     } else {
-      quantities_.push_back(std::move(*opened));
+      quantities_.push_back(std::move(opened));
     }
   }
   return flags_ && flags_->rows != 1 ? Expected<void>(malformed("Stamp_flags must be one row"))
@@ -204,11 +189,7 @@ Expected<void> Hdf5Reader::describe() {
   if (names.empty()) {
     return malformed("has no dataset with channels");
   }
-  auto described = describe_file_channels(settings_, names);
-  if (!described) {
-    return fail(described.error());
-  }
-  description_ = std::move(*described);
+  DYNCAL_TRY(description_, describe_file_channels(settings_, names));
   description_.device = hdf5_text(group_.id(), "Name");
   description_.serial = hdf5_text(group_.id(), "Serial");
   description_.stamp_instant = StampInstant::data_ready_edge;
@@ -253,14 +234,12 @@ Expected<std::vector<Number>> Hdf5Reader::numbers(const Quantity& quantity, hid_
 Expected<void> Hdf5Reader::find_end() {
   for (end_ = columns_; end_ > 0;) {
     const auto samples = static_cast<std::size_t>(std::min<std::uint64_t>(end_, max_samples));
-    const auto times = numbers<std::uint64_t>(stamps_, H5T_NATIVE_UINT64, end_ - samples, samples);
-    if (!times) {
-      return fail(times.error());
-    }
+    DYNCAL_TRY(const auto times,
+               numbers<std::uint64_t>(stamps_, H5T_NATIVE_UINT64, end_ - samples, samples));
     const auto last =
-        std::find_if(times->rbegin(), times->rend(), [](auto time) { return time != 0; });
-    end_ -= static_cast<std::uint64_t>(last - times->rbegin());
-    if (last != times->rend()) {
+        std::find_if(times.rbegin(), times.rend(), [](auto time) { return time != 0; });
+    end_ -= static_cast<std::uint64_t>(last - times.rbegin());
+    if (last != times.rend()) {
       return {};
     }
   }
@@ -268,12 +247,9 @@ Expected<void> Hdf5Reader::find_end() {
 }
 
 Expected<void> Hdf5Reader::number(SampleBlock& block) {
-  auto sent = numbers<std::uint64_t>(numbers_, H5T_NATIVE_UINT64, row_, block.samples);
-  if (!sent) {
-    return fail(sent.error());
-  }
+  DYNCAL_TRY(auto sent, numbers<std::uint64_t>(numbers_, H5T_NATIVE_UINT64, row_, block.samples));
   for (std::size_t i = 0; i < block.samples; ++i) {
-    std::uint64_t sample = (*sent)[i];
+    std::uint64_t sample = sent[i];
     if (last_sample_) {
       // The 32 bits of the unit, counted on.
       const std::uint64_t turns = *last_sample_ / numbers_of_unit;
@@ -309,9 +285,7 @@ Expected<SampleBlock> Hdf5Reader::read(std::size_t samples) {
     return block;
   }
   const Hdf5Lock lock;
-  if (auto numbered = number(block); !numbered) {
-    return fail(numbered.error());
-  }
+  DYNCAL_TRY(number(block));
   auto stamps = numbers<std::int64_t>(stamps_, H5T_NATIVE_INT64, row_, block.samples);
   auto u = numbers<std::uint32_t>(uncertainties_, H5T_NATIVE_UINT32, row_, block.samples);
   if (!stamps || !u) {
@@ -324,22 +298,18 @@ Expected<SampleBlock> Hdf5Reader::read(std::size_t samples) {
                    block.stamp_uncertainty_ns.begin(), receiver_uncertainty_ns);
   }
   for (const Quantity& quantity : quantities_) {
-    const auto values = numbers<double>(quantity, H5T_NATIVE_DOUBLE, row_, block.samples);
-    if (!values) {
-      return fail(values.error());
-    }
-    block.values.insert(block.values.end(), values->begin(), values->end());
+    DYNCAL_TRY(const auto values,
+               numbers<double>(quantity, H5T_NATIVE_DOUBLE, row_, block.samples));
+    block.values.insert(block.values.end(), values.begin(), values.end());
   }
   order_.check(block);
   if (flags_) {
-    const auto flags = numbers<std::uint8_t>(*flags_, H5T_NATIVE_UINT8, row_, block.samples);
-    if (!flags) {
-      return fail(flags.error());
-    }
-    if (std::any_of(flags->begin(), flags->end(), [](auto flag) { return flag != 0; })) {
+    DYNCAL_TRY(const auto flags,
+               numbers<std::uint8_t>(*flags_, H5T_NATIVE_UINT8, row_, block.samples));
+    if (std::any_of(flags.begin(), flags.end(), [](auto flag) { return flag != 0; })) {
       block.flags.resize(block.samples);
       std::transform(
-          flags->begin(), flags->end(), block.flags.begin(), block.flags.begin(),
+          flags.begin(), flags.end(), block.flags.begin(), block.flags.begin(),
           [](std::uint8_t a, std::uint8_t b) { return static_cast<std::uint8_t>(a | b); });
     }
   } else {

@@ -23,19 +23,14 @@ void copy_as(const char* from, std::size_t row_bytes, std::size_t rows, Number* 
 } // namespace
 
 Expected<std::unique_ptr<NpyReader>> NpyReader::open(const FileSettings& settings) {
-  auto file = MappedFile::open(settings.path);
-  if (!file) {
-    return fail(file.error());
-  }
-  std::unique_ptr<NpyReader> reader(new NpyReader(settings, std::move(*file)));
+  DYNCAL_TRY(auto file, MappedFile::open(settings.path));
+  std::unique_ptr<NpyReader> reader(new NpyReader(settings, std::move(file)));
   auto header = NpyHeader::of(reader->file_.text());
   if (!header) {
     return reader->malformed(header.error());
   }
   reader->header_ = std::move(*header);
-  if (auto named = reader->name_fields(); !named) {
-    return fail(named.error());
-  }
+  DYNCAL_TRY(reader->name_fields());
   return reader;
 }
 
@@ -66,11 +61,7 @@ Expected<void> NpyReader::name_fields() {
             ": no field t_ns, and no sample rate is given (sample_rate_hz of the source in a "
             "bench file, --nominal-rate of a command); one of them must tell the time");
   }
-  auto described = describe_file_channels(settings_, names);
-  if (!described) {
-    return fail(described.error());
-  }
-  description_ = std::move(*described);
+  DYNCAL_TRY(description_, describe_file_channels(settings_, names));
   return {};
 }
 
@@ -125,9 +116,7 @@ Expected<SampleBlock> NpyReader::read(std::size_t samples) {
     block.stamps_ns.resize(block.samples);
     copy(*time_, block.samples, block.stamps_ns.data());
   }
-  if (const auto order = check_numbers(numbers); !order) {
-    return fail(order.error());
-  }
+  DYNCAL_TRY(check_numbers(numbers));
   block.values.resize(block.samples * channels_.size());
   for (std::size_t channel = 0; channel < channels_.size(); ++channel) {
     copy(channels_[channel], block.samples, block.values.data() + channel * block.samples);

@@ -119,11 +119,7 @@ Expected<std::unique_ptr<WavReader>> WavReader::open(const FileSettings& setting
   for (int channel = 1; channel <= info.channels; ++channel) {
     names.push_back("channel_" + std::to_string(channel));
   }
-  auto description = describe_file_channels(settings, names);
-  if (!description) {
-    return fail(description.error());
-  }
-  reader->description_ = *description;
+  DYNCAL_TRY(reader->description_, describe_file_channels(settings, names));
   reader->rate_ = settings.sample_rate.value_or(SampleRate{info.samplerate, 1});
   reader->description_.nominal_rate_hz = reader->rate_.hz();
   for (ChannelDescription& channel : reader->description_.channels) {

@@ -15,11 +15,9 @@ constexpr std::chrono::milliseconds limit{1500};
 
 Expected<std::string> read_identity(const std::string& address) {
   const StopSignal never_raised;
-  auto connection = ScpiConnection::connect("generator", address, limit, never_raised, limit);
-  if (!connection) {
-    return fail(connection.error());
-  }
-  return connection->query("*IDN?");
+  DYNCAL_TRY(auto connection,
+             ScpiConnection::connect("generator", address, limit, never_raised, limit));
+  return connection.query("*IDN?");
 }
 
 } // namespace dyncal::drivers::generator

@@ -45,18 +45,12 @@ Error still_on(const std::string& address) {
 
 Expected<OutputReading> read_output(const std::string& address) {
   const StopSignal never_raised;
-  auto connection = connect(address, never_raised);
-  if (!connection) {
-    return fail(connection.error());
-  }
-  const auto state = connection->query(":OUTPut1?");
-  if (!state) {
-    return fail(state.error());
-  }
+  DYNCAL_TRY(auto connection, connect(address, never_raised));
+  DYNCAL_TRY(const auto state, connection.query(":OUTPut1?"));
   OutputReading reading;
-  reading.is_on = parse_output_state(*state);
-  const auto frequency = connection->query(":SOURce1:FREQuency?");
-  const auto voltage = frequency ? connection->query(":SOURce1:VOLTage?") : frequency;
+  reading.is_on = parse_output_state(state);
+  const auto frequency = connection.query(":SOURce1:FREQuency?");
+  const auto voltage = frequency ? connection.query(":SOURce1:VOLTage?") : frequency;
   if (!voltage) {
     return reading; // whether it is on is what matters
   }
@@ -69,16 +63,11 @@ Expected<OutputReading> read_output(const std::string& address) {
 
 Expected<void> switch_output_off(const std::string& address) {
   const StopSignal never_raised;
-  auto connection = connect(address, never_raised);
-  if (!connection) {
-    return fail(connection.error());
-  }
-  const auto state =
-      connection->send(":OUTPut1 OFF").and_then([&] { return connection->query(":OUTPut1?"); });
-  if (!state) {
-    return fail(state.error());
-  }
-  if (parse_output_state(*state).value_or(false)) {
+  DYNCAL_TRY(auto connection, connect(address, never_raised));
+  DYNCAL_TRY(const auto state, connection.send(":OUTPut1 OFF").and_then([&] {
+    return connection.query(":OUTPut1?");
+  }));
+  if (parse_output_state(state).value_or(false)) {
     return fail(still_on(address));
   }
   return {};

@@ -62,15 +62,10 @@ Expected<LevelControl> LevelControl::start(const LevelTarget& target, const Leve
   const double level_m_s2 = target.level_m_s2 * (target.response_known ? 1.0 : first_fraction);
   const auto possible = voltage_for_level(target.level_m_s2, target.level_per_volt,
                                           {.maximum_level_m_s2 = limits.maximum_level_m_s2});
-  if (!possible) {
-    return fail(possible.error());
-  }
-  const auto voltage_v = voltage_for_level(level_m_s2, target.level_per_volt, limits);
-  if (!voltage_v) {
-    return fail(voltage_v.error());
-  }
+  DYNCAL_TRY(possible);
+  DYNCAL_TRY(const auto voltage_v, voltage_for_level(level_m_s2, target.level_per_volt, limits));
   LevelControl control(target, limits);
-  control.voltage_v_ = *voltage_v;
+  control.voltage_v_ = voltage_v;
   control.level_per_volt_ = target.level_per_volt;
   return control;
 }
@@ -116,11 +111,7 @@ Expected<bool> LevelControl::take(double measured_m_s2) {
                     " corrections: is the exciter steady, or level_tolerance_rel = " +
                     number(target_.tolerance_rel) + " too narrow?");
   }
-  const auto next_v = voltage_for_level(target_.level_m_s2, level_per_volt_, limits_);
-  if (!next_v) {
-    return fail(next_v.error());
-  }
-  voltage_v_ = *next_v;
+  DYNCAL_TRY(voltage_v_, voltage_for_level(target_.level_m_s2, level_per_volt_, limits_));
   ++changes_;
   return false;
 }

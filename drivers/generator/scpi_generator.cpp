@@ -30,9 +30,7 @@ Expected<std::unique_ptr<ScpiGenerator>> ScpiGenerator::connect(const std::strin
   std::unique_ptr<ScpiGenerator> generator(new ScpiGenerator());
   generator->address_ = address;
   generator->maximum_voltage_v_ = maximum_voltage_v;
-  if (auto connected = generator->reconnect(); !connected) {
-    return fail(connected.error());
-  }
+  DYNCAL_TRY(generator->reconnect());
   generator->choose_clock();
   return generator;
 }
@@ -53,15 +51,12 @@ void ScpiGenerator::choose_clock() {
 }
 
 Expected<void> ScpiGenerator::reconnect() {
-  auto connection =
-      ScpiConnection::connect("generator", address_, connect_limit, never_raised_, connect_limit);
-  if (!connection) {
-    return fail(connection.error());
-  }
-  connection->set_delivery_limit(delivery_limit);
-  connection->call_while_waiting([this] { return go_on_waiting(); });
-  if (auto ready = set_up(*connection); !ready) {
-    const bool knew_no_question = connection->lost() && ready.error().code == ErrorCode::timeout &&
+  DYNCAL_TRY(auto connection, ScpiConnection::connect("generator", address_, connect_limit,
+                                                      never_raised_, connect_limit));
+  connection.set_delivery_limit(delivery_limit);
+  connection.call_while_waiting([this] { return go_on_waiting(); });
+  if (auto ready = set_up(connection); !ready) {
+    const bool knew_no_question = connection.lost() && ready.error().code == ErrorCode::timeout &&
                                   reads_back_ && family_of(identity_) == GeneratorFamily::unknown;
     if (!knew_no_question) {
       return ready;
@@ -69,25 +64,19 @@ Expected<void> ScpiGenerator::reconnect() {
     reads_back_ = false;
     return reconnect();
   }
-  connection->set_answer_limit(answer_limit);
-  connection_.emplace(std::move(*connection));
+  connection.set_answer_limit(answer_limit);
+  connection_.emplace(std::move(connection));
   return confirm_off();
 }
 
 Expected<void> ScpiGenerator::set_up(ScpiConnection& connection) {
   // First of all, for one that answers nothing any more may still listen.
-  const auto identity =
-      connection.send(":OUTPut1 OFF").and_then([&] { return connection.query("*IDN?"); });
-  if (!identity) {
-    return fail(identity.error());
-  }
-  identity_ = *identity;
+  DYNCAL_TRY(identity_,
+             connection.send(":OUTPut1 OFF").and_then([&] { return connection.query("*IDN?"); }));
   // An instrument that was switched off in between has forgotten all of this.
   for (const char* setting : {":OUTPut1 OFF", ":OUTPut1:LOAD INFinity",
                               ":SOURce1:FUNCtion SINusoid", ":SOURce1:VOLTage:UNIT VPP"}) {
-    if (auto done = connection.command(setting); !done) {
-      return done;
-    }
+    DYNCAL_TRY(connection.command(setting));
   }
   return reset(connection);
 }
@@ -108,9 +97,7 @@ Expected<void> ScpiGenerator::reset(ScpiConnection& connection) {
     connection.set_answer_limit(family == GeneratorFamily::unknown ? unknown_limit : connect_limit);
     const auto answer = connection.query(state.query);
     connection.set_answer_limit(connect_limit);
-    if (!answer) {
-      return fail(answer.error());
-    }
+    DYNCAL_TRY(answer);
     const auto is_reset = says_reset(*answer);
     if (!is_reset.value_or(true)) {
       return fail(ErrorCode::refused, "generator " + address_ + " takes " + state.reset +
@@ -130,22 +117,16 @@ Expected<std::optional<bool>> ScpiGenerator::output_is_on() {
 }
 
 Expected<void> ScpiGenerator::confirm_off() {
-  const auto on = output_is_on();
-  if (!on) {
-    return fail(on.error());
-  }
-  if (on->value_or(false)) {
+  DYNCAL_TRY(const auto on, output_is_on());
+  if (on.value_or(false)) {
     return fail(still_on(address_));
   }
   return {};
 }
 
 Expected<void> ScpiGenerator::confirm_on() {
-  const auto on = output_is_on();
-  if (!on) {
-    return fail(on.error());
-  }
-  if (!on->value_or(true)) {
+  DYNCAL_TRY(const auto on, output_is_on());
+  if (!on.value_or(true)) {
     return fail(ErrorCode::refused, "generator " + address_ +
                                         " answers that its output is off, which was switched on: "
                                         "by its guard, or at its front panel?");
@@ -155,18 +136,14 @@ Expected<void> ScpiGenerator::confirm_on() {
 
 Expected<std::string> ScpiGenerator::query(const std::string& text) {
   if (connection_->lost()) {
-    if (auto connected = reconnect(); !connected) {
-      return fail(connected.error());
-    }
+    DYNCAL_TRY(reconnect());
   }
   return connection_->query(text);
 }
 
 Expected<void> ScpiGenerator::command(const std::string& text) {
   if (connection_->lost()) {
-    if (auto connected = reconnect(); !connected) {
-      return connected;
-    }
+    DYNCAL_TRY(reconnect());
   }
   return connection_->command(text);
 }
@@ -181,9 +158,7 @@ Expected<void> ScpiGenerator::set_amplitude_v(double amplitude_v) {
                                                 scpi_decimal(amplitude_v) +
                                                 " V: must be between 0 and 1000 V");
   }
-  if (auto allowed = check_voltage(amplitude_v); !allowed) {
-    return allowed;
-  }
+  DYNCAL_TRY(check_voltage(amplitude_v));
   amplitude_v_ = amplitude_v;
   return command(":SOURce1:VOLTage " + scpi_decimal(2.0 * amplitude_v));
 }
@@ -204,11 +179,8 @@ Expected<void> ScpiGenerator::check_before_on() {
   if (!answers_offset_) {
     return {};
   }
-  const auto answer = query(offset_query);
-  if (!answer) {
-    return fail(answer.error());
-  }
-  const auto offset_v = parse_scpi_number(*answer);
+  DYNCAL_TRY(const auto answer, query(offset_query));
+  const auto offset_v = parse_scpi_number(answer);
   if (offset_v && std::abs(*offset_v) > reset_rounding) {
     return fail(ErrorCode::refused,
                 "generator " + address_ + " answers that its DC offset is " +
@@ -238,16 +210,12 @@ Expected<void> ScpiGenerator::set_rectangle(bool rectangle) {
 }
 
 Expected<double> ScpiGenerator::query_bench_time(const std::string& text) {
-  const auto answer = query(text);
-  if (!answer) {
-    return fail(answer.error());
-  }
+  DYNCAL_TRY(const auto answer, query(text));
   double time_s = 0.0;
-  const auto [end, status] =
-      std::from_chars(answer->data(), answer->data() + answer->size(), time_s);
+  const auto [end, status] = std::from_chars(answer.data(), answer.data() + answer.size(), time_s);
   if (status != std::errc()) {
     return fail(ErrorCode::malformed,
-                "generator " + address_ + " answers " + text + " with '" + *answer + "'");
+                "generator " + address_ + " answers " + text + " with '" + answer + "'");
   }
   return time_s;
 }

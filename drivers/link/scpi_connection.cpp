@@ -78,9 +78,7 @@ Expected<std::string> ScpiConnection::read_answer() {
 }
 
 Expected<std::string> ScpiConnection::query(const std::string& text) {
-  if (auto asked = ask(text); !asked) {
-    return fail(asked.error());
-  }
+  DYNCAL_TRY(ask(text));
   auto answer = read_answer();
   if (!answer) {
     return give_up(answer.error(), text);
@@ -89,11 +87,8 @@ Expected<std::string> ScpiConnection::query(const std::string& text) {
 }
 
 Expected<double> ScpiConnection::query_number(const std::string& text) {
-  const auto answer = query(text);
-  if (!answer) {
-    return fail(answer.error());
-  }
-  auto number = parse_scpi_number(*answer);
+  DYNCAL_TRY(const auto answer, query(text));
+  auto number = parse_scpi_number(answer);
   if (!number) {
     return give_up_misunderstood(number.error().message, text);
   }
@@ -101,14 +96,9 @@ Expected<double> ScpiConnection::query_number(const std::string& text) {
 }
 
 Expected<void> ScpiConnection::command(const std::string& text) {
-  if (auto sent = send(text); !sent) {
-    return sent;
-  }
-  const auto answer = query(":SYSTem:ERRor?");
-  if (!answer) {
-    return fail(answer.error());
-  }
-  const auto error = parse_instrument_error(*answer);
+  DYNCAL_TRY(send(text));
+  DYNCAL_TRY(const auto answer, query(":SYSTem:ERRor?"));
+  const auto error = parse_instrument_error(answer);
   if (!error) {
     return give_up_misunderstood(error.error().message, text);
   }
@@ -116,14 +106,12 @@ Expected<void> ScpiConnection::command(const std::string& text) {
     return {};
   }
   return fail(ErrorCode::refused,
-              instrument_ + " " + address_ + " refuses " + text + ": " + shown(*answer));
+              instrument_ + " " + address_ + " refuses " + text + ": " + shown(answer));
 }
 
 Expected<std::vector<char>> ScpiConnection::query_block(const std::string& text,
                                                         std::size_t max_bytes) {
-  if (auto asked = ask(text); !asked) {
-    return fail(asked.error());
-  }
+  DYNCAL_TRY(ask(text));
   auto block = read_block(max_bytes);
   if (!block) {
     return give_up(block.error(), text);
@@ -136,17 +124,13 @@ Expected<std::vector<char>> ScpiConnection::read_block(std::size_t max_bytes) {
     return fail(ErrorCode::malformed, address_ + ": " + message);
   };
   char header[2];
-  if (auto read = transport_->read_exactly(header, answer_limit_); !read) {
-    return fail(read.error());
-  }
+  DYNCAL_TRY(transport_->read_exactly(header, answer_limit_));
   const auto digit_count = parse_block_digit_count({header, sizeof(header)});
   if (!digit_count) {
     return malformed(digit_count.error().message);
   }
   char digits[9];
-  if (auto read = transport_->read_exactly({digits, *digit_count}, answer_limit_); !read) {
-    return fail(read.error());
-  }
+  DYNCAL_TRY(transport_->read_exactly({digits, *digit_count}, answer_limit_));
   const auto length = parse_block_length({digits, *digit_count});
   if (!length) {
     return malformed(length.error().message);
@@ -156,14 +140,9 @@ Expected<std::vector<char>> ScpiConnection::read_block(std::size_t max_bytes) {
                      std::to_string(max_bytes) + " are possible");
   }
   std::vector<char> block(*length);
-  if (auto read = transport_->read_exactly(block, answer_limit_); !read) {
-    return fail(read.error());
-  }
-  const auto end = transport_->read_line(max_line_bytes, answer_limit_);
-  if (!end) {
-    return fail(end.error());
-  }
-  if (!end->empty()) {
+  DYNCAL_TRY(transport_->read_exactly(block, answer_limit_));
+  DYNCAL_TRY(const auto end, transport_->read_line(max_line_bytes, answer_limit_));
+  if (!end.empty()) {
     return malformed("a block is longer than the " + std::to_string(*length) +
                      " bytes it announces");
   }

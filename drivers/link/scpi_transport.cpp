@@ -39,15 +39,9 @@ Expected<std::unique_ptr<ScpiTransport>> connect_scpi_transport(const std::strin
   if (address.starts_with("vxi11:")) {
     return connect_vxi11_transport(address, limit);
   }
-  const auto parsed = parse_address(address);
-  if (!parsed) {
-    return fail(parsed.error());
-  }
-  auto connection = TcpConnection::connect(*parsed, limit, stop);
-  if (!connection) {
-    return fail(connection.error());
-  }
-  return std::make_unique<SocketTransport>(std::move(*connection));
+  DYNCAL_TRY(const auto parsed, parse_address(address));
+  DYNCAL_TRY(auto connection, TcpConnection::connect(parsed, limit, stop));
+  return std::make_unique<SocketTransport>(std::move(connection));
 }
 
 } // namespace dyncal::drivers

@@ -107,12 +107,9 @@ Expected<TcpConnection> TcpConnection::connect(const Address& address,
                                                std::chrono::milliseconds limit,
                                                const StopSignal& stop) {
   const auto deadline = Clock::now() + limit;
-  auto targets = resolve(address);
-  if (!targets) {
-    return fail(targets.error());
-  }
+  DYNCAL_TRY(auto targets, resolve(address));
   int status = ECONNREFUSED;
-  for (const addrinfo* target = targets->get(); target != nullptr; target = target->ai_next) {
+  for (const addrinfo* target = targets.get(); target != nullptr; target = target->ai_next) {
     FileDescriptor socket(
         ::socket(target->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
     if (!socket.is_open()) {
@@ -160,9 +157,7 @@ Expected<void> TcpConnection::send_all(std::string_view bytes, std::chrono::mill
     if (sent > 0) {
       bytes.remove_prefix(static_cast<std::size_t>(sent));
     } else if (errno == EAGAIN || errno == EWOULDBLOCK) {
-      if (auto ready = wait(POLLOUT, deadline); !ready) {
-        return ready;
-      }
+      DYNCAL_TRY(wait(POLLOUT, deadline));
     } else if (errno != EINTR) {
       return fail(ErrorCode::disconnected,
                   address_.text() + ": the connection is lost (" + std::strerror(errno) + ")");
@@ -182,9 +177,7 @@ Expected<std::size_t> TcpConnection::receive(std::span<char> bytes, Clock::time_
                   address_.text() + ": the instrument has closed the connection");
     }
     if (errno == EAGAIN || errno == EWOULDBLOCK) {
-      if (auto ready = wait(POLLIN, deadline); !ready) {
-        return fail(ready.error());
-      }
+      DYNCAL_TRY(wait(POLLIN, deadline));
     } else if (errno != EINTR) {
       return fail(ErrorCode::disconnected,
                   address_.text() + ": the connection is lost (" + std::strerror(errno) + ")");
@@ -212,11 +205,8 @@ Expected<std::string> TcpConnection::read_line(std::size_t max_bytes,
     }
     searched = received_.size();
     char chunk[4096];
-    auto count = receive(chunk, deadline);
-    if (!count) {
-      return fail(count.error());
-    }
-    received_.append(chunk, *count);
+    DYNCAL_TRY(auto count, receive(chunk, deadline));
+    received_.append(chunk, count);
   }
 }
 
@@ -244,11 +234,8 @@ Expected<void> TcpConnection::read_exactly(std::span<char> bytes, std::chrono::m
   received_.erase(0, waiting);
   bytes = bytes.subspan(waiting);
   while (!bytes.empty()) {
-    auto count = receive(bytes, deadline);
-    if (!count) {
-      return fail(count.error());
-    }
-    bytes = bytes.subspan(*count);
+    DYNCAL_TRY(auto count, receive(bytes, deadline));
+    bytes = bytes.subspan(count);
   }
   return {};
 }

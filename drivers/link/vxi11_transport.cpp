@@ -49,18 +49,14 @@ public:
         }
         return line;
       }
-      if (auto more = receive(deadline); !more) {
-        return fail(more.error());
-      }
+      DYNCAL_TRY(receive(deadline));
     }
   }
 
   Expected<void> read_exactly(std::span<char> bytes, std::chrono::milliseconds limit) override {
     const auto deadline = Clock::now() + limit;
     while (received_.size() - taken_ < bytes.size()) {
-      if (auto more = receive(deadline); !more) {
-        return more;
-      }
+      DYNCAL_TRY(receive(deadline));
     }
     std::copy_n(received_.data() + taken_, bytes.size(), bytes.begin());
     taken_ += bytes.size();

@@ -149,10 +149,7 @@ private:
 class Receiver::Socket {
 public:
   static Expected<std::unique_ptr<Socket>> open(Endpoint endpoint) {
-    auto listen = parse_listen_address(endpoint.listen);
-    if (!listen) {
-      return fail(listen.error());
-    }
+    DYNCAL_TRY(auto listen, parse_listen_address(endpoint.listen));
     FileDescriptor owner(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
     const int descriptor = owner.number();
     if (!owner.is_open()) {
@@ -167,7 +164,7 @@ public:
       setsockopt(descriptor, SOL_SOCKET, SO_RCVBUF, &wanted, sizeof wanted);
     }
     setsockopt(descriptor, SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on);
-    sockaddr_in address = socket_address(*listen);
+    sockaddr_in address = socket_address(listen);
     if (bind(descriptor, generic(address), sizeof address) != 0) {
       return fail(cannot_listen(endpoint.listen, errno));
     }
@@ -240,11 +237,8 @@ Receiver::Receiver() = default;
 Expected<std::unique_ptr<Receiver>> Receiver::create(std::vector<Endpoint> endpoints) {
   auto receiver = std::unique_ptr<Receiver>(new Receiver());
   for (auto& endpoint : endpoints) {
-    auto opened = Socket::open(std::move(endpoint));
-    if (!opened) {
-      return fail(opened.error());
-    }
-    receiver->sockets_.push_back(std::move(*opened));
+    DYNCAL_TRY(auto opened, Socket::open(std::move(endpoint)));
+    receiver->sockets_.push_back(std::move(opened));
   }
   return receiver;
 }

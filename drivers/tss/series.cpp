@@ -188,9 +188,7 @@ Expected<SeriesHeader> parse_series_header(std::string_view json_line) {
                        "': must be int16, int32, float32 or float64");
     }
     header.form = *form;
-    if (auto possible = check(header.series); !possible) {
-      return fail(possible.error());
-    }
+    DYNCAL_TRY(check(header.series));
     return header;
   } catch (const nlohmann::json::exception&) {
     return malformed("'" + shown(json_line) + "' does not announce a series");
@@ -251,9 +249,7 @@ Expected<Series> parse_series_csv(std::string_view text) {
     }
   }
   series.samples = columns.empty() ? 0 : columns.front().size();
-  if (auto possible = check(series); !possible) {
-    return fail(possible.error());
-  }
+  DYNCAL_TRY(check(series));
   for (const auto& column : columns) {
     series.values.insert(series.values.end(), column.begin(), column.end());
   }

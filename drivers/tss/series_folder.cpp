@@ -19,28 +19,19 @@ public:
       : folder_(std::move(folder)), stop_(stop) {}
 
   Expected<void> discard_pending() override {
-    auto names = csv_names();
-    if (!names) {
-      return fail(names.error());
-    }
-    known_names_ = std::move(*names);
+    DYNCAL_TRY(known_names_, csv_names());
     folder_was_read_ = true;
     return {};
   }
 
   Expected<Series> next(milliseconds limit) override {
     if (!folder_was_read_) {
-      if (auto done = discard_pending(); !done) {
-        return fail(done.error());
-      }
+      DYNCAL_TRY(discard_pending());
     }
     const auto deadline = Clock::now() + limit;
     for (;;) {
-      const auto names = csv_names();
-      if (!names) {
-        return fail(names.error());
-      }
-      for (const std::string& name : *names) { // in the order of their names
+      DYNCAL_TRY(const auto names, csv_names());
+      for (const std::string& name : names) { // in the order of their names
         if (known_names_.insert(name).second) {
           return read(folder_ / name);
         }

@@ -22,9 +22,7 @@ public:
       : address_(std::move(address)), stop_(stop) {}
 
   Expected<void> discard_pending() override {
-    if (auto connected = connect(); !connected) {
-      return connected;
-    }
+    DYNCAL_TRY(connect());
     while (connection_ && connection_->has_unread()) {
       if (auto old = next(leftover_limit);
           !old && old.error().code == ErrorCode::disconnected && stop_.raised()) {
@@ -35,9 +33,7 @@ public:
   }
 
   Expected<Series> next(milliseconds limit) override {
-    if (auto connected = connect(); !connected) {
-      return fail(connected.error());
-    }
+    DYNCAL_TRY(connect());
     auto line = connection_->read_line(max_header_bytes, limit);
     if (!line) {
       // Nothing has come yet: the connection is as good as before.
@@ -81,16 +77,12 @@ private:
   Expected<std::vector<char>> read_block(std::size_t wanted) {
     std::array<char, 2> head{};
     std::array<char, 9> digits{};
-    if (auto read = connection_->read_exactly(head, rest_limit); !read) {
-      return fail(read.error());
-    }
+    DYNCAL_TRY(connection_->read_exactly(head, rest_limit));
     const auto count = parse_block_digit_count({head.data(), head.size()});
     if (!count) {
       return fail(ErrorCode::malformed, address_ + ": " + count.error().message);
     }
-    if (auto read = connection_->read_exactly({digits.data(), *count}, rest_limit); !read) {
-      return fail(read.error());
-    }
+    DYNCAL_TRY(connection_->read_exactly({digits.data(), *count}, rest_limit));
     const auto length = parse_block_length({digits.data(), *count});
     if (!length || *length != wanted) {
       return fail(ErrorCode::malformed,
@@ -98,14 +90,9 @@ private:
                       "' bytes where the series has " + std::to_string(wanted));
     }
     std::vector<char> bytes(wanted);
-    if (auto read = connection_->read_exactly(bytes, rest_limit); !read) {
-      return fail(read.error());
-    }
-    const auto end = connection_->read_line(max_header_bytes, rest_limit);
-    if (!end) {
-      return fail(end.error());
-    }
-    if (!end->empty()) {
+    DYNCAL_TRY(connection_->read_exactly(bytes, rest_limit));
+    DYNCAL_TRY(const auto end, connection_->read_line(max_header_bytes, rest_limit));
+    if (!end.empty()) {
       return fail(ErrorCode::malformed, address_ + ": a series is longer than it announces");
     }
     return bytes;

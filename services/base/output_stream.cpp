@@ -63,9 +63,7 @@ Expected<void> take_output_name(const std::filesystem::path& unfinished,
 }
 
 Expected<OutputStream> OutputStream::create(const std::filesystem::path& path) {
-  if (auto is_new = check_new_output(path); !is_new) {
-    return fail(is_new.error());
-  }
+  DYNCAL_TRY(check_new_output(path));
   std::filesystem::path unfinished = path.string() + ".part";
   drivers::FileDescriptor file(
       ::open(unfinished.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, for_everybody));
@@ -118,9 +116,7 @@ Expected<void> OutputStream::overwrite(std::uint64_t offset, std::string_view by
 }
 
 Expected<void> OutputStream::finish() {
-  if (auto flushed = flush(); !flushed) {
-    return flushed;
-  }
+  DYNCAL_TRY(flush());
   if (::fsync(file_.number()) != 0) {
     return not_written(errno);
   }

@@ -163,11 +163,8 @@ public:
   template <class T>
   [[nodiscard]] services::Expected<Writer<T>> writer(const std::string& topic, Profile profile,
                                                      const std::string& partition) {
-    if (const auto name = profile == Profile::catch_up ? check_asker_name(partition)
-                                                       : check_bench_name(partition);
-        !name) {
-      return fail(name.error());
-    }
+    DYNCAL_TRY(profile == Profile::catch_up ? check_asker_name(partition)
+                                            : check_bench_name(partition));
     return open_writer<T>(topic, profile, {partition});
   }
   // `wake_up` rings whenever something may have come, and once at the beginning; it may be empty.
@@ -199,9 +196,7 @@ public:
   template <class T>
   [[nodiscard]] services::Expected<Writer<T>>
   writer_of_run(const Topic<T>& topic, const std::string& bench, const std::string& run) {
-    if (const auto name = check_bench_name(bench); !name) {
-      return fail(name.error());
-    }
+    DYNCAL_TRY(check_bench_name(bench));
     return open_writer<T>(topic.name, topic.profile, {bench, partition_of_run(bench, run)});
   }
   template <class T>

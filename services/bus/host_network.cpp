@@ -60,12 +60,9 @@ std::string to_string(const HostAddress& address) {
 }
 
 services::Expected<std::string> interface_address(const std::string& name_or_address) {
-  const auto addresses = host_addresses();
-  if (!addresses) {
-    return fail(addresses.error());
-  }
+  DYNCAL_TRY(const auto addresses, host_addresses());
   std::string known;
-  for (const HostAddress& one : *addresses) {
+  for (const HostAddress& one : addresses) {
     if (name_or_address == one.interface || name_or_address == one.address) {
       return one.address;
     }

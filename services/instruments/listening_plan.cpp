@@ -76,9 +76,7 @@ Expected<std::vector<PlannedEndpoint>> plan_listening(const std::vector<BenchFil
       if (added.settings.sync_sensor == added.settings.sensor) {
         return fail(ErrorCode::bad_file, source.where + ": sensor and sync_sensor are the same");
       }
-      if (auto unused = check_unused(endpoint, added, source.where); !unused) {
-        return fail(unused.error());
-      }
+      DYNCAL_TRY(check_unused(endpoint, added, source.where));
       endpoint.sources.push_back(std::move(added));
     }
     if (!any) {

@@ -89,15 +89,9 @@ SourceOptions options_of(const BenchFile& bench, const SourceSettings& settings)
 
 Expected<PlayedSource> PlayedSource::prepare(const SourceSettings& settings,
                                              const std::stop_token& stop) {
-  auto driver = make_driver(settings);
-  if (!driver) {
-    return fail(driver.error());
-  }
-  auto description = describe(**driver, settings, stop);
-  if (!description) {
-    return fail(description.error());
-  }
-  return PlayedSource(settings, std::move(*driver), std::move(*description));
+  DYNCAL_TRY(auto driver, make_driver(settings));
+  DYNCAL_TRY(auto description, describe(*driver, settings, stop));
+  return PlayedSource(settings, std::move(driver), std::move(description));
 }
 
 Expected<void> PlayedSource::run(SourcePublisher& publisher, const std::stop_token& stop) {
@@ -127,11 +121,7 @@ Expected<void> PlayedSource::play_for_every_run(SourcePublisher& publisher,
       return played;
     }
     // A fresh reader and session for the next run, so that answers before it belong to it.
-    auto driver = make_driver(settings_);
-    if (!driver) {
-      return fail(driver.error());
-    }
-    driver_ = std::move(*driver);
+    DYNCAL_TRY(driver_, make_driver(settings_));
     if (auto described = describe(*driver_, settings_, stop); !described) {
       return stop.stop_requested() ? Expected<void>()
                                    : fail(described.error()); // a stop is not a failure

@@ -45,9 +45,7 @@ Expected<void> ShotDevice::connect(double frequency_hz) {
 }
 
 Expected<std::optional<ShotPair>> ShotDevice::take(double frequency_hz) {
-  if (auto ready = connect(frequency_hz); !ready) {
-    return fail(ready.error());
-  }
+  DYNCAL_TRY(connect(frequency_hz));
   const milliseconds trigger_limit =
       min_trigger_limit + milliseconds(static_cast<int>(3000.0 / frequency_hz));
   auto trace = oscilloscope_.acquire(trigger_limit);
@@ -56,14 +54,11 @@ Expected<std::optional<ShotPair>> ShotDevice::take(double frequency_hz) {
     return fail(device_error(trace.error()));
   }
   triggers_.trigger_came();
-  auto series = series_of_last_trigger();
+  DYNCAL_TRY(auto series, series_of_last_trigger());
   if (!series) {
-    return fail(series.error());
-  }
-  if (!*series) {
     return std::nullopt;
   }
-  return ShotPair{std::move(*trace), std::move(**series)};
+  return ShotPair{std::move(*trace), std::move(*series)};
 }
 
 Expected<std::optional<drivers::tss::Series>> ShotDevice::series_of_last_trigger() {

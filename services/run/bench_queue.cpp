@@ -17,11 +17,8 @@ constexpr auto look_interval = 200ms;
 Expected<BenchQueue> BenchQueue::open(bus::Participant& participant, bus::Clock& clock,
                                       const std::string& bench) {
   auto wake_up = std::make_shared<bus::WakeUp>();
-  auto reader = participant.reader(bus::topics::measurement, bench, wake_up);
-  if (!reader) {
-    return fail(reader.error());
-  }
-  return BenchQueue(clock, std::move(wake_up), std::move(*reader));
+  DYNCAL_TRY(auto reader, participant.reader(bus::topics::measurement, bench, wake_up));
+  return BenchQueue(clock, std::move(wake_up), std::move(reader));
 }
 
 std::optional<std::string> BenchQueue::taken_by() {

@@ -17,11 +17,8 @@ Expected<GeneratorConnection> connect_generator(const GeneratorSettings& setting
         std::make_unique<drivers::generator::ByHandGenerator>(STDIN_FILENO, std::move(ask));
     return connection;
   }
-  auto guard = OutputGuard::start(settings.address);
-  if (!guard) {
-    return fail(guard.error());
-  }
-  connection.guard.emplace(std::move(*guard));
+  DYNCAL_TRY(auto guard, OutputGuard::start(settings.address));
+  connection.guard.emplace(std::move(guard));
   auto generator = drivers::generator::ScpiGenerator::connect(
       settings.address,
       settings.maximum_voltage_v.value_or(std::numeric_limits<double>::infinity()));

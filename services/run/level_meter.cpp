@@ -42,16 +42,12 @@ LevelMeter::LevelMeter(ChannelName reference, bus::Reader<wire::SourceDescriptio
 Expected<LevelMeter> LevelMeter::create(bus::Participant& participant, const std::string& bench,
                                         ChannelName reference,
                                         const std::shared_ptr<bus::WakeUp>& wake_up) {
-  auto descriptions = participant.reader(bus::topics::source_description, bench, wake_up);
-  if (!descriptions) {
-    return fail(descriptions.error());
-  }
-  auto samples = participant.reader<wire::SampleBlock>(bus::topics::acs_samples,
-                                                       bus::Profile::live_samples, bench, wake_up);
-  if (!samples) {
-    return fail(samples.error());
-  }
-  return LevelMeter(std::move(reference), std::move(*descriptions), std::move(*samples));
+  DYNCAL_TRY(auto descriptions,
+             participant.reader(bus::topics::source_description, bench, wake_up));
+  DYNCAL_TRY(auto samples,
+             participant.reader<wire::SampleBlock>(bus::topics::acs_samples,
+                                                   bus::Profile::live_samples, bench, wake_up));
+  return LevelMeter(std::move(reference), std::move(descriptions), std::move(samples));
 }
 
 void LevelMeter::take(double bench_time_s, double kept_s) {

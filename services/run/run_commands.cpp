@@ -18,11 +18,8 @@ Expected<RunCommands> RunCommands::open(bus::Participant& participant, bus::Cloc
                                         const std::string& bench, std::string run,
                                         std::set<std::uint32_t> steps,
                                         const std::shared_ptr<bus::WakeUp>& wake_up) {
-  auto reader = participant.reader(bus::topics::command, bench, wake_up);
-  if (!reader) {
-    return fail(reader.error());
-  }
-  return RunCommands(clock, std::move(run), std::move(steps), std::move(*reader));
+  DYNCAL_TRY(auto reader, participant.reader(bus::topics::command, bench, wake_up));
+  return RunCommands(clock, std::move(run), std::move(steps), std::move(reader));
 }
 
 void RunCommands::take(bool excites) {

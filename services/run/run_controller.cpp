@@ -53,9 +53,7 @@ RunController::RunController(RunEnvironment environment, const BenchFile& bench,
 Expected<RunOutcome>
 RunController::conduct(const std::vector<analysis::AdcCalibrationPoint>& adc_calibration,
                        const std::stop_token& stop) {
-  if (const auto opened = open(adc_calibration); !opened) {
-    return fail(opened.error());
-  }
+  DYNCAL_TRY(open(adc_calibration));
   watch_->set_state(wire::MEASUREMENT_PLANNED);
   // Only a run that is armed has the bench to itself: until then the generator may be another's.
   const auto ready = ArmingWait(*watch_, bench_.bench)
@@ -77,13 +75,9 @@ RunController::resume(const std::vector<analysis::AdcCalibrationPoint>& adc_cali
     return fail(ErrorCode::bad_argument,
                 "a run of recorded files cannot be resumed: begin it anew");
   }
-  if (const auto opened = open(adc_calibration); !opened) {
-    return fail(opened.error());
-  }
+  DYNCAL_TRY(open(adc_calibration));
   if (keeping_.begun) {
-    if (auto same = check_same_recipe(*keeping_.begun, name(), outcome_.recipe_sha256); !same) {
-      return fail(same.error());
-    }
+    DYNCAL_TRY(check_same_recipe(*keeping_.begun, name(), outcome_.recipe_sha256));
     outcome_.sources = keeping_.begun->sources;
   }
   watch_->set_state(wire::MEASUREMENT_RUNNING);
@@ -94,10 +88,7 @@ RunController::resume(const std::vector<analysis::AdcCalibrationPoint>& adc_cali
   if (has_ended_at_analysis()) {
     return collect_of_ended_run(stop);
   }
-  const auto ready = check_before_first_step(stop).and_then([&] { return open_sequence(); });
-  if (!ready) {
-    return fail(ready.error());
-  }
+  DYNCAL_TRY(check_before_first_step(stop).and_then([&] { return open_sequence(); }));
   sequence_->resume();
   return excite_and_collect(stop);
 }
@@ -190,23 +181,16 @@ wire::MeasurementState RunController::final_state(bool excited) const {
 
 Expected<void>
 RunController::open(const std::vector<analysis::AdcCalibrationPoint>& adc_calibration) {
-  const auto recipe = plan_recipe(bench_, run_, adc_calibration);
-  if (!recipe) {
-    return fail(recipe.error());
-  }
-  wire::Measurement measurement = to_message(*recipe);
+  DYNCAL_TRY(const auto recipe, plan_recipe(bench_, run_, adc_calibration));
+  wire::Measurement measurement = to_message(recipe);
   measurement.planned_utc_ns(clock_.utc_now_ns());
   add_adc_file(adc_file_of(bench_), measurement);
   measurement.conductor(fmt::format("{}:{}", bus::host_name(), getpid()));
-  outcome_ = outcome_of(*recipe);
+  outcome_ = outcome_of(recipe);
   const bool is_guarded = bench_.generator.driver == GeneratorDriver::scpi;
-  auto watch = RunWatch::open(environment_.participant, clock_, std::move(measurement),
-                              is_guarded ? bench_.generator.address : "", wake_up_, outcome_,
-                              show_progress_);
-  if (!watch) {
-    return fail(watch.error());
-  }
-  watch_ = std::move(*watch);
+  DYNCAL_TRY(watch_, RunWatch::open(environment_.participant, clock_, std::move(measurement),
+                                    is_guarded ? bench_.generator.address : "", wake_up_, outcome_,
+                                    show_progress_));
   if (keeping_.keep) {
     watch_->on_new_results(keeping_.keep);
   }
@@ -217,11 +201,7 @@ Expected<void> RunController::open_sequence() {
   if (bench_.generator.driver == GeneratorDriver::none) {
     return {};
   }
-  auto sequence = StepSequence::open(environment_, bench_, *watch_, wake_up_);
-  if (!sequence) {
-    return fail(sequence.error());
-  }
-  sequence_ = std::move(*sequence);
+  DYNCAL_TRY(sequence_, StepSequence::open(environment_, bench_, *watch_, wake_up_));
   return {};
 }
 
@@ -232,9 +212,7 @@ Expected<void> RunController::check_before_first_step(const std::stop_token& sto
          clock_.now() - began < description_limit && !stop.stop_requested()) {
     watch_->follow("waiting for the descriptions of the sources");
   }
-  if (const auto same = check_same_instruments(*watch_, name()); !same) {
-    return same;
-  }
+  DYNCAL_TRY(check_same_instruments(*watch_, name()));
   for (const RunSource& source : outcome_.sources) {
     if (const auto other = other_rate(bench_, source)) {
       watch_->notice(*other);

@@ -72,9 +72,7 @@ Expected<Recipe> plan_recipe(const BenchFile& file, const std::string& run,
   for (const SourceSettings& source : file.sources) {
     recipe.source_settings.emplace(source.name, source.origin.settings);
   }
-  if (const auto checked = check_recipe(recipe); !checked) {
-    return fail(checked.error());
-  }
+  DYNCAL_TRY(check_recipe(recipe));
   return recipe;
 }
 

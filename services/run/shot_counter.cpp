@@ -8,17 +8,11 @@ namespace dyncal::services {
 
 Expected<ShotCounter> ShotCounter::create(bus::Participant& participant, const std::string& bench,
                                           const std::shared_ptr<bus::WakeUp>& wake_up) {
-  auto traces = participant.reader<wire::TriggeredRecord>(
-      bus::topics::dso_record, bus::Profile::live_samples, bench, wake_up);
-  if (!traces) {
-    return fail(traces.error());
-  }
-  auto series = participant.reader<wire::TriggeredRecord>(
-      bus::topics::tss_record, bus::Profile::live_samples, bench, wake_up);
-  if (!series) {
-    return fail(series.error());
-  }
-  return ShotCounter(std::move(*traces), std::move(*series));
+  DYNCAL_TRY(auto traces, participant.reader<wire::TriggeredRecord>(
+                              bus::topics::dso_record, bus::Profile::live_samples, bench, wake_up));
+  DYNCAL_TRY(auto series, participant.reader<wire::TriggeredRecord>(
+                              bus::topics::tss_record, bus::Profile::live_samples, bench, wake_up));
+  return ShotCounter(std::move(traces), std::move(series));
 }
 
 void ShotCounter::begin(const std::string& run, std::uint32_t step, std::uint32_t attempt) {

@@ -48,14 +48,10 @@ Expected<std::unique_ptr<StepExcitation>> StepExcitation::open(const RunEnvironm
                                                                StepHooks hooks) {
   std::unique_ptr<StepExcitation> excitation(new StepExcitation(
       environment, bench, measurement.run().to_string(), std::move(wake_up), std::move(hooks)));
-  if (const auto valid = excitation->check_levels(measurement); !valid) {
-    return fail(valid.error());
-  }
-  auto connection = environment.connect_generator(bench.generator, excitation->hooks_.ask);
-  if (!connection) {
-    return fail(connection.error());
-  }
-  excitation->connection_.emplace(std::move(*connection));
+  DYNCAL_TRY(excitation->check_levels(measurement));
+  DYNCAL_TRY(auto connection,
+             environment.connect_generator(bench.generator, excitation->hooks_.ask));
+  excitation->connection_.emplace(std::move(connection));
   using drivers::generator::Awaited;
   excitation->generator().call_while_waiting([self = excitation.get()](Awaited awaited) {
     if (awaited == Awaited::bench_time) {
@@ -66,11 +62,9 @@ Expected<std::unique_ptr<StepExcitation>> StepExcitation::open(const RunEnvironm
     return !self->stop_.stop_requested();
   });
   if (bench.method.kind == EvaluationMethod::series_timestamping) {
-    auto counter = ShotCounter::create(environment.participant, bench.bench, excitation->wake_up_);
-    if (!counter) {
-      return fail(counter.error());
-    }
-    excitation->shots_.emplace(std::move(*counter));
+    DYNCAL_TRY(auto counter,
+               ShotCounter::create(environment.participant, bench.bench, excitation->wake_up_));
+    excitation->shots_.emplace(std::move(counter));
   }
   return excitation;
 }
@@ -99,11 +93,9 @@ drivers::generator::LevelTarget StepExcitation::target_of(const wire::PlannedSte
 // Only while steps are excited: a reader that nobody empties would hold the source up.
 Expected<void> StepExcitation::begin() {
   if (bench_.generator.level_tolerance_rel) {
-    auto meter = LevelMeter::create(participant_, bench_.bench, bench_.method.reference, wake_up_);
-    if (!meter) {
-      return fail(meter.error());
-    }
-    meter_.emplace(std::move(*meter));
+    DYNCAL_TRY(auto meter,
+               LevelMeter::create(participant_, bench_.bench, bench_.method.reference, wake_up_));
+    meter_.emplace(std::move(meter));
   }
   return {};
 }
@@ -215,9 +207,7 @@ Expected<double> StepExcitation::switch_on(const wire::PlannedStep& step, double
   if (!set) {
     return fail(reported(set.error()));
   }
-  if (const auto confirmed = wait_for_effect(stop); !confirmed) {
-    return fail(confirmed.error());
-  }
+  DYNCAL_TRY(wait_for_effect(stop));
   const auto began = generator().clock_now_s();
   if (!began) {
     return fail(reported(began.error()));
@@ -314,9 +304,7 @@ Expected<void> StepExcitation::listen(const std::stop_token& stop) {
 Expected<std::optional<double>> StepExcitation::measure_level(double changed_s, double deadline_s,
                                                               const std::stop_token& stop) {
   hooks_.show("setting the level");
-  if (const auto settled = hold_until(changed_s + bench_.excitation.settling_s, stop); !settled) {
-    return fail(settled.error());
-  }
+  DYNCAL_TRY(hold_until(changed_s + bench_.excitation.settling_s, stop));
   while (!stop.stop_requested()) {
     const auto now = generator().clock_now_s();
     if (!now) {
@@ -340,9 +328,7 @@ Expected<std::optional<double>> StepExcitation::measure_level(double changed_s, 
                       bench_.method.reference.text(), *now - changed_s, reading->lacking)));
     }
     clock_.wait(*wake_up_, clock_.now() + look_interval);
-    if (const auto alive = hooks_.keep_alive(); !alive) {
-      return fail(alive.error());
-    }
+    DYNCAL_TRY(hooks_.keep_alive());
   }
   return std::nullopt;
 }
@@ -357,9 +343,7 @@ Expected<void> StepExcitation::hold_until_shots_are_taken(const std::stop_token&
     if (!now) {
       return fail(reported(now.error()));
     }
-    if (const auto held = hold_until(*now + shot_slice_s, stop); !held) {
-      return fail(held.error());
-    }
+    DYNCAL_TRY(hold_until(*now + shot_slice_s, stop));
   }
   return {};
 }
@@ -373,9 +357,7 @@ Expected<bool> StepExcitation::wait_for_effect(const std::stop_token& stop) {
     if (*in_effect) {
       return true;
     }
-    if (const auto alive = hooks_.keep_alive(); !alive) {
-      return fail(alive.error());
-    }
+    DYNCAL_TRY(hooks_.keep_alive());
   }
   return false;
 }
@@ -384,9 +366,7 @@ Expected<bool> StepExcitation::hold_until(double bench_time_s, const std::stop_t
   auto now = generator().clock_now_s();
   while (now && *now < bench_time_s && !stop.stop_requested()) {
     now = generator().wait_until_s(std::min(bench_time_s, *now + slice_s), stop);
-    if (const auto alive = hooks_.keep_alive(); !alive) {
-      return fail(alive.error());
-    }
+    DYNCAL_TRY(hooks_.keep_alive());
     if (now && meter_) {
       meter_->take(*now);
     }

@@ -48,9 +48,7 @@ Expected<std::unique_ptr<StepSequence>> StepSequence::open(const RunEnvironment&
        .look = [&watch] { watch.look_without_hold(); },
        .hold = [&watch] { watch.look(); },
        .keep_alive = [self = sequence.get()] { return self->keep_alive(); }});
-  if (!excitation) {
-    return fail(excitation.error());
-  }
+  DYNCAL_TRY(excitation);
   sequence->excitation_ = std::move(*excitation);
   return sequence;
 }
@@ -101,12 +99,9 @@ Expected<void> StepSequence::check_faults() const {
 
 Expected<void> StepSequence::repeat_steps(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
-    const auto evaluated = wait_until_evaluated(stop);
-    if (!evaluated) {
-      return fail(evaluated.error());
-    }
+    DYNCAL_TRY(const auto evaluated, wait_until_evaluated(stop));
     const auto repeat =
-        *evaluated ? repeats_.next(watch_.outcome().results) : std::optional<StepRepeat>{};
+        evaluated ? repeats_.next(watch_.outcome().results) : std::optional<StepRepeat>{};
     if (!repeat || stop.stop_requested()) {
       return {};
     }

@@ -101,9 +101,7 @@ bool ByteLog::for_each_piece(std::uint64_t offset, std::size_t size, Transfer&& 
 }
 
 Expected<std::uint64_t> ByteLog::append(std::string_view bytes) {
-  if (auto room = make_room(end_ + bytes.size()); !room) {
-    return fail(room.error());
-  }
+  DYNCAL_TRY(make_room(end_ + bytes.size()));
   const bool written =
       for_each_piece(end_, bytes.size(), [&](off_t position, std::size_t first, std::size_t count) {
         return pwrite(file_, bytes.data() + first, count, position);

@@ -59,11 +59,8 @@ template <class Message>
 Expected<std::unique_ptr<CatchUpWriter>>
 open(bus::Participant& participant, const bus::Topic<Message>& topic, const SourceOptions& source,
      const std::string& asker) {
-  auto writer = participant.writer(topic, asker);
-  if (!writer) {
-    return fail(writer.error());
-  }
-  return std::make_unique<WriterOf<Message>>(source, std::move(*writer));
+  DYNCAL_TRY(auto writer, participant.writer(topic, asker));
+  return std::make_unique<WriterOf<Message>>(source, std::move(writer));
 }
 
 } // namespace

@@ -32,11 +32,9 @@ CatchUpServer::CatchUpServer(bus::Participant& participant, bus::Clock& clock)
 Expected<void> CatchUpServer::add(const SourceOptions& source,
                                   std::shared_ptr<RetransmissionBuffer> kept) {
   if (!requests_.contains(source.bench)) {
-    auto reader = participant_.reader(bus::topics::catch_up_request, source.bench, wake_up_);
-    if (!reader) {
-      return fail(reader.error());
-    }
-    requests_.emplace(source.bench, std::move(*reader));
+    DYNCAL_TRY(auto reader,
+               participant_.reader(bus::topics::catch_up_request, source.bench, wake_up_));
+    requests_.emplace(source.bench, std::move(reader));
   }
   sources_.push_back({source, std::move(kept), {}});
   return {};

@@ -36,11 +36,8 @@ template <class Source>
   std::vector<std::shared_ptr<SourcePublisher>> publishers;
   for (RunnableSource<Source>& one : sources) {
     one.options.stop = stop;
-    auto publisher = service->add(one.options);
-    if (!publisher) {
-      return fail(publisher.error());
-    }
-    publishers.push_back(std::move(*publisher));
+    DYNCAL_TRY(auto publisher, service->add(one.options));
+    publishers.push_back(std::move(publisher));
     spdlog::info("bench {}, source {}", one.options.bench, one.options.source);
   }
   service->start();

@@ -35,23 +35,15 @@ Expected<std::unique_ptr<SourcePublication>>
 SourcePublication::create(bus::Participant& participant, std::shared_ptr<SourcePublisher> publisher,
                           std::shared_ptr<RetransmissionBuffer> kept, std::string software) {
   const SourceOptions& options = publisher->options();
-  auto description = participant.writer<dyncal::wire::SourceDescription>(
-      bus::topics::source_description, bus::Profile::state, options.bench);
-  if (!description) {
-    return fail(description.error());
-  }
-  auto status = participant.writer<dyncal::wire::SourceStatus>(bus::topics::source_status,
-                                                               bus::Profile::state, options.bench);
-  if (!status) {
-    return fail(status.error());
-  }
-  auto samples = StreamWriter::create(participant, options);
-  if (!samples) {
-    return fail(samples.error());
-  }
+  DYNCAL_TRY(auto description,
+             participant.writer<dyncal::wire::SourceDescription>(
+                 bus::topics::source_description, bus::Profile::state, options.bench));
+  DYNCAL_TRY(auto status, participant.writer<dyncal::wire::SourceStatus>(
+                              bus::topics::source_status, bus::Profile::state, options.bench));
+  DYNCAL_TRY(auto samples, StreamWriter::create(participant, options));
   return std::make_unique<SourcePublication>(
       std::move(publisher), std::move(kept), std::move(software),
-      SourceWriters{std::move(*description), std::move(*status), std::move(*samples)});
+      SourceWriters{std::move(description), std::move(status), std::move(samples)});
 }
 
 SourcePublication::SourcePublication(std::shared_ptr<SourcePublisher> publisher,

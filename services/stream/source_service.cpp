@@ -72,17 +72,11 @@ Expected<void> SourceService::Implementation::join_bench(const std::string& benc
   if (benches_.contains(bench)) {
     return {};
   }
-  auto command = participant_.reader<dyncal::wire::Command>(bus::topics::command,
-                                                            bus::Profile::command, bench, wake_up_);
-  if (!command) {
-    return fail(command.error());
-  }
-  auto measurement = participant_.reader<dyncal::wire::Measurement>(
-      bus::topics::measurement, bus::Profile::state, bench, wake_up_);
-  if (!measurement) {
-    return fail(measurement.error());
-  }
-  benches_.emplace(bench, BenchReaders{std::move(*command), std::move(*measurement)});
+  DYNCAL_TRY(auto command, participant_.reader<dyncal::wire::Command>(
+                               bus::topics::command, bus::Profile::command, bench, wake_up_));
+  DYNCAL_TRY(auto measurement, participant_.reader<dyncal::wire::Measurement>(
+                                   bus::topics::measurement, bus::Profile::state, bench, wake_up_));
+  benches_.emplace(bench, BenchReaders{std::move(command), std::move(measurement)});
   return {};
 }
 
@@ -103,20 +97,14 @@ SourceService::Implementation::add(SourceOptions source) {
                                              source.source +
                                              "' twice: give each bench file its own bench name");
   }
-  if (auto joined = join_bench(source.bench); !joined) {
-    return fail(joined.error());
-  }
+  DYNCAL_TRY(join_bench(source.bench));
   auto publisher = std::make_shared<SourcePublisher>(std::move(source), wake_up_);
   auto kept = std::make_shared<RetransmissionBuffer>(options_.kept);
-  auto channel = SourcePublication::create(participant_, publisher, kept, options_.software);
-  if (!channel) {
-    return fail(channel.error());
-  }
-  if (auto added = catch_up_.add(publisher->options(), std::move(kept)); !added) {
-    return fail(added.error());
-  }
-  (*channel)->report_to(options_.reported);
-  channels_.push_back(std::move(*channel));
+  DYNCAL_TRY(auto channel,
+             SourcePublication::create(participant_, publisher, kept, options_.software));
+  DYNCAL_TRY(catch_up_.add(publisher->options(), std::move(kept)));
+  (channel)->report_to(options_.reported);
+  channels_.push_back(std::move(channel));
   return publisher;
 }
 

@@ -88,11 +88,9 @@ template <class Kind, class Message>
 Expected<std::unique_ptr<StreamWriter>>
 open(bus::Participant& participant, const SourceOptions& source, bus::Profile live_profile) {
   const auto profile = waits(source.when_full) ? bus::Profile::paced_samples : live_profile;
-  auto writer = participant.writer<Message>(sample_topic(source.kind), profile, source.bench);
-  if (!writer) {
-    return fail(writer.error());
-  }
-  return std::make_unique<Kind>(source, std::move(*writer));
+  DYNCAL_TRY(auto writer,
+             participant.writer<Message>(sample_topic(source.kind), profile, source.bench));
+  return std::make_unique<Kind>(source, std::move(writer));
 }
 
 } // namespace

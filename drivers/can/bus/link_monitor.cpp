@@ -140,9 +140,7 @@ Expected<LinkMonitor> LinkMonitor::open(const std::string& interface_name) {
                                         system_text(errno) + ")");
   }
   LinkMonitor monitor(interface_name, std::move(socket));
-  if (auto asked = monitor.ask(); !asked) {
-    return fail(asked.error());
-  }
+  DYNCAL_TRY(monitor.ask());
   monitor.changes_.clear();
   return monitor;
 }
@@ -162,12 +160,8 @@ Expected<void> LinkMonitor::ask() {
   state_ = {};
   state_.name = before.name;
   index_ = 0;
-  if (auto sent = request_links(); !sent) {
-    return sent;
-  }
-  if (auto read = read_messages(true); !read) {
-    return read;
-  }
+  DYNCAL_TRY(request_links());
+  DYNCAL_TRY(read_messages(true));
   if (!state_.present) {
     state_.name = wanted_name_;
   }
@@ -178,9 +172,7 @@ Expected<void> LinkMonitor::ask() {
 }
 
 Expected<std::vector<LinkMonitor::Change>> LinkMonitor::update() {
-  if (auto read = read_messages(false); !read) {
-    return fail(read.error());
-  }
+  DYNCAL_TRY(read_messages(false));
   return std::exchange(changes_, {});
 }
 

@@ -14,11 +14,8 @@ constexpr std::size_t batch = 256; // frames given at a time
 } // namespace
 
 Expected<LinkState> LogSource::open(const std::vector<FrameFilter>& filters) {
-  const auto log = read_candump_log(path_, interface_name_);
-  if (!log) {
-    return fail(log.error());
-  }
-  for (const CanFrame& frame : log->frames) {
+  DYNCAL_TRY(const auto log, read_candump_log(path_, interface_name_));
+  for (const CanFrame& frame : log.frames) {
     const auto passes = [&](const FrameFilter& filter) { return filter.passes(frame); };
     if (std::any_of(filters.begin(), filters.end(), passes)) {
       frames_.push_back(frame);
@@ -34,13 +31,13 @@ Expected<LinkState> LogSource::open(const std::vector<FrameFilter>& filters) {
   link.name = path_.filename().string();
   link.present = link.up = link.carrier = true;
   link.kind = "log";
-  if (log->passed_over > 0) {
+  if (log.passed_over > 0) {
     warning_ =
         LinkChange{.link = link,
                    .interrupted = false,
-                   .what = path_.string() + ": " + std::to_string(log->passed_over) +
+                   .what = path_.string() + ": " + std::to_string(log.passed_over) +
                            " lines are not of candump and are passed over, the first is line " +
-                           std::to_string(log->first_passed_over)};
+                           std::to_string(log.first_passed_over)};
   }
   return link;
 }

@@ -105,18 +105,11 @@ Expected<LinkState> SocketCanSource::open(const std::vector<FrameFilter>& filter
                     system_text(errno) +
                     "); does the program run where raw sockets of CAN are allowed?");
   }
-  auto monitor = LinkMonitor::open(settings_.interface_name);
-  if (!monitor) {
-    return fail(monitor.error());
-  }
-  monitor_.emplace(std::move(*monitor));
-  if (auto good = check_link(monitor_->state()); !good) {
-    return fail(good.error());
-  }
+  DYNCAL_TRY(auto monitor, LinkMonitor::open(settings_.interface_name));
+  monitor_.emplace(std::move(monitor));
+  DYNCAL_TRY(check_link(monitor_->state()));
   link_ = monitor_->state();
-  if (auto opened = open_socket(); !opened) {
-    return fail(opened.error());
-  }
+  DYNCAL_TRY(open_socket());
   return link_;
 }
 
@@ -162,9 +155,7 @@ Expected<void> SocketCanSource::open_socket() {
     return fail(ErrorCode::refused, settings_.interface_name + ": no CAN socket can be opened (" +
                                         system_text(errno) + ")");
   }
-  if (auto set = set_options(socket.number()); !set) {
-    return set;
-  }
+  DYNCAL_TRY(set_options(socket.number()));
   sockaddr_can address{};
   address.can_family = AF_CAN;
   address.can_ifindex = monitor_->interface_index();
@@ -193,13 +184,10 @@ Expected<ReadState> SocketCanSource::read(std::vector<BusEvent>& events,
   const std::size_t first = events.size();
   const bool went_down = some && socket_.is_open() && waited[2].revents != 0 && receive(events);
   if (went_down || (some && waited[1].revents != 0)) {
-    const auto changes = monitor_->update();
-    if (!changes) {
-      return fail(changes.error());
-    }
+    DYNCAL_TRY(const auto changes, monitor_->update());
     // Down and up again since the last read: which of the frames came before it nobody can tell,
     // and an adapter's clock has jumped.
-    const bool back = std::any_of(changes->begin(), changes->end(),
+    const bool back = std::any_of(changes.begin(), changes.end(),
                                   [](const auto& announced) { return announced.state.up; });
     if (went_down && back && events.size() > first) {
       events.insert(
@@ -207,7 +195,7 @@ Expected<ReadState> SocketCanSource::read(std::vector<BusEvent>& events,
           LinkChange{link_, true,
                      "interface '" + link_.name + "' was down while frames waited to be read"});
     }
-    for (const LinkMonitor::Change& announced : *changes) {
+    for (const LinkMonitor::Change& announced : changes) {
       follow_link(announced, events);
     }
   }

@@ -61,10 +61,7 @@ public:
       if (line.empty() || line.front() == '#') {
         continue;
       }
-      const auto taken = named ? take_row(fields_of(line)) : check_names(fields_of(line));
-      if (!taken) {
-        return fail(taken.error());
-      }
+      DYNCAL_TRY(named ? take_row(fields_of(line)) : check_names(fields_of(line)));
       named = true;
     }
     if (columns_.frequency_hz.size() < 2) {
@@ -152,23 +149,20 @@ double delay_of(const Columns& columns) {
 } // namespace
 
 Expected<ResponseTable> read_response_file(const std::filesystem::path& path) {
-  auto columns = Reader(path).read();
-  if (!columns) {
-    return fail(columns.error());
-  }
+  DYNCAL_TRY(auto columns, Reader(path).read());
   ResponseTable table;
-  table.first_hz = columns->frequency_hz.front();
-  table.last_hz = columns->frequency_hz.back();
-  table.largest_magnitude = *std::max_element(columns->magnitude.begin(), columns->magnitude.end());
-  table.response.delay_s = delay_of(*columns);
+  table.first_hz = columns.frequency_hz.front();
+  table.last_hz = columns.frequency_hz.back();
+  table.largest_magnitude = *std::max_element(columns.magnitude.begin(), columns.magnitude.end());
+  table.response.delay_s = delay_of(columns);
   std::vector<double> residual_rad;
-  for (std::size_t i = 0; i < columns->frequency_hz.size(); ++i) {
-    residual_rad.push_back(columns->phase_rad[i] +
-                           two_pi * columns->frequency_hz[i] * table.response.delay_s);
+  for (std::size_t i = 0; i < columns.frequency_hz.size(); ++i) {
+    residual_rad.push_back(columns.phase_rad[i] +
+                           two_pi * columns.frequency_hz[i] * table.response.delay_s);
   }
-  table.response.residual_phase_rad = PchipTable(columns->frequency_hz, std::move(residual_rad));
+  table.response.residual_phase_rad = PchipTable(columns.frequency_hz, std::move(residual_rad));
   table.response.magnitude =
-      PchipTable(std::move(columns->frequency_hz), std::move(columns->magnitude));
+      PchipTable(std::move(columns.frequency_hz), std::move(columns.magnitude));
   return table;
 }
 

@@ -26,16 +26,10 @@ TriggeredServer::TriggeredServer(const TriggeredSettings& settings)
       scpi_(scope_, settings.trigger.seed, settings.faults), sensor_(settings.sensor) {}
 
 Expected<void> TriggeredServer::open() {
-  auto scope = listen_tcp(settings_.scope_listen);
-  if (!scope) {
-    return fail(scope.error());
-  }
-  auto sensor = listen_tcp(settings_.sensor_listen);
-  if (!sensor) {
-    return fail(sensor.error());
-  }
-  scope_listener_ = std::move(*scope);
-  sensor_listener_ = std::move(*sensor);
+  DYNCAL_TRY(auto scope, listen_tcp(settings_.scope_listen));
+  DYNCAL_TRY(auto sensor, listen_tcp(settings_.sensor_listen));
+  scope_listener_ = std::move(scope);
+  sensor_listener_ = std::move(sensor);
   return {};
 }
 

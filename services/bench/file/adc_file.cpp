@@ -123,11 +123,8 @@ Expected<Points> read_measurements(const Json& frequencies, const AdcCorrectionS
   for (const auto& item : frequencies.items()) {
     const Json list = item.value().is_array() ? item.value() : Json::array({item.value()});
     for (const Json& measurement : list) {
-      const auto point = read_measurement(measurement, settings, item.key());
-      if (!point) {
-        return fail(point.error());
-      }
-      measurements.push_back(*point);
+      DYNCAL_TRY(const auto point, read_measurement(measurement, settings, item.key()));
+      measurements.push_back(point);
     }
   }
   return measurements;
@@ -172,18 +169,12 @@ Expected<Points> read_adc_file(const AdcCorrectionSettings& settings) {
   if (file.is_discarded()) {
     return bad_file(settings, "is no JSON");
   }
-  const auto frequencies = frequencies_of_channel(file, settings);
-  if (!frequencies) {
-    return fail(frequencies.error());
-  }
-  const auto measurements = read_measurements(**frequencies, settings);
-  if (!measurements) {
-    return fail(measurements.error());
-  }
-  if (measurements->empty()) {
+  DYNCAL_TRY(const auto frequencies, frequencies_of_channel(file, settings));
+  DYNCAL_TRY(const auto measurements, read_measurements(*frequencies, settings));
+  if (measurements.empty()) {
     return bad_file(settings, fmt::format("has no measurement for channel '{}'", settings.channel));
   }
-  return of_one_amplitude(analysis::adc_calibration_points(*measurements), settings);
+  return of_one_amplitude(analysis::adc_calibration_points(measurements), settings);
 }
 
 } // namespace dyncal::services

@@ -157,12 +157,9 @@ Expected<Column> ReferenceTable::column_of(const Field& field) {
 Expected<void> ReferenceTable::read_header(std::string_view line) {
   separator_ = line.find(';') == std::string_view::npos ? ',' : ';';
   for (const Field& field : fields_of(line, separator_)) {
-    const auto column = column_of(field);
-    if (!column) {
-      return fail(column.error());
-    }
-    columns_.push_back(*column);
-    has_whole_ = has_whole_ || (!column->contribution && column->rule->of_contributions);
+    DYNCAL_TRY(const auto column, column_of(field));
+    columns_.push_back(column);
+    has_whole_ = has_whole_ || (!column.contribution && column.rule->of_contributions);
   }
   for (const Quantity needed : {Quantity::frequency_hz, Quantity::magnitude, Quantity::phase_rad}) {
     if (std::none_of(columns_.begin(), columns_.end(),
@@ -226,21 +223,16 @@ Expected<ReferenceCalibrationPoint> ReferenceTable::point_of(std::string_view li
     point.contributions.push_back({.name = contribution});
   }
   for (std::size_t i = 0; i < fields.size(); ++i) {
-    const auto value = value_of(columns_[i], fields[i]);
-    if (!value) {
-      return fail(value.error());
-    }
+    DYNCAL_TRY(const auto value, value_of(columns_[i], fields[i]));
     ReferenceContribution& of =
         columns_[i].contribution ? point.contributions[*columns_[i].contribution] : whole;
     const std::array<double*, rules.size()> places{
         &point.frequency_hz, &point.level_m_s2, &point.magnitude,      &point.phase_rad,
         &of.u_magnitude_rel, &of.u_phase_rad,   &of.degrees_of_freedom};
-    *places.at(static_cast<std::size_t>(columns_[i].rule->quantity)) = *value;
+    *places.at(static_cast<std::size_t>(columns_[i].rule->quantity)) = value;
   }
   if (has_whole_) {
-    if (const auto added = add_whole(whole, point); !added) {
-      return fail(added.error());
-    }
+    DYNCAL_TRY(add_whole(whole, point));
   }
   return point;
 }
@@ -261,16 +253,11 @@ Expected<std::vector<ReferenceCalibrationPoint>> ReferenceTable::read(std::strin
       continue;
     }
     if (columns_.empty()) {
-      if (const auto header = read_header(line); !header) {
-        return fail(header.error());
-      }
+      DYNCAL_TRY(read_header(line));
       continue;
     }
-    auto point = point_of(line);
-    if (!point) {
-      return fail(point.error());
-    }
-    points.push_back(std::move(*point));
+    DYNCAL_TRY(auto point, point_of(line));
+    points.push_back(std::move(point));
   }
   if (points.empty()) {
     return refuse(1, "the file has no points");

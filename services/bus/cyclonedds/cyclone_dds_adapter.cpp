@@ -304,10 +304,7 @@ private:
 
 services::Expected<std::unique_ptr<UntypedParticipant>>
 create_cyclone_dds_participant(const ParticipantOptions& options) {
-  const auto config = cyclone_dds_config(options);
-  if (!config) {
-    return fail(config.error());
-  }
+  DYNCAL_TRY(const auto config, cyclone_dds_config(options));
   if (const auto warning = receive_buffer_warning(
           wanted_receive_buffer_bytes, granted_receive_buffer(wanted_receive_buffer_bytes));
       !warning.empty() && options.warn) {
@@ -315,10 +312,7 @@ create_cyclone_dds_participant(const ParticipantOptions& options) {
   }
 
   auto refused = packets_refused_by_cyclone_dds(options.warn);
-  auto domain = open_domain(options.domain, *config);
-  if (!domain) {
-    return fail(domain.error());
-  }
+  DYNCAL_TRY(auto domain, open_domain(options.domain, config));
   const Qos qos(dds_create_qos());
   dds_qset_entity_name(qos.get(), options.name.c_str());
   const dds_entity_t participant =
@@ -328,7 +322,7 @@ create_cyclone_dds_participant(const ParticipantOptions& options) {
                               participant));
   }
   return std::make_unique<CycloneParticipant>(std::shared_ptr<CycloneParticipantHandle>(
-      new CycloneParticipantHandle{std::move(*domain), Entity(participant),
+      new CycloneParticipantHandle{std::move(domain), Entity(participant),
                                    std::make_shared<MalformedMessages>(options.warn),
                                    std::move(refused)}));
 }

@@ -62,19 +62,12 @@ std::string internal() {
 services::Expected<std::string> cyclone_dds_config(const ParticipantOptions& options) {
   std::string address;
   if (!options.interface_name.empty()) {
-    auto found = interface_address(options.interface_name);
-    if (!found) {
-      return fail(found.error());
-    }
-    address = *found;
+    DYNCAL_TRY(address, interface_address(options.interface_name));
   }
-  const auto peers = resolve_peers(options.peers);
-  if (!peers) {
-    return fail(peers.error());
-  }
+  DYNCAL_TRY(const auto peers, resolve_peers(options.peers));
 
   std::string config = "<CycloneDDS><Domain Id=\"any\">" + general(options, address) +
-                       discovery(address.empty() ? "127.0.0.1" : address, *peers) + internal() +
+                       discovery(address.empty() ? "127.0.0.1" : address, peers) + internal() +
                        "</Domain></CycloneDDS>";
   if (const char* users_own = std::getenv("CYCLONEDDS_URI");
       users_own != nullptr && *users_own != '\0') {

@@ -353,17 +353,14 @@ services::Expected<std::unique_ptr<UntypedParticipant>>
 create_fast_dds_participant(const ParticipantOptions& options) {
   auto transports =
       std::make_shared<TransportState>(std::make_shared<RefusedPackets>(options.warn));
-  auto qos = fast_dds_participant_qos(options, transports);
-  if (!qos) {
-    return fail(qos.error());
-  }
+  DYNCAL_TRY(auto qos, fast_dds_participant_qos(options, transports));
   auto addresses = announced_addresses(options.interface_name);
   auto number = std::make_unique<ParticipantNumber>();
-  qos->wire_protocol().participant_id = number->value();
+  qos.wire_protocol().participant_id = number->value();
   auto discovery = std::make_unique<FastDdsDiscovery>();
   dds::DomainParticipant* participant =
       dds::DomainParticipantFactory::get_instance()->create_participant(
-          static_cast<std::uint32_t>(options.domain), *qos,
+          static_cast<std::uint32_t>(options.domain), qos,
           options.watch_discovery ? discovery.get() : nullptr, dds::StatusMask::none());
   if (participant == nullptr) {
     return fail(services::ErrorCode::network,

@@ -144,21 +144,14 @@ fast_dds_participant_qos(const ParticipantOptions& options,
 
   std::string address;
   if (!options.interface_name.empty()) {
-    auto found = interface_address(options.interface_name);
-    if (!found) {
-      return fail(found.error());
-    }
-    address = *found;
+    DYNCAL_TRY(address, interface_address(options.interface_name));
   }
-  const auto peers = resolve_peers(options.peers);
-  if (!peers) {
-    return fail(peers.error());
-  }
+  DYNCAL_TRY(const auto peers, resolve_peers(options.peers));
 
   set_transport(address, options.screened ? state : nullptr, qos);
   const bool multicast = options.multicast && !is_loopback(address);
   set_locators(options.domain, multicast, address, qos);
-  set_discovery(options.domain, multicast, address.empty() ? "127.0.0.1" : address, *peers, qos);
+  set_discovery(options.domain, multicast, address.empty() ? "127.0.0.1" : address, peers, qos);
   qos.allocation().locators.max_unicast_locators = locators_per_participant;
   if (const auto warning = receive_buffer_warning(
           wanted_receive_buffer_bytes, granted_receive_buffer(wanted_receive_buffer_bytes));

@@ -10,13 +10,10 @@ Expected<std::vector<BenchFile>> read_benches(const std::vector<std::string>& pa
   std::vector<BenchFile> benches;
   std::string names;
   for (const std::string& path : paths) {
-    auto bench = read_bench_file(path);
-    if (!bench) {
-      return fail(bench.error());
-    }
-    add_network_settings(bench->network, daemon.network);
-    names += (names.empty() ? "bench " : ", ") + bench->bench;
-    benches.push_back(std::move(*bench));
+    DYNCAL_TRY(auto bench, read_bench_file(path));
+    add_network_settings(bench.network, daemon.network);
+    names += (names.empty() ? "bench " : ", ") + bench.bench;
+    benches.push_back(std::move(bench));
   }
   daemon.supervisor().describe(names);
   return benches;
@@ -42,11 +39,8 @@ int run_bench_program(int argc, char** argv, const BenchProgram& program) {
        .add_options =
            [&](CLI::App& app) { app.add_option("BENCH.toml", paths, "bench files")->required(); },
        .serve = [&](Daemon& daemon) -> Expected<void> {
-         const auto benches = read_benches(paths, daemon);
-         if (!benches) {
-           return fail(benches.error());
-         }
-         return program.serve(*benches, daemon);
+         DYNCAL_TRY(const auto benches, read_benches(paths, daemon));
+         return program.serve(benches, daemon);
        }});
 }
 

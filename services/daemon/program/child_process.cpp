@@ -84,19 +84,16 @@ Expected<ChildProcess> ChildProcess::start(const std::filesystem::path& program,
         fmt::format("{}: this program is missing or may not be run; build or install all of dyncal",
                     program.string()));
   }
-  const auto out = open_log(output.standard_output);
-  if (!out) {
-    return fail(out.error());
-  }
+  DYNCAL_TRY(const auto out, open_log(output.standard_output));
   const auto err = open_log(output.standard_error);
   if (!err) {
-    close(*out);
+    close(out);
     return fail(err.error());
   }
-  const pid_t child = spawn(program, arguments, *out, *err);
+  const pid_t child = spawn(program, arguments, out, *err);
   const int descriptor = open_process(child);
   const std::string reason = std::strerror(errno);
-  close(*out);
+  close(out);
   close(*err);
   if (descriptor < 0) {
     if (child > 0) {

@@ -20,18 +20,10 @@ Daemon::Daemon(std::string name, NetworkOptions options, std::unique_ptr<Supervi
 }
 
 Expected<void> Daemon::join() {
-  auto joined = WatchedNetwork::join(network, name_, signals_);
-  if (!joined) {
-    return fail(joined.error());
-  }
-  joined_ = std::move(*joined);
+  DYNCAL_TRY(joined_, WatchedNetwork::join(network, name_, signals_));
   stopping_.emplace(joined_->stop(), [this] { supervisor_->stopping(); });
   refused_ = joined_->participant.refused_packets();
-  auto clock = ClockResponder::start(joined_->participant, identity());
-  if (!clock) {
-    return fail(clock.error());
-  }
-  clock_ = std::move(*clock);
+  DYNCAL_TRY(clock_, ClockResponder::start(joined_->participant, identity()));
   return {};
 }
 

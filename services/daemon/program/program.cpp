@@ -64,12 +64,9 @@ void add_metrics_option(CLI::App& app, std::string& address) {
 
 Expected<bus::Participant> join_network(const NetworkOptions& options, const std::string& program,
                                         const NetworkUse& use) {
-  const auto vendor = bus::parse_vendor(options.dds);
-  if (!vendor) {
-    return fail(vendor.error());
-  }
+  DYNCAL_TRY(const auto vendor, bus::parse_vendor(options.dds));
   bus::ParticipantOptions participant;
-  participant.vendor = *vendor;
+  participant.vendor = vendor;
   participant.domain = options.domain;
   participant.name = program;
   participant.peers = options.peers;

@@ -50,12 +50,9 @@ WatchedNetwork::join(const NetworkOptions& options, const std::string& program,
   std::string interface_name = interface_called(options.interface_name);
   NetworkChanges changes;
   AddressesAtStart start{addresses_of(interface_name), {}};
-  auto joined = join_network(options, program);
-  if (!joined) {
-    return fail(joined.error());
-  }
+  DYNCAL_TRY(auto joined, join_network(options, program));
   return std::unique_ptr<WatchedNetwork>(
-      new WatchedNetwork(std::move(*joined), std::move(interface_name), std::move(changes),
+      new WatchedNetwork(std::move(joined), std::move(interface_name), std::move(changes),
                          std::move(start), asked, std::move(when_deaf)));
 }
 

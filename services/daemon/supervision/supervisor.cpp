@@ -7,11 +7,7 @@ Expected<std::unique_ptr<Supervisor>> Supervisor::create(ProgramIdentity identit
   std::unique_ptr<Supervisor> supervisor(new Supervisor(std::move(identity)));
   services::report(supervisor->identity_, supervisor->store_);
   if (!metrics_address.empty()) {
-    auto server = MetricsServer::start(metrics_address, supervisor->store_);
-    if (!server) {
-      return fail(server.error());
-    }
-    supervisor->server_ = std::move(*server);
+    DYNCAL_TRY(supervisor->server_, MetricsServer::start(metrics_address, supervisor->store_));
   }
   return supervisor;
 }

@@ -16,20 +16,15 @@ namespace {
 analysis::Expected<EvaluatedStep>
 evaluate_channels(const StepTask& task, const SelectedChannels& acs, const SelectedChannels& dut) {
   const Recipe& recipe = *task.recipe;
-  if (const auto enough = require_samples(dut); !enough) {
-    return fail(enough.error());
-  }
-  const auto reference = reference_response(recipe, task.step());
-  if (!reference) {
-    return fail(reference.error());
-  }
+  DYNCAL_TRY(require_samples(dut));
+  DYNCAL_TRY(const auto reference, reference_response(recipe, task.step()));
   analysis::AbsoluteTimeInput input{.frequency = task.step().frequency};
   input.frequency_search_rel = recipe.frequency_search_rel;
   input.reference_stamps_ns = acs.stamps_ns();
   input.reference = acs.channel(0);
   input.dut_stamps_ns = dut.stamps_ns();
   input.dut = dut.channels_from(0);
-  input.reference_response = *reference;
+  input.reference_response = reference;
   input.channel_delay_s = -recipe.reference_delay_s;
   input.systematic = {.reference_magnitude_rel = recipe.systematic.reference_magnitude_rel,
                       .reference_phase_rad = recipe.systematic.reference_phase_rad,

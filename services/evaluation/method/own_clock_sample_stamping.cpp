@@ -28,17 +28,10 @@ struct StepSources {
 analysis::Expected<EvaluatedStep> evaluate_channels(const StepTask& task,
                                                     const StepChannels& channels) {
   const Recipe& recipe = *task.recipe;
-  if (const auto enough = require_samples(channels.dut); !enough) {
-    return fail(enough.error());
-  }
-  const auto adc = adc_response(std::get<SampleStampingRoles>(recipe.roles), task.step());
-  if (!adc) {
-    return fail(adc.error());
-  }
-  const auto reference = reference_response(recipe, task.step());
-  if (!reference) {
-    return fail(reference.error());
-  }
+  DYNCAL_TRY(require_samples(channels.dut));
+  DYNCAL_TRY(const auto adc,
+             adc_response(std::get<SampleStampingRoles>(recipe.roles), task.step()));
+  DYNCAL_TRY(const auto reference, reference_response(recipe, task.step()));
   analysis::SampleStampingInput input{.frequency = task.step().frequency,
                                       .frequency_search_rel = recipe.frequency_search_rel,
                                       .acs_stamps_ns = channels.acs.stamps_ns(),
@@ -48,9 +41,9 @@ analysis::Expected<EvaluatedStep> evaluate_channels(const StepTask& task,
                                       .sync_dau = channels.sync.channel(0),
                                       .dut = channels.dut.channels_from(0),
                                       .dut_stamps_ns = channels.dut.stamps_ns(),
-                                      .adc = *adc,
+                                      .adc = adc,
                                       .reference_delay_s = recipe.reference_delay_s,
-                                      .reference_response = *reference,
+                                      .reference_response = reference,
                                       .systematic = recipe.systematic};
   input.systematic.dau_tick_s = channels.sync.record().description().tick_s;
   input.systematic.dut_tick_s = channels.dut.record().description().tick_s;

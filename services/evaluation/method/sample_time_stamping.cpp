@@ -43,14 +43,9 @@ void leave_settling_out(StepTask& task, SelectedChannels& acs, SelectedChannels&
 analysis::Expected<EvaluatedStep>
 evaluate_channels(const StepTask& task, const SelectedChannels& acs, const SelectedChannels& dau) {
   const Recipe& recipe = *task.recipe;
-  const auto adc = adc_response(std::get<SampleStampingRoles>(recipe.roles), task.step());
-  if (!adc) {
-    return fail(adc.error());
-  }
-  const auto reference = reference_response(recipe, task.step());
-  if (!reference) {
-    return fail(reference.error());
-  }
+  DYNCAL_TRY(const auto adc,
+             adc_response(std::get<SampleStampingRoles>(recipe.roles), task.step()));
+  DYNCAL_TRY(const auto reference, reference_response(recipe, task.step()));
   analysis::SampleStampingInput input{.frequency = task.step().frequency,
                                       .frequency_search_rel = recipe.frequency_search_rel,
                                       .acs_stamps_ns = acs.stamps_ns(),
@@ -59,9 +54,9 @@ evaluate_channels(const StepTask& task, const SelectedChannels& acs, const Selec
                                       .dau_stamps_ns = dau.stamps_ns(),
                                       .sync_dau = dau.channel(0),
                                       .dut = dau.channels_from(1),
-                                      .adc = *adc,
+                                      .adc = adc,
                                       .reference_delay_s = recipe.reference_delay_s,
-                                      .reference_response = *reference,
+                                      .reference_response = reference,
                                       .systematic = recipe.systematic};
   input.systematic.dau_tick_s = dau.record().description().tick_s;
   return analysis::evaluate_sample_stamping(input).map(

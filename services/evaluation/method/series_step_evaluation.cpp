@@ -120,18 +120,12 @@ struct EvaluatedSeries {
 // Evaluates, and decides how the series start.
 analysis::Expected<EvaluatedSeries> evaluate_series(const analysis::SeriesStampingInput& input,
                                                     analysis::StartKind start_so_far) {
-  auto evaluated = analysis::evaluate_series_stamping(input);
-  if (!evaluated) {
-    return fail(evaluated.error());
-  }
-  const JudgedStart start = start_latency(*evaluated, input, start_so_far);
-  const double sample_s = 1.0 / evaluated->rate.real_rate_hz;
-  if (const auto applied = analysis::apply_start(
-          start.latency, sample_s, evaluated->sync_acs.frequency.angular(), *evaluated);
-      !applied) {
-    return fail(applied.error());
-  }
-  return EvaluatedSeries{std::move(*evaluated), start.latency, start.evidence};
+  DYNCAL_TRY(auto evaluated, analysis::evaluate_series_stamping(input));
+  const JudgedStart start = start_latency(evaluated, input, start_so_far);
+  const double sample_s = 1.0 / evaluated.rate.real_rate_hz;
+  DYNCAL_TRY(analysis::apply_start(start.latency, sample_s, evaluated.sync_acs.frequency.angular(),
+                                   evaluated));
+  return EvaluatedSeries{std::move(evaluated), start.latency, start.evidence};
 }
 
 double u_phase_of(const std::vector<analysis::Contribution>& budget) {

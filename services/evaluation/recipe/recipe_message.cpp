@@ -105,9 +105,7 @@ Expected<RoleNames> read_roles(const wire::Measurement& measurement) {
   for (const std::string& text : measurement.dut()) {
     read = read ? read_role("dut", text, roles.dut.emplace_back()) : read;
   }
-  if (!read) {
-    return fail(read.error());
-  }
+  DYNCAL_TRY(read);
   return roles;
 }
 
@@ -232,25 +230,15 @@ wire::Measurement to_message(const Recipe& recipe) {
 }
 
 Expected<Recipe> parse_recipe(const wire::Measurement& measurement) {
-  auto roles = read_roles(measurement);
-  if (!roles) {
-    return fail(roles.error());
-  }
+  DYNCAL_TRY(auto roles, read_roles(measurement));
   Recipe recipe;
-  recipe.roles = make_roles(std::move(*roles), read_details(measurement));
+  recipe.roles = make_roles(std::move(roles), read_details(measurement));
   if (!measurement.temperature().empty()) {
-    if (const auto read =
-            read_role("temperature", measurement.temperature(), recipe.temperature.emplace());
-        !read) {
-      return fail(read.error());
-    }
+    DYNCAL_TRY(read_role("temperature", measurement.temperature(), recipe.temperature.emplace()));
   }
   read_common_part(measurement, recipe);
   read_reference(measurement, recipe);
-  const auto sound = read_steps(measurement, recipe).and_then([&] { return check_recipe(recipe); });
-  if (!sound) {
-    return fail(sound.error());
-  }
+  DYNCAL_TRY(read_steps(measurement, recipe).and_then([&] { return check_recipe(recipe); }));
   return recipe;
 }
 

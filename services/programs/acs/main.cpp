@@ -39,14 +39,9 @@ Expected<Sources> prepare(const std::vector<BenchFile>& benches, const std::stop
 }
 
 Expected<void> serve(const std::vector<BenchFile>& benches, Daemon& daemon) {
-  auto sources = prepare(benches, daemon.stop());
-  if (!sources) {
-    return fail(sources.error());
-  }
-  if (const auto joined = daemon.join(); !joined) {
-    return joined;
-  }
-  return run_sources(daemon.participant(), *sources, daemon.supervisor(), daemon.stop());
+  DYNCAL_TRY(auto sources, prepare(benches, daemon.stop()));
+  DYNCAL_TRY(daemon.join());
+  return run_sources(daemon.participant(), sources, daemon.supervisor(), daemon.stop());
 }
 
 } // namespace

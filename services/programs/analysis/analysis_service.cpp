@@ -41,9 +41,7 @@ Expected<std::unique_ptr<AnalysisService>> AnalysisService::create(bus::Particip
                                                                    bus::Clock& clock) {
   std::unique_ptr<AnalysisService> service(
       new AnalysisService(std::move(participant), std::move(identity), clock));
-  if (auto opened = service->open_readers(); !opened) {
-    return fail(opened.error());
-  }
+  DYNCAL_TRY(service->open_readers());
   return service;
 }
 

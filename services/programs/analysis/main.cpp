@@ -11,9 +11,7 @@ using namespace dyncal::services;
 using dyncal::fail;
 
 Expected<void> serve(Daemon& daemon) {
-  if (const auto joined = daemon.join(); !joined) {
-    return joined;
-  }
+  DYNCAL_TRY(daemon.join());
   Supervisor& supervisor = daemon.supervisor();
   AnalysisIdentity identity;
   identity.host = daemon.identity().host;
@@ -22,13 +20,10 @@ Expected<void> serve(Daemon& daemon) {
       fmt::format("analysis@{}:{}", identity.host, identity.process_id).substr(0, 64);
   identity.dds = daemon.network.dds;
   supervisor.describe(fmt::format("{} on {}", identity.dds, identity.service));
-  const auto service =
-      AnalysisService::create(std::move(daemon.participant()), std::move(identity));
-  if (!service) {
-    return fail(service.error());
-  }
+  DYNCAL_TRY(const auto service,
+             AnalysisService::create(std::move(daemon.participant()), std::move(identity)));
   supervisor.serving();
-  (*service)->serve(daemon.stop(), [&](const AnalysisFigures& figures) {
+  service->serve(daemon.stop(), [&](const AnalysisFigures& figures) {
     supervisor.report(figures);
     supervisor.turned();
   });

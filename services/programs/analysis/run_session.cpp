@@ -26,14 +26,11 @@ Expected<std::unique_ptr<RunSession>> RunSession::create(const AnalysisContext& 
                                                          const wire::Measurement& measurement,
                                                          std::shared_ptr<SourceRequests> requests,
                                                          SourceStreams::Begin begin) {
-  auto publisher =
-      RunPublisher::open(context.participant, context.clock, context.identity,
-                         measurement.bench().to_string(), measurement.run().to_string());
-  if (!publisher) {
-    return fail(publisher.error());
-  }
+  DYNCAL_TRY(auto publisher,
+             RunPublisher::open(context.participant, context.clock, context.identity,
+                                measurement.bench().to_string(), measurement.run().to_string()));
   std::unique_ptr<RunSession> session(
-      new RunSession(context, measurement, std::move(requests), std::move(*publisher)));
+      new RunSession(context, measurement, std::move(requests), std::move(publisher)));
   session->prepare(measurement, begin);
   return session;
 }

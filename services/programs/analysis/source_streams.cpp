@@ -36,9 +36,7 @@ Expected<void> SourceStreams::take_descriptions(const KnownSources& known, Insta
             (stream.unfit ? stream.unfit->description : stream.description)) {
       continue;
     }
-    if (auto described = describe(name, stream, *source->second.description, now); !described) {
-      return described;
-    }
+    DYNCAL_TRY(describe(name, stream, *source->second.description, now));
   }
   return {};
 }
@@ -181,12 +179,10 @@ Expected<void> SourceStreams::open_reader(std::map<wire::SourceKind, bus::Reader
   if (readers.contains(kind)) {
     return {};
   }
-  auto reader = participant_.reader<Message>(sample_topic(from_wire(kind)),
-                                             bus::Profile::live_samples, bench_, wake_up_);
-  if (!reader) {
-    return fail(reader.error());
-  }
-  readers.emplace(kind, std::move(*reader));
+  DYNCAL_TRY(auto reader,
+             participant_.reader<Message>(sample_topic(from_wire(kind)), bus::Profile::live_samples,
+                                          bench_, wake_up_));
+  readers.emplace(kind, std::move(reader));
   return {};
 }
 
@@ -250,9 +246,7 @@ Expected<std::vector<SourceStreams::Request>> SourceStreams::requests_due(Instan
     }
   }
   if (!due.empty() && !answer_readers_) {
-    if (auto opened = open_answer_readers(); !opened) {
-      return fail(opened.error());
-    }
+    DYNCAL_TRY(open_answer_readers());
   }
   return due;
 }

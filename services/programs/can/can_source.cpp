@@ -68,9 +68,7 @@ SourceOptions options_of(const std::string& bench, const SourceSettings& setting
 Expected<CanSource> CanSource::prepare(const SourceSettings& settings,
                                        MakeFrameSource make_frames) {
   CanSource source(settings, std::move(make_frames));
-  if (auto opened = source.open(); !opened) {
-    return fail(opened.error());
-  }
+  DYNCAL_TRY(source.open());
   return source;
 }
 
@@ -119,9 +117,7 @@ Expected<void> CanSource::play_for_every_run(SourcePublisher& publisher,
       return played;
     }
     publisher.begin_session(); // answers before the next run belong to it
-    if (auto opened = open().and_then([&] { return begin(publisher); }); !opened) {
-      return opened;
-    }
+    DYNCAL_TRY(open().and_then([&] { return begin(publisher); }));
   }
   return {};
 }

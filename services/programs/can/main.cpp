@@ -41,14 +41,9 @@ Expected<Sources> prepare(const std::vector<BenchFile>& benches) {
 }
 
 Expected<void> serve(const std::vector<BenchFile>& benches, Daemon& daemon) {
-  auto sources = prepare(benches);
-  if (!sources) {
-    return fail(sources.error());
-  }
-  if (const auto joined = daemon.join(); !joined) {
-    return joined;
-  }
-  return run_sources(daemon.participant(), *sources, daemon.supervisor(), daemon.stop());
+  DYNCAL_TRY(auto sources, prepare(benches));
+  DYNCAL_TRY(daemon.join());
+  return run_sources(daemon.participant(), sources, daemon.supervisor(), daemon.stop());
 }
 
 } // namespace

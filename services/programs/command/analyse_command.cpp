@@ -43,15 +43,10 @@ void add_source(const BenchFile& bench, const std::string& name,
 // All at once: a record of shots is small beside one of samples.
 Expected<void> take_shots(const BenchFile& bench, const std::string& source,
                           RunEvaluator& evaluator, RunOutcome& outcome) {
-  auto files = read_shot_files(bench, source);
-  if (!files) {
-    return fail(files.error());
-  }
-  add_source(bench, source, files->description, outcome);
-  if (auto described = evaluator.describe(source, std::move(files->description)); !described) {
-    return described;
-  }
-  for (TriggeredRecord& record : files->records) {
+  DYNCAL_TRY(auto files, read_shot_files(bench, source));
+  add_source(bench, source, files.description, outcome);
+  DYNCAL_TRY(evaluator.describe(source, std::move(files.description)));
+  for (TriggeredRecord& record : files.records) {
     evaluator.add(source, std::move(record));
   }
   return {};
@@ -62,20 +57,13 @@ Expected<Inputs> open_inputs(const BenchFile& bench, RunEvaluator& evaluator, Ru
   for (const std::string& name : evaluator.recipe().sources()) {
     const SourceSettings& source = *bench.source(name);
     if (source.is<OscilloscopeSourceSettings>() || source.is<SeriesSourceSettings>()) {
-      if (const auto read = take_shots(bench, name, evaluator, outcome); !read) {
-        return fail(read.error());
-      }
+      DYNCAL_TRY(take_shots(bench, name, evaluator, outcome));
       continue;
     }
-    auto input = FileInput::open(source);
-    if (!input) {
-      return fail(input.error());
-    }
-    add_source(bench, name, (*input)->description(), outcome);
-    if (const auto described = evaluator.describe(name, (*input)->description()); !described) {
-      return fail(described.error());
-    }
-    inputs.push_back(std::move(*input));
+    DYNCAL_TRY(auto input, FileInput::open(source));
+    add_source(bench, name, input->description(), outcome);
+    DYNCAL_TRY(evaluator.describe(name, input->description()));
+    inputs.push_back(std::move(input));
   }
   return inputs;
 }
@@ -103,13 +91,10 @@ Expected<void> evaluate(Inputs inputs, RunEvaluator& evaluator, const std::stop_
         std::min_element(inputs.begin(), inputs.end(), [](const auto& a, const auto& b) {
           return a->reached_ns() < b->reached_ns();
         });
-    const auto block = (*behind)->next();
-    if (!block) {
-      return fail(block.error());
-    }
-    evaluator.add((*behind)->source(), (*behind)->view(*block));
+    DYNCAL_TRY(const auto block, (*behind)->next());
+    evaluator.add((*behind)->source(), (*behind)->view(block));
     collect(evaluator.take_output(), outcome);
-    if (block->end_of_stream) {
+    if (block.end_of_stream) {
       inputs.erase(behind);
     }
     if (const auto source = evaluator.source_of_clock_alone()) {
@@ -165,18 +150,12 @@ look_at_all(const BenchFile& bench, const Recipe& recipe, const std::stop_token&
     if (!survey.looks_at(name)) {
       continue;
     }
-    auto input = FileInput::open(*bench.source(name));
-    if (!input) {
-      return fail(input.error());
-    }
-    survey.describe(name, (*input)->description());
+    DYNCAL_TRY(auto input, FileInput::open(*bench.source(name)));
+    survey.describe(name, input->description());
     for (bool ended = false; !ended && !stop.stop_requested();) {
-      const auto block = (*input)->next();
-      if (!block) {
-        return fail(block.error());
-      }
-      survey.add(name, (*input)->view(*block));
-      ended = block->end_of_stream;
+      DYNCAL_TRY(const auto block, input->next());
+      survey.add(name, input->view(block));
+      ended = block.end_of_stream;
     }
   }
   return survey.schedule();
@@ -192,13 +171,8 @@ Expected<Evaluated> evaluate_files(const BenchFile& bench, const Recipe& recipe,
   Evaluated evaluated{.outcome = outcome_of(recipe)};
   evaluated.outcome.adc_file = adc_file_of(bench);
   RunEvaluator evaluator(recipe, limits);
-  auto inputs = open_inputs(bench, evaluator, evaluated.outcome);
-  if (!inputs) {
-    return fail(inputs.error());
-  }
-  if (const auto done = evaluate(std::move(*inputs), evaluator, stop, evaluated.outcome); !done) {
-    return fail(done.error());
-  }
+  DYNCAL_TRY(auto inputs, open_inputs(bench, evaluator, evaluated.outcome));
+  DYNCAL_TRY(evaluate(std::move(inputs), evaluator, stop, evaluated.outcome));
   evaluated.needs_survey = !evaluated.outcome.interrupted && evaluator.needs_survey();
   return evaluated;
 }
@@ -222,34 +196,19 @@ Expected<RunOutcome> analyse(const AnalyseCommand& command, const std::stop_toke
                 fmt::format("{}: --run and --recipe are for recordings (.mcap)",
                             command.bench_file.string()));
   }
-  const auto bench = read_bench_or_folder(command.bench_file);
-  if (!bench) {
-    return fail(bench.error());
-  }
-  const auto adc = read_adc_calibration(*bench);
-  if (!adc) {
-    return fail(adc.error());
-  }
-  const auto recipe = plan_recipe(*bench, "files", *adc);
-  if (!recipe) {
-    return fail(recipe.error());
-  }
+  DYNCAL_TRY(const auto bench, read_bench_or_folder(command.bench_file));
+  DYNCAL_TRY(const auto adc, read_adc_calibration(bench));
+  DYNCAL_TRY(const auto recipe, plan_recipe(bench, "files", adc));
   EvaluationLimits limits{.evaluations_at_once = std::clamp<std::size_t>(
                               std::thread::hardware_concurrency(), 1, max_evaluations),
                           .clock_to_the_end = true,
                           .count = progress.count()};
-  auto evaluated = evaluate_files(*bench, *recipe, limits, stop);
+  auto evaluated = evaluate_files(bench, recipe, limits, stop);
   if (evaluated && evaluated->needs_survey) {
-    auto schedule = look_at_all(*bench, *recipe, stop);
-    if (!schedule) {
-      return fail(schedule.error());
-    }
-    limits.schedule = std::move(*schedule);
-    evaluated = evaluate_files(*bench, *recipe, limits, stop);
+    DYNCAL_TRY(limits.schedule, look_at_all(bench, recipe, stop));
+    evaluated = evaluate_files(bench, recipe, limits, stop);
   }
-  if (!evaluated) {
-    return fail(evaluated.error());
-  }
+  DYNCAL_TRY(evaluated);
   RunOutcome outcome = std::move(evaluated->outcome);
   outcome.analysis_dds = "none";
   outcome.analysis_software = software_version();

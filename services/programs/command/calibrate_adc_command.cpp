@@ -49,10 +49,8 @@ Error no_time_scale(const std::string& source) {
 Expected<void> require_common_time_scale(bus::Participant& participant, const BenchFile& bench,
                                          const std::stop_token& stop) {
   const auto wake_up = std::make_shared<bus::WakeUp>();
-  auto descriptions = participant.reader(bus::topics::source_description, bench.bench, wake_up);
-  if (!descriptions) {
-    return fail(descriptions.error());
-  }
+  DYNCAL_TRY(auto descriptions,
+             participant.reader(bus::topics::source_description, bench.bench, wake_up));
   std::map<std::string, wire::TimeBase> time_bases;
   const std::array<std::string, 2> sources{bench.method.sync_acs.source,
                                            bench.method.sync_dau.source};
@@ -64,7 +62,7 @@ Expected<void> require_common_time_scale(bus::Participant& participant, const Be
   while (missing() != sources.end() && std::chrono::steady_clock::now() < deadline &&
          !stop.stop_requested()) {
     wake_up->wait_until(std::chrono::steady_clock::now() + 100ms);
-    descriptions->take([&](const wire::SourceDescription& description) {
+    descriptions.take([&](const wire::SourceDescription& description) {
       time_bases[description.source().to_string()] = description.time_base();
     });
   }
@@ -169,12 +167,8 @@ Expected<Measurements> measure_pass(const CalibrateAdcCommand& command, const Be
                            [&](const RunProgress& state) { progress.show(state); });
   auto outcome = controller.conduct({}, stop);
   progress.end();
-  if (!outcome) {
-    return fail(outcome.error());
-  }
-  if (const auto ended = check_end(*outcome, "no file was written"); !ended) {
-    return fail(ended.error());
-  }
+  DYNCAL_TRY(outcome);
+  DYNCAL_TRY(check_end(*outcome, "no file was written"));
   auto measurements = measurements_of(command, pass, *outcome);
   if (!measurements) {
     return measurements;
@@ -186,9 +180,7 @@ Expected<Measurements> measure_pass(const CalibrateAdcCommand& command, const Be
             "{} of {} steps have no result; the analysis service reports why (dyncal watch)",
             outcome->planned_steps - measurements->size(), outcome->planned_steps));
   }
-  if (const auto named = name_amplitude(amplitude_vpp, *measurements); !named) {
-    return fail(named.error());
-  }
+  DYNCAL_TRY(name_amplitude(amplitude_vpp, *measurements));
   return measurements;
 }
 
@@ -237,15 +229,10 @@ Expected<Measurements> measure(const CalibrateAdcCommand& command, const BenchFi
                                const std::string& run, const std::stop_token& asked) {
   NetworkOptions network = command.network;
   add_network_settings(bench.network, network);
-  const auto joined = WatchedNetwork::join(network, "dyncal-calibrate", asked);
-  if (!joined) {
-    return fail(joined.error());
-  }
-  bus::Participant& participant = (*joined)->participant;
-  const std::stop_token stop = (*joined)->stop();
-  if (const auto common = require_common_time_scale(participant, bench, stop); !common) {
-    return fail(common.error());
-  }
+  DYNCAL_TRY(const auto joined, WatchedNetwork::join(network, "dyncal-calibrate", asked));
+  bus::Participant& participant = joined->participant;
+  const std::stop_token stop = joined->stop();
+  DYNCAL_TRY(require_common_time_scale(participant, bench, stop));
   std::vector<std::optional<double>> passes(command.amplitudes_vpp.begin(),
                                             command.amplitudes_vpp.end());
   if (passes.empty()) {

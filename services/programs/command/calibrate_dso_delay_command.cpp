@@ -53,16 +53,13 @@ class DrivenGenerator {
 public:
   static Expected<DrivenGenerator> start(const CalibrateDsoDelayCommand& command,
                                          const std::stop_token& stop) {
-    auto guard = OutputGuard::start(command.generator);
-    if (!guard) {
-      return fail(guard.error());
-    }
+    DYNCAL_TRY(auto guard, OutputGuard::start(command.generator));
     auto connected = ScpiGenerator::connect(command.generator);
     if (!connected) {
-      guard->dismiss(); // nothing was switched on
+      guard.dismiss(); // nothing was switched on
       return fail(device_error(connected.error()));
     }
-    DrivenGenerator driven(std::move(*guard), std::move(*connected));
+    DrivenGenerator driven(std::move(guard), std::move(*connected));
     ScpiGenerator& generator = *driven.generator_;
     generator.call_while_waiting(
         [stop](drivers::generator::Awaited) { return !stop.stop_requested(); });

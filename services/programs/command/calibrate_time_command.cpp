@@ -63,19 +63,16 @@ bool has_reference(const PulseRecord& record) {
 }
 
 Expected<EvaluatedPulses> judge(const CalibrateTimeCommand& command) {
-  auto record = read_pulse_files(command.files);
-  if (!record) {
-    return fail(record.error());
-  }
+  DYNCAL_TRY(auto record, read_pulse_files(command.files));
   const auto failure = [&](const analysis::Error& error) {
     return fail(ErrorCode::no_result,
                 fmt::format("{}: {}", command.files.front().string(), error.message));
   };
-  auto pulses = analysis::sort_pulse_edges(record->edges);
+  auto pulses = analysis::sort_pulse_edges(record.edges);
   if (!pulses) {
     return failure(pulses.error());
   }
-  EvaluatedPulses evaluated{std::move(*record), std::move(*pulses), {}, {}};
+  EvaluatedPulses evaluated{std::move(record), std::move(*pulses), {}, {}};
   evaluated.prediction = analysis::predict_gps_pulses(evaluated.pulses);
   if (has_reference(evaluated.record)) {
     auto deviation = analysis::stamp_deviations(
@@ -261,22 +258,16 @@ figures::Figure figure_of(const CalibrateTimeCommand& command, const EvaluatedPu
 }
 
 Expected<void> write(const CalibrateTimeCommand& command, const EvaluatedPulses& evaluated) {
-  if (auto written =
-          write_output_file(command.output, json_text(result_json(command, evaluated), 1) + '\n');
-      !written) {
-    return written;
-  }
+  DYNCAL_TRY(
+      write_output_file(command.output, json_text(result_json(command, evaluated), 1) + '\n'));
   fmt::print("wrote {}\n", command.output.string());
   if (!evaluated.deviation) {
     return {};
   }
   const std::filesystem::path folder =
       command.output.has_parent_path() ? command.output.parent_path() : ".";
-  const auto written = figures::write(figure_of(command, evaluated), folder);
-  if (!written) {
-    return fail(written.error());
-  }
-  for (const std::filesystem::path& path : *written) {
+  DYNCAL_TRY(const auto written, figures::write(figure_of(command, evaluated), folder));
+  for (const std::filesystem::path& path : written) {
     fmt::print("wrote {}\n", path.string());
   }
   return {};

@@ -80,16 +80,10 @@ Expected<std::vector<ComparedPoint>> read_and_compare(const CompareCommand& comm
   const WorkProgress progress("reading");
   ByteCount bytes(progress.count(), "reading",
                   bytes_of_file(command.first) + bytes_of_file(command.second));
-  const auto first = read_result_file(command.first, bytes);
-  if (!first) {
-    return fail(first.error());
-  }
-  const auto second = read_result_file(command.second, bytes);
-  if (!second) {
-    return fail(second.error());
-  }
+  DYNCAL_TRY(const auto first, read_result_file(command.first, bytes));
+  DYNCAL_TRY(const auto second, read_result_file(command.second, bytes));
   progress.count()->begin("comparing", "", 0);
-  return compare(command, *first, *second);
+  return compare(command, first, second);
 }
 
 double phase_difference_rad(const ComparedPoint& point) {

@@ -114,15 +114,9 @@ Expected<Demo> prepare(const DemoCommand& command) {
   demo.preset.duration_s = command.duration_s.value_or(demo.preset.duration_s);
   demo.preset.trigger_phase_correction = command.trigger_phase_correction;
   if (command.response) {
-    if (const auto followed = follow_response(*command.response, demo.preset); !followed) {
-      return fail(followed.error());
-    }
+    DYNCAL_TRY(follow_response(*command.response, demo.preset));
   }
-  const auto dds = parse_vendor_assignment(command.dds);
-  if (!dds) {
-    return fail(dds.error());
-  }
-  demo.dds = *dds;
+  DYNCAL_TRY(demo.dds, parse_vendor_assignment(command.dds));
   demo.domain =
       command.domain.value_or(first_demo_domain + static_cast<int>(getpid() % demo_domains));
   demo.bench = fmt::format("demo-{}", getpid());
@@ -138,11 +132,8 @@ Expected<Demo> prepare(const DemoCommand& command) {
 Expected<void> start(Demo& demo, const std::string& program,
                      const std::vector<std::string>& arguments) {
   const std::filesystem::path log = demo.folder / (program + ".log");
-  auto process = ChildProcess::start(program_folder() / program, arguments, {log, log});
-  if (!process) {
-    return fail(process.error());
-  }
-  demo.processes.push_back(std::move(*process));
+  DYNCAL_TRY(auto process, ChildProcess::start(program_folder() / program, arguments, {log, log}));
+  demo.processes.push_back(std::move(process));
   return {};
 }
 
@@ -208,33 +199,21 @@ std::vector<std::string> bench_arguments(const DemoCommand& command, const Demo&
 }
 
 Expected<void> start_bench(const DemoCommand& command, Demo& demo) {
-  const auto port = free_udp_port();
-  if (!port) {
-    return fail(port.error());
-  }
+  DYNCAL_TRY(const auto port, free_udp_port());
   std::filesystem::remove(demo.folder / "ports.json");
-  if (auto started = start(demo, "dyncal-virtual-bench", bench_arguments(command, demo, *port));
-      !started) {
-    return started;
-  }
-  const auto ports = wait_for_json(demo.folder / "ports.json", demo.processes.back());
-  if (!ports) {
-    return fail(ports.error());
-  }
-  const DemoAddresses addresses{.dau_listen = fmt::format("127.0.0.1:{}", *port),
-                                .acs = fmt::format("127.0.0.1:{}", ports->value("acs", 0)),
+  DYNCAL_TRY(start(demo, "dyncal-virtual-bench", bench_arguments(command, demo, port)));
+  DYNCAL_TRY(const auto ports, wait_for_json(demo.folder / "ports.json", demo.processes.back()));
+  const DemoAddresses addresses{.dau_listen = fmt::format("127.0.0.1:{}", port),
+                                .acs = fmt::format("127.0.0.1:{}", ports.value("acs", 0)),
                                 .generator =
-                                    fmt::format("127.0.0.1:{}", ports->value("generator", 0)),
-                                .oscilloscope = fmt::format("127.0.0.1:{}", ports->value("dso", 0)),
-                                .sensor = fmt::format("127.0.0.1:{}", ports->value("tss", 0)),
+                                    fmt::format("127.0.0.1:{}", ports.value("generator", 0)),
+                                .oscilloscope = fmt::format("127.0.0.1:{}", ports.value("dso", 0)),
+                                .sensor = fmt::format("127.0.0.1:{}", ports.value("tss", 0)),
                                 .can_interface = command.can_interface,
                                 .can_bus = command.can_bus};
   // As "dyncal calibrate dso-delay" would have found it; the paper's value.
-  if (auto written = write_output_file(demo.folder / "dso-delay.json",
-                                       "{\"value_s\": 236e-9, \"u_s\": 1e-9}\n");
-      !written) {
-    return written;
-  }
+  DYNCAL_TRY(
+      write_output_file(demo.folder / "dso-delay.json", "{\"value_s\": 236e-9, \"u_s\": 1e-9}\n"));
   return write_output_file(
       demo.folder / "bench.toml",
       demo_bench_file(demo.preset, demo.bench, addresses, reference_uncertainty));
@@ -258,9 +237,7 @@ Expected<void> start_services(Demo& demo) {
     if (role != "analysis") {
       arguments.insert(arguments.begin(), bench_file);
     }
-    if (auto started = start(demo, program, arguments); !started) {
-      return started;
-    }
+    DYNCAL_TRY(start(demo, program, arguments));
   }
   return {};
 }

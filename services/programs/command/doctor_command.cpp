@@ -28,12 +28,9 @@ Expected<std::optional<BenchFile>> read_bench(const DoctorCommand& command,
   if (command.bench_file.empty()) {
     return std::optional<BenchFile>();
   }
-  auto bench = read_bench_file(command.bench_file);
-  if (!bench) {
-    return fail(bench.error());
-  }
-  add_network_settings(bench->network, network);
-  return std::optional<BenchFile>(std::move(*bench));
+  DYNCAL_TRY(auto bench, read_bench_file(command.bench_file));
+  add_network_settings(bench.network, network);
+  return std::optional<BenchFile>(std::move(bench));
 }
 
 Findings judge(const LaboratoryLook& look, const std::optional<BenchFile>& bench) {

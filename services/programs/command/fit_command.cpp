@@ -74,11 +74,8 @@ analysis::Expected<analysis::ExtendedBasis> basis_of(const FitCommand& command) 
   basis.drift_order = command.drift;
   basis.max_harmonic = command.harmonics;
   for (const std::string& text : command.hum) {
-    const auto line = analysis::Frequency::parse(text);
-    if (!line) {
-      return fail(line.error());
-    }
-    basis.lines.push_back(*line);
+    DYNCAL_TRY(const auto line, analysis::Frequency::parse(text));
+    basis.lines.push_back(line);
   }
   return basis;
 }
@@ -116,11 +113,8 @@ analysis::Expected<void> find_frequency(const FitCommand& command, const SeriesF
 analysis::Expected<void> fit_columns(const FitCommand& command, const SeriesFile& series,
                                      const std::vector<std::span<const double>>& columns,
                                      WorkCount& count, Fit& fit) {
-  const auto basis = basis_of(command);
-  if (!basis) {
-    return fail(basis.error());
-  }
-  if (basis->drift_order == 0 && basis->max_harmonic <= 1 && basis->lines.empty()) {
+  DYNCAL_TRY(const auto basis, basis_of(command));
+  if (basis.drift_order == 0 && basis.max_harmonic <= 1 && basis.lines.empty()) {
     if (!fit.fits.empty()) {
       return {};
     }
@@ -129,7 +123,7 @@ analysis::Expected<void> fit_columns(const FitCommand& command, const SeriesFile
         .map([&](auto fits) { fit.fits = std::move(fits); });
   }
   count.begin_share("fitting");
-  return analysis::fit_sine_extended(fit.frequency, *basis, analysis::Weighting::none,
+  return analysis::fit_sine_extended(fit.frequency, basis, analysis::Weighting::none,
                                      fit.reference_ns, series.stamps_ns, columns,
                                      [&](double share) { count.set_share_done(share); })
       .map([&](const std::vector<analysis::ExtendedFit>& fits) {
@@ -251,34 +245,29 @@ void print_table(const Fit& fit) {
 
 Expected<Fit> fit_file(const FitCommand& command) {
   const WorkProgress progress("reading");
-  auto series = read_series_file(command.file, progress.count(), command.nominal_rate_hz);
-  if (!series) {
-    return fail(series.error());
-  }
+  DYNCAL_TRY(auto series,
+             read_series_file(command.file, progress.count(), command.nominal_rate_hz));
   Fit fit;
   if (command.nominal_rate_hz) {
-    replace_stamps(*command.nominal_rate_hz, series->stamps_ns);
+    replace_stamps(*command.nominal_rate_hz, series.stamps_ns);
   } else {
-    fit.out_of_order = series->leave_out_disorder();
+    fit.out_of_order = series.leave_out_disorder();
   }
-  const auto columns = chosen_columns(command, *series, fit.names);
-  if (!columns) {
-    return fail(columns.error());
-  }
-  if (series->stamps_ns.empty()) {
+  DYNCAL_TRY(const auto columns, chosen_columns(command, series, fit.names));
+  if (series.stamps_ns.empty()) {
     return fail(ErrorCode::bad_file,
                 fmt::format("{}: the file has no samples", command.file.string()));
   }
-  fit.reference_ns = command.reference_time_ns.value_or(series->stamps_ns.front());
+  fit.reference_ns = command.reference_time_ns.value_or(series.stamps_ns.front());
   WorkCount& count = *progress.count();
-  const auto fitted = find_frequency(command, *series, *columns, count, fit).and_then([&] {
-    return fit_columns(command, *series, *columns, count, fit);
+  const auto fitted = find_frequency(command, series, columns, count, fit).and_then([&] {
+    return fit_columns(command, series, columns, count, fit);
   });
   if (!fitted) {
     return fail(at(command, fitted.error()));
   }
-  correct_scatter(*series, *columns, fit);
-  allow_for_beat(*series, fit);
+  correct_scatter(series, columns, fit);
+  allow_for_beat(series, fit);
   return fit;
 }
 

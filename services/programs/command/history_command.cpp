@@ -169,12 +169,9 @@ Expected<void> write_drift(const History& history, const std::filesystem::path& 
     for (char& c : name) {
       c = c == '/' ? '-' : c;
     }
-    const auto written =
-        figures::write(figures::drift_figure(drift_of(channel, history), name), folder);
-    if (!written) {
-      return fail(written.error());
-    }
-    for (const std::filesystem::path& path : *written) {
+    DYNCAL_TRY(const auto written,
+               figures::write(figures::drift_figure(drift_of(channel, history), name), folder));
+    for (const std::filesystem::path& path : written) {
       fmt::print(stderr, "wrote {}\n", path.string());
     }
   }
@@ -183,17 +180,11 @@ Expected<void> write_drift(const History& history, const std::filesystem::path& 
 
 Expected<History> look_up(const HistoryCommand& command) {
   const WorkProgress progress("opening the store");
-  auto store = Store::open_existing(store_place(command.store.store, command.store.folder));
-  if (!store) {
-    return fail(store.error());
-  }
-  auto calibrations = (*store)->calibrations(command.sensor, progress.count());
-  if (!calibrations) {
-    return fail(calibrations.error());
-  }
+  DYNCAL_TRY(auto store,
+             Store::open_existing(store_place(command.store.store, command.store.folder)));
+  DYNCAL_TRY(auto calibrations, store->calibrations(command.sensor, progress.count()));
   progress.count()->begin("comparing", "", 0);
-  return history_of(command.sensor, std::move(*calibrations), command.channel,
-                    command.frequency_hz);
+  return history_of(command.sensor, std::move(calibrations), command.channel, command.frequency_hz);
 }
 
 } // namespace

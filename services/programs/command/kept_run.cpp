@@ -86,27 +86,24 @@ Expected<std::unique_ptr<KeptRun>> KeptRun::open(const KeepOptions& options, con
   if (!options.folder) {
     return std::unique_ptr<KeptRun>(new KeptRun(options, bench, std::move(setup), std::nullopt));
   }
-  auto folder = folder_of(*options.folder, bench, setup);
-  if (!folder) {
-    return fail(folder.error());
-  }
-  auto log = LogFile::open((*folder)->path() / log_file_name);
+  DYNCAL_TRY(auto folder, folder_of(*options.folder, bench, setup));
+  auto log = LogFile::open(folder->path() / log_file_name);
   auto rates =
       participant.reader(bus::topics::source_status, bench.bench, std::make_shared<bus::WakeUp>());
-  auto recorder = options.recording ? start_recorder(**folder, bench, setup, participant)
+  auto recorder = options.recording ? start_recorder(*folder, bench, setup, participant)
                                     : Expected<std::unique_ptr<recording::Recorder>>{};
   if (auto error = first_error(log, rates, recorder)) {
     if (recorder) {
       recorder->reset();
     }
-    (*folder)->discard();
+    (folder)->discard();
     return fail(std::move(*error));
   }
   log->write(fmt::format("bench '{}', run '{}', bench file {}", bench.bench, setup.run,
                          std::filesystem::absolute(bench.path).string()));
   return std::unique_ptr<KeptRun>(new KeptRun(
       options, bench, std::move(setup),
-      Disk{std::move(*folder), std::move(*log), std::move(*rates), std::move(*recorder)}));
+      Disk{std::move(folder), std::move(*log), std::move(*rates), std::move(*recorder)}));
 }
 
 RunKeeping KeptRun::keeping() {
@@ -129,9 +126,7 @@ Expected<void> KeptRun::check(const RunOutcome& planned) {
   if (disk_->recorder) {
     need.recording_bytes += recording::RecorderOptions{}.min_free_bytes; // it ends with less
   }
-  if (auto room = disk_->folder->check_room(need); !room) {
-    return room;
-  }
+  DYNCAL_TRY(disk_->folder->check_room(need));
   say(fmt::format("run folder {}; the run needs about {} there, {} are free",
                   disk_->folder->path().string(), size_text(need.bytes()),
                   size_text(disk_->folder->free_bytes())));

@@ -71,19 +71,13 @@ std::set<std::string> silent_hosts(const LaboratoryLook& found, const NetworkOpt
 Expected<void> look_at_laboratory(const NetworkOptions& network, double seconds,
                                   const std::stop_token& stop,
                                   const std::function<void(const LaboratoryLook&)>& judge) {
-  auto participant = join_network(network, "dyncal-doctor", {.watch_discovery = true});
-  if (!participant) {
-    return fail(participant.error());
-  }
+  DYNCAL_TRY(auto participant, join_network(network, "dyncal-doctor", {.watch_discovery = true}));
   const auto own = this_program("dyncal-doctor", software_version(), network.dds);
-  auto watch = doctor::LaboratoryWatch::open(*participant, own, bus::system_clock());
-  if (!watch) {
-    return fail(watch.error());
-  }
+  DYNCAL_TRY(auto watch, doctor::LaboratoryWatch::open(participant, own, bus::system_clock()));
   LaboratoryLook found;
   auto listener = open_listener(network, found.about_multicast);
   found.host = doctor::look_at_host(".");
-  found.view = look(**watch, listener ? &*listener : nullptr, seconds, stop);
+  found.view = look(*watch, listener ? &*listener : nullptr, seconds, stop);
   found.host.udp_after = doctor::udp_counters();
   found.host.link_changes_after = doctor::link_changes();
   found.host.queues_after = doctor::send_queues();

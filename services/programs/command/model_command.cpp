@@ -45,23 +45,16 @@ Expected<void> check_options(const ModelCommand& command) {
 }
 
 Expected<std::vector<ChannelModel>> models_of(const ModelCommand& command) {
-  if (auto checked = check_options(command); !checked) {
-    return fail(checked.error());
-  }
+  DYNCAL_TRY(check_options(command));
   const WorkProgress progress("reading");
-  auto responses = read_responses(command.results, {command.channels, command.include_flagged},
-                                  progress.count());
-  if (!responses) {
-    return fail(responses.error());
-  }
-  progress.count()->begin("fitting", "channels", responses->size());
+  DYNCAL_TRY(auto responses,
+             read_responses(command.results, {command.channels, command.include_flagged},
+                            progress.count()));
+  progress.count()->begin("fitting", "channels", responses.size());
   std::vector<ChannelModel> models;
-  for (MeasuredResponse& response : *responses) {
-    auto model = model_channel(std::move(response), request_of(command));
-    if (!model) {
-      return fail(model.error());
-    }
-    models.push_back(std::move(*model));
+  for (MeasuredResponse& response : responses) {
+    DYNCAL_TRY(auto model, model_channel(std::move(response), request_of(command)));
+    models.push_back(std::move(model));
     progress.count()->add_done();
   }
   return models;
@@ -73,18 +66,13 @@ Expected<void> write_files(const ModelCommand& command, const std::vector<Channe
     for (const std::filesystem::path& file : command.results) {
       files.push_back(file.string());
     }
-    if (auto written = write_json(command.json, model_json(files, models)); !written) {
-      return written;
-    }
+    DYNCAL_TRY(write_json(command.json, model_json(files, models)));
     fmt::print("\n{} written\n", command.json.string());
   }
   if (!command.figures.empty()) {
     for (const ChannelModel& model : models) {
-      const auto written = figures::write(model_figure(model), command.figures);
-      if (!written) {
-        return fail(written.error());
-      }
-      for (const std::filesystem::path& path : *written) {
+      DYNCAL_TRY(const auto written, figures::write(model_figure(model), command.figures));
+      for (const std::filesystem::path& path : written) {
         fmt::print("{} written\n", path.string());
       }
     }

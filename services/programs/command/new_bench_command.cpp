@@ -123,9 +123,7 @@ Expected<std::string> write_files(BenchDraft draft, const std::filesystem::path&
   const std::filesystem::path dbc_path = path.parent_path() / dbc_name;
   DYNCAL_TRY(bench_draft::check_new_file(path)); // before a DBC file is written for nothing
   if (own_dbc) {
-    if (auto written = bench_draft::write_new_file(dbc_path, bench_draft::dbc_text()); !written) {
-      return fail(written.error());
-    }
+    DYNCAL_TRY(bench_draft::write_new_file(dbc_path, bench_draft::dbc_text()));
   }
   const std::string text = bench_draft::bench_text(draft, dbc_name);
   const std::vector<bench_check::BenchView> views{bench_check::look_at_bench_text(text, path)};

@@ -45,11 +45,8 @@ private:
 Expected<RecordedRunOutcome> evaluate(const RunOutcome& outcome,
                                       const std::filesystem::path& folder,
                                       const std::stop_token& stop) {
-  auto opened = open_recording(folder, nullptr, stop);
-  if (!opened) {
-    return fail(opened.error());
-  }
-  return evaluate_recording(opened->reader,
+  DYNCAL_TRY(auto opened, open_recording(folder, nullptr, stop));
+  return evaluate_recording(opened.reader,
                             {.run = outcome.run, .recipe = {}, .whole_or_none = true}, stop);
 }
 

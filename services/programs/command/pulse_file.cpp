@@ -91,9 +91,7 @@ Expected<PulseRecord> read_pulse_files(std::span<const std::filesystem::path> fi
   PulseRecord record;
   std::optional<bool> with_input;
   for (const std::filesystem::path& file : files) {
-    if (const auto read = read_file(file, record, with_input); !read) {
-      return fail(read.error());
-    }
+    DYNCAL_TRY(read_file(file, record, with_input));
   }
   if (record.edges.empty()) {
     return fail(ErrorCode::bad_file,

@@ -72,16 +72,13 @@ struct Contents {
 Expected<recording::ScanReport> read_all(const RecordingCommand& command,
                                          recording::ScanEvents events) {
   const WorkProgress progress("reading");
-  auto reader = recording::RecordingReader::open(command.file);
-  if (!reader) {
-    return fail(reader.error());
-  }
+  DYNCAL_TRY(auto reader, recording::RecordingReader::open(command.file));
   ByteCount bytes(progress.count(), "reading", bytes_of_file(command.file));
   events.walked = [&](std::uint64_t walked) {
     bytes.set_done(walked);
     return true; // Ctrl-C ends the program
   };
-  return reader->scan(events);
+  return reader.scan(events);
 }
 
 } // namespace

@@ -27,23 +27,13 @@ Expected<double> parse_speed(const std::string& text) {
 Expected<ReplayFigures> replay(const ReplayCommand& command, const std::stop_token& asked) {
   ReplayOptions wish = command.wish;
   wish.results = !command.without_results;
-  const auto speed = parse_speed(command.speed);
-  if (!speed) {
-    return fail(speed.error());
-  }
-  wish.speed = *speed;
-  const auto joined = WatchedNetwork::join(command.network, "dyncal-replay", asked);
-  if (!joined) {
-    return fail(joined.error());
-  }
-  const std::stop_token stop = (*joined)->stop();
-  auto player = RecordingPlayer::open((*joined)->participant, std::move(wish), stop);
-  if (!player) {
-    return fail(player.error());
-  }
+  DYNCAL_TRY(wish.speed, parse_speed(command.speed));
+  DYNCAL_TRY(const auto joined, WatchedNetwork::join(command.network, "dyncal-replay", asked));
+  const std::stop_token stop = joined->stop();
+  DYNCAL_TRY(auto player, RecordingPlayer::open(joined->participant, std::move(wish), stop));
   fmt::print("replaying {} as bench '{}'\n", command.wish.recording.string(),
-             one_line(player->bench()));
-  return player->play(stop);
+             one_line(player.bench()));
+  return player.play(stop);
 }
 
 } // namespace

@@ -39,19 +39,14 @@ Expected<void> make_report(const ReportCommand& command) {
   const std::filesystem::path pdf_file = with_ending(stem_of(command), ".pdf");
   const auto html = [&]() -> Expected<std::string> {
     const WorkProgress progress("reading the run");
-    const auto contents = gather_report({.run = command.run,
-                                         .laboratory = command.laboratory,
-                                         .sensor = command.sensor,
-                                         .channels = command.channels});
-    if (!contents) {
-      return fail(contents.error());
-    }
+    DYNCAL_TRY(const auto contents, gather_report({.run = command.run,
+                                                   .laboratory = command.laboratory,
+                                                   .sensor = command.sensor,
+                                                   .channels = command.channels}));
     progress.count()->begin("making the report", "", 0);
-    return report_html(*contents);
+    return report_html(contents);
   }();
-  if (!html) {
-    return fail(html.error());
-  }
+  DYNCAL_TRY(html);
   if (auto written = write_and_name(html_file, *html); !written || command.no_pdf) {
     return written;
   }

@@ -73,34 +73,33 @@ struct ConductedRun {
 Expected<ConductedRun> conduct(const Conduct& run, const std::string& text) {
   const bool resumes = !run.command.resume.empty();
   run.newest.name = RunIdentity::parse(text).name;
-  auto kept = KeptRun::open(
-      run.command.keep, run.bench,
-      {.run = text,
-       .is_resumed = resumes,
-       .adc_file = adc_file_of(run.bench),
-       .dds = run.network.dds,
-       .domain = run.network.domain,
-       .notice = [show = &run.show](const std::string& sentence) { show_notice(*show, sentence); }},
-      run.participant);
-  if (!kept) {
-    return fail(kept.error());
-  }
+  DYNCAL_TRY(auto kept, KeptRun::open(run.command.keep, run.bench,
+                                      {.run = text,
+                                       .is_resumed = resumes,
+                                       .adc_file = adc_file_of(run.bench),
+                                       .dds = run.network.dds,
+                                       .domain = run.network.domain,
+                                       .notice =
+                                           [show = &run.show](const std::string& sentence) {
+                                             show_notice(*show, sentence);
+                                           }},
+                                      run.participant));
   const ShowProgress show = [&](const RunProgress& progress) {
-    (*kept)->note(progress);
+    kept->note(progress);
     run.show(progress);
   };
   RunController controller(run.participant, run.bench, text, show);
-  controller.set_keeping((*kept)->keeping());
+  controller.set_keeping(kept->keeping());
   auto outcome =
       resumes ? controller.resume(run.adc, run.stop) : controller.conduct(run.adc, run.stop);
   if (!outcome) {
     run.newest.misses_analysis =
         outcome.error().code == ErrorCode::no_analysis && !controller.has_heard_analysis();
-    (*kept)->discard();
+    kept->discard();
     return fail(outcome.error());
   }
   outcome->adc_file = adc_file_of(run.bench);
-  return ConductedRun{std::move(*outcome), std::move(*kept)};
+  return ConductedRun{std::move(*outcome), std::move(kept)};
 }
 
 // Every attempt is a run of its own.
@@ -111,10 +110,7 @@ Expected<ConductedRun> conduct_new(const Conduct& run) {
 
 // Waits for the end of other runs; again when one of several that waited was quicker.
 Expected<ConductedRun> conduct_in_turn(const Conduct& run) {
-  auto queue = BenchQueue::open(run.participant, bus::system_clock(), run.bench.bench);
-  if (!queue) {
-    return fail(queue.error());
-  }
+  DYNCAL_TRY(auto queue, BenchQueue::open(run.participant, bus::system_clock(), run.bench.bench));
   std::string shown;
   const auto show_phase = [&](const std::string& phase) {
     if (phase != std::exchange(shown, phase)) {
@@ -122,12 +118,10 @@ Expected<ConductedRun> conduct_in_turn(const Conduct& run) {
     }
   };
   while (true) {
-    if (const auto free = queue->wait_until_free(show_phase, run.stop); !free) {
-      return fail(free.error());
-    }
+    DYNCAL_TRY(queue.wait_until_free(show_phase, run.stop));
     auto conducted = conduct_new(run);
     const bool refused = !conducted && conducted.error().code == ErrorCode::no_source;
-    if (!refused || run.stop.stop_requested() || !queue->taken_by()) {
+    if (!refused || run.stop.stop_requested() || !queue.taken_by()) {
       return conducted;
     }
   }
@@ -155,21 +149,15 @@ std::string newest_run_called(const Conduct& run, bus::Reader<wire::ServiceStatu
 
 // Nobody else may conduct it: a run that lives is heard within a few seconds.
 Expected<ConductedRun> resume_run(const Conduct& run) {
-  auto queue = BenchQueue::open(run.participant, bus::system_clock(), run.bench.bench);
-  if (!queue) {
-    return fail(queue.error());
-  }
-  auto statuses = run.participant.reader(bus::topics::service_status, run.bench.bench,
-                                         std::make_shared<bus::WakeUp>());
-  if (!statuses) {
-    return fail(statuses.error());
-  }
-  if (const auto other = queue->listen(run.stop)) {
+  DYNCAL_TRY(auto queue, BenchQueue::open(run.participant, bus::system_clock(), run.bench.bench));
+  DYNCAL_TRY(auto statuses, run.participant.reader(bus::topics::service_status, run.bench.bench,
+                                                   std::make_shared<bus::WakeUp>()));
+  if (const auto other = queue.listen(run.stop)) {
     return fail(ErrorCode::no_source,
                 fmt::format("bench '{}' is in use by {}; wait for its end, or end it there",
                             run.bench.bench, *other));
   }
-  return conduct(run, newest_run_called(run, *statuses));
+  return conduct(run, newest_run_called(run, statuses));
 }
 
 Expected<ConductedRun> conduct_as_asked(const Conduct& run) {
@@ -250,43 +238,29 @@ Expected<void> check_bench(const BenchFile& bench) {
 } // namespace
 
 Expected<RunOutcome> conduct_run(const RunCommand& command, const std::stop_token& asked) {
-  if (const auto named = RunIdentity::begin(command.run, utc_now_ns()); !named) {
-    return fail(named.error());
-  }
-  const auto bench = read_bench_file(command.bench_file);
-  if (!bench) {
-    return fail(bench.error());
-  }
-  if (const auto checked = check_bench(*bench); !checked) {
-    return fail(checked.error());
-  }
-  const auto adc = read_adc_calibration(*bench);
-  if (!adc) {
-    return fail(adc.error());
-  }
-  if (const auto possible = check_outputs(command.json, command.figures); !possible) {
-    return fail(possible.error());
-  }
+  DYNCAL_TRY(RunIdentity::begin(command.run, utc_now_ns()));
+  DYNCAL_TRY(const auto bench, read_bench_file(command.bench_file));
+  DYNCAL_TRY(check_bench(bench));
+  DYNCAL_TRY(const auto adc, read_adc_calibration(bench));
+  DYNCAL_TRY(check_outputs(command.json, command.figures));
   NetworkOptions network = command.network;
-  add_network_settings(bench->network, network);
+  add_network_settings(bench.network, network);
   const auto links = doctor::link_changes();
   Attempt newest{command.resume};
   std::atomic<bool> excited = !command.resume.empty(); // then the name does not change any more
   auto joined = WatchedNetwork::join(network, "dyncal-run", asked, [&](const std::string& why) {
-    if (bench->generator.driver != GeneratorDriver::none) { // files are not resumed
+    if (bench.generator.driver != GeneratorDriver::none) { // files are not resumed
       run_again(why, excited ? newest.name : "");
     }
   });
-  if (!joined) {
-    return fail(joined.error());
-  }
+  DYNCAL_TRY(joined);
   const std::stop_token stop = (*joined)->stop();
   ProgressLine progress(stderr);
   const ShowProgress show = [&](const RunProgress& state) {
     excited = excited || state.step > 0;
     progress.show(state);
   };
-  const Conduct conduct{command, *bench, *adc, network, (*joined)->participant, show, stop, newest};
+  const Conduct conduct{command, bench, adc, network, (*joined)->participant, show, stop, newest};
   auto run = conduct_as_asked(conduct);
   progress.end();
   const auto shown = run ? show_and_keep(conduct, *run) : fail(run.error());
@@ -295,9 +269,7 @@ Expected<RunOutcome> conduct_run(const RunCommand& command, const std::stop_toke
     joined->reset(); // what is looked for may be in its way
     heard.error().message += why_unheard(network, links, asked);
   }
-  if (!heard) {
-    return fail(heard.error());
-  }
+  DYNCAL_TRY(heard);
   return std::move(run->outcome);
 }
 

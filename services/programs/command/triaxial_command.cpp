@@ -101,17 +101,11 @@ Expected<Measured> read(const TriaxialCommand& command, const SharedWorkCount& c
     if (command.results[axis].empty()) {
       continue;
     }
-    auto sensor = read_result_file(command.results[axis], bytes);
-    if (!sensor) {
-      return fail(sensor.error());
-    }
-    measured.directions.push_back({axis, std::move(*sensor), {}});
+    DYNCAL_TRY(auto sensor, read_result_file(command.results[axis], bytes));
+    measured.directions.push_back({axis, std::move(sensor), {}});
     if (motion_known) {
-      auto motion = read_result_file(command.motions[axis], bytes);
-      if (!motion) {
-        return fail(motion.error());
-      }
-      measured.directions.back().motion = std::move(*motion);
+      DYNCAL_TRY(auto motion, read_result_file(command.motions[axis], bytes));
+      measured.directions.back().motion = std::move(motion);
     }
   }
   if (measured.directions.empty()) {
@@ -119,16 +113,12 @@ Expected<Measured> read(const TriaxialCommand& command, const SharedWorkCount& c
   }
   auto channels =
       channels_of(command.channels, measured.directions, &Direction::sensor, "--channels");
-  if (!channels) {
-    return fail(channels.error());
-  }
+  DYNCAL_TRY(channels);
   measured.channels = std::move(*channels);
   if (motion_known) {
     channels = channels_of(command.motion_channels, measured.directions, &Direction::motion,
                            "--motion-channels");
-    if (!channels) {
-      return fail(channels.error());
-    }
+    DYNCAL_TRY(channels);
     measured.motion_channels = std::move(*channels);
   }
   return measured;
@@ -227,18 +217,13 @@ Expected<std::vector<ResponsePoint>> evaluate(const TriaxialCommand& command,
     if (place.first != measured.channels[0]) {
       continue;
     }
-    auto point = response_at(measured, place.second);
+    DYNCAL_TRY(auto point, response_at(measured, place.second));
     if (!point) {
-      return fail(point.error());
-    }
-    if (!*point) {
       continue;
     }
     const double bound = measured.triaxial_reference() ? 0.0 : command.transverse_motion_rel;
-    if (const auto added = add_transverse(**point, bound); !added) {
-      return fail(added.error());
-    }
-    points.push_back(**point);
+    DYNCAL_TRY(add_transverse(*point, bound));
+    points.push_back(*point);
   }
   if (points.empty()) {
     return bad(
@@ -252,15 +237,9 @@ Expected<std::vector<ResponsePoint>> evaluate(const TriaxialCommand& command,
 Expected<std::pair<Measured, std::vector<ResponsePoint>>>
 read_and_evaluate(const TriaxialCommand& command) {
   const WorkProgress progress("reading");
-  auto measured = read(command, progress.count());
-  if (!measured) {
-    return fail(measured.error());
-  }
-  auto points = evaluate(command, *measured, *progress.count());
-  if (!points) {
-    return fail(points.error());
-  }
-  return std::pair(std::move(*measured), std::move(*points));
+  DYNCAL_TRY(auto measured, read(command, progress.count()));
+  DYNCAL_TRY(auto points, evaluate(command, measured, *progress.count()));
+  return std::pair(std::move(measured), std::move(points));
 }
 
 void print_json(const Measured& measured, const std::vector<ResponsePoint>& points) {

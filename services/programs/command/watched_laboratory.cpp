@@ -9,19 +9,14 @@ Expected<std::unique_ptr<WatchedLaboratory>> WatchedLaboratory::open(const Netwo
                                                                      const std::string& program,
                                                                      const std::string& bench,
                                                                      const std::stop_token& asked) {
-  auto joined = WatchedNetwork::join(network, program, asked);
-  if (!joined) {
-    return fail(joined.error());
-  }
+  DYNCAL_TRY(auto joined, WatchedNetwork::join(network, program, asked));
   std::unique_ptr<WatchedLaboratory> watched(
-      new WatchedLaboratory(std::move(*joined), std::make_shared<bus::WakeUp>()));
-  auto readers = live::LaboratoryReaders::open(
-      watched->network_->participant, bench, this_program(program, software_version(), network.dds),
-      bus::system_clock(), watched->wake_up_);
-  if (!readers) {
-    return fail(readers.error());
-  }
-  watched->readers_.emplace(std::move(*readers));
+      new WatchedLaboratory(std::move(joined), std::make_shared<bus::WakeUp>()));
+  DYNCAL_TRY(auto readers,
+             live::LaboratoryReaders::open(watched->network_->participant, bench,
+                                           this_program(program, software_version(), network.dds),
+                                           bus::system_clock(), watched->wake_up_));
+  watched->readers_.emplace(std::move(readers));
   return watched;
 }
 

@@ -33,17 +33,14 @@ Expected<Reception> open_reception(std::vector<PlannedEndpoint> plan, SourceServ
     endpoint.listen = planned.listen;
     endpoint.observer = watch.get();
     for (PlannedSource& source : planned.sources) {
-      auto publisher = service.add({.bench = source.bench,
-                                    .source = source.source,
-                                    .kind = SourceKind::dau,
-                                    .identity = source.identity,
-                                    .origin = source.origin});
-      if (!publisher) {
-        return fail(publisher.error());
-      }
-      endpoint.wanted.push_back({source.settings, publisher->get()});
-      reception.publishers.push_back(*publisher);
-      watch->add(std::move(source), std::move(*publisher));
+      DYNCAL_TRY(auto publisher, service.add({.bench = source.bench,
+                                              .source = source.source,
+                                              .kind = SourceKind::dau,
+                                              .identity = source.identity,
+                                              .origin = source.origin}));
+      endpoint.wanted.push_back({source.settings, publisher.get()});
+      reception.publishers.push_back(publisher);
+      watch->add(std::move(source), std::move(publisher));
     }
   }
   auto receiver = drivers::smartup::Receiver::create(std::move(endpoints));
@@ -69,25 +66,17 @@ void report_sockets(const drivers::smartup::Receiver& receiver,
 }
 
 Expected<void> serve(const std::vector<BenchFile>& benches, Daemon& daemon) {
-  const auto plan = plan_listening(benches);
-  if (!plan) {
-    return fail(plan.error());
-  }
-  if (const auto joined = daemon.join(); !joined) {
-    return joined;
-  }
+  DYNCAL_TRY(const auto plan, plan_listening(benches));
+  DYNCAL_TRY(daemon.join());
   const auto service = SourceService::create(daemon.participant(),
                                              supervised(daemon.supervisor(), daemon.participant()));
-  auto reception = open_reception(*plan, *service);
-  if (!reception) {
-    return fail(reception.error());
-  }
-  report_sockets(*reception->receiver, *plan);
+  DYNCAL_TRY(auto reception, open_reception(plan, *service));
+  report_sockets(*reception.receiver, plan);
   service->start();
-  reception->receiver->start();
+  reception.receiver->start();
   daemon.supervisor().serving();
   wait_for_stop(daemon.stop());
-  reception->receiver->stop();
+  reception.receiver->stop();
   service->stop();
   return {};
 }

@@ -74,12 +74,9 @@ void compare(TruthCheck& check, double deviation, double u, const std::string& w
 
 Expected<TruthCheck> check_truth(const RunOutcome& outcome,
                                  const std::filesystem::path& truth_file) {
-  const auto truth = read_truth(truth_file);
-  if (!truth) {
-    return fail(truth.error());
-  }
+  DYNCAL_TRY(const auto truth, read_truth(truth_file));
   TruthCheck check;
-  for (const TruePoint& point : truth->points) {
+  for (const TruePoint& point : truth.points) {
     std::string channel;
     const FrequencyPoint* measured = measured_point(outcome, point, channel);
     if (measured == nullptr) {
@@ -99,7 +96,7 @@ Expected<TruthCheck> check_truth(const RunOutcome& outcome,
   for (const ClockReport& report : outcome.clock_reports) {
     if (report.clock.intervals ==
         0) { // found from series: a constant rate, with nothing but its uncertainty to differ by
-      compare(check, report.clock.mean_interval_s - truth->mean_interval_s,
+      compare(check, report.clock.mean_interval_s - truth.mean_interval_s,
               report.clock.u_mean_interval_s, fmt::format("{}, sample interval", report.source));
     }
   }

@@ -19,9 +19,7 @@ Expected<std::map<std::string, std::string>> parse_vendor_assignment(const std::
     const std::size_t equals = part.find('=');
     const std::string service = equals == std::string::npos ? "" : part.substr(0, equals);
     const std::string word = equals == std::string::npos ? part : part.substr(equals + 1);
-    if (const auto vendor = bus::parse_vendor(word); !vendor) {
-      return fail(vendor.error());
-    }
+    DYNCAL_TRY(bus::parse_vendor(word));
     if (service.empty()) {
       for (auto& entry : words) {
         entry.second = word;

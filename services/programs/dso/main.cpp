@@ -15,19 +15,14 @@ using namespace dyncal::services;
 using dyncal::fail;
 
 Expected<void> serve(const std::vector<BenchFile>& files, Daemon& daemon) {
-  if (const auto joined = daemon.join(); !joined) {
-    return joined;
-  }
+  DYNCAL_TRY(daemon.join());
   const std::stop_token stop = daemon.stop();
   const auto service = SourceService::create(daemon.participant(),
                                              supervised(daemon.supervisor(), daemon.participant()));
   std::vector<std::unique_ptr<dso::TriggeredBench>> benches;
   for (const BenchFile& file : files) {
-    auto bench = dso::TriggeredBench::create(daemon.participant(), *service, file);
-    if (!bench) {
-      return fail(bench.error());
-    }
-    benches.push_back(std::move(*bench));
+    DYNCAL_TRY(auto bench, dso::TriggeredBench::create(daemon.participant(), *service, file));
+    benches.push_back(std::move(bench));
   }
   service->start();
   daemon.supervisor().serving();

@@ -45,19 +45,13 @@ Expected<Publishers> add_sources(SourceService& service, const BenchFile& bench,
                         .silent_after = 0s,
                         .ring = ring,
                         .session = random_session()};
-  auto first = service.add(options);
-  if (!first) {
-    return fail(first.error());
-  }
+  DYNCAL_TRY(auto first, service.add(options));
   options.source = sensor.name;
   options.kind = SourceKind::tss;
   options.identity = sensor.identity;
   options.origin = sensor.origin;
-  auto second = service.add(options);
-  if (!second) {
-    return fail(second.error());
-  }
-  return Publishers{std::move(*first), std::move(*second)};
+  DYNCAL_TRY(auto second, service.add(options));
+  return Publishers{std::move(first), std::move(second)};
 }
 
 } // namespace
@@ -81,18 +75,13 @@ Expected<std::unique_ptr<TriggeredBench>> TriggeredBench::create(bus::Participan
                             oscilloscope->where, oscilloscope->name));
   }
   auto wake_up = std::make_shared<bus::WakeUp>();
-  auto excitation = participant.reader<wire::Excitation>(bus::topics::excitation,
-                                                         bus::Profile::state, bench.bench, wake_up);
-  if (!excitation) {
-    return fail(excitation.error());
-  }
-  auto publishers = add_sources(service, bench, *oscilloscope, *sensor, ring);
-  if (!publishers) {
-    return fail(publishers.error());
-  }
+  DYNCAL_TRY(auto excitation,
+             participant.reader<wire::Excitation>(bus::topics::excitation, bus::Profile::state,
+                                                  bench.bench, wake_up));
+  DYNCAL_TRY(auto publishers, add_sources(service, bench, *oscilloscope, *sensor, ring));
   return std::unique_ptr<TriggeredBench>(new TriggeredBench(
-      bench, Source{*oscilloscope, std::move(publishers->oscilloscope)},
-      Source{*sensor, std::move(publishers->sensor)}, std::move(*excitation), std::move(wake_up)));
+      bench, Source{*oscilloscope, std::move(publishers.oscilloscope)},
+      Source{*sensor, std::move(publishers.sensor)}, std::move(excitation), std::move(wake_up)));
 }
 
 TriggeredBench::TriggeredBench(const BenchFile& bench, Source oscilloscope, Source sensor,
@@ -250,12 +239,9 @@ void TriggeredBench::take_shot() {
 }
 
 Expected<ShotPair> TriggeredBench::with_bench_channels(ShotPair pair) const {
-  auto selected =
-      select_channels(std::move(pair.series), sensor_.settings.channels, sensor_channels_);
-  if (!selected) {
-    return fail(selected.error());
-  }
-  return ShotPair{std::move(pair.trace), std::move(*selected)};
+  DYNCAL_TRY(auto selected,
+             select_channels(std::move(pair.series), sensor_.settings.channels, sensor_channels_));
+  return ShotPair{std::move(pair.trace), std::move(selected)};
 }
 
 void TriggeredBench::reject_shot(const Step& step, const std::string& reason) {

@@ -40,9 +40,7 @@ GuardedExciter exciter_of(const BenchFile& bench) {
 }
 
 Expected<void> serve(const std::vector<BenchFile>& benches, Daemon& daemon) {
-  if (const auto joined = daemon.join(); !joined) {
-    return joined;
-  }
+  DYNCAL_TRY(daemon.join());
   const std::stop_token stop = daemon.stop();
   std::vector<std::unique_ptr<ExciterGuard>> guards;
   for (const BenchFile& bench : benches) {
@@ -52,14 +50,12 @@ Expected<void> serve(const std::vector<BenchFile>& benches, Daemon& daemon) {
                       "' has no generator that a program can switch off ([generator] driver): "
                       "there is nothing to guard");
     }
-    auto guard = ExciterGuard::create(
-        daemon.participant(), daemon.identity(), exciter_of(bench), unattended_limit,
-        std::make_unique<GeneratorOutput>(bench.generator.address),
-        DrivenRecord(guard_state_folder(), bench.bench, bench.generator.address));
-    if (!guard) {
-      return fail(guard.error());
-    }
-    guards.push_back(std::move(*guard));
+    DYNCAL_TRY(auto guard,
+               ExciterGuard::create(
+                   daemon.participant(), daemon.identity(), exciter_of(bench), unattended_limit,
+                   std::make_unique<GeneratorOutput>(bench.generator.address),
+                   DrivenRecord(guard_state_folder(), bench.bench, bench.generator.address)));
+    guards.push_back(std::move(guard));
     spdlog::info("bench {}: guarding the output of the generator {}", bench.bench,
                  bench.generator.address);
   }

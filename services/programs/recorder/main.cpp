@@ -29,39 +29,29 @@ void add_options(CLI::App& app, RecorderOptions& options) {
 }
 
 Expected<void> serve(RecorderOptions& options, Daemon& daemon) {
-  const auto compression = recording::parse_compression(options.compression);
-  if (!compression) {
-    return fail(compression.error());
-  }
+  DYNCAL_TRY(const auto compression, recording::parse_compression(options.compression));
   for (const std::string& bench : options.benches) {
-    if (const auto checked = bus::check_bench_name(bench); !checked) {
-      return fail(checked.error());
-    }
+    DYNCAL_TRY(bus::check_bench_name(bench));
     options.plan.benches.insert(bench);
   }
-  options.plan.options.compression = *compression;
+  options.plan.options.compression = compression;
   options.plan.options.min_free_bytes = static_cast<std::uint64_t>(options.min_free_mb * 1e6);
   options.plan.options.dds = daemon.network.dds;
   options.plan.options.domain = daemon.network.domain;
-  if (const auto joined = daemon.join(); !joined) {
-    return joined;
-  }
-  auto recordings = BenchRecordings::create(daemon.participant(), options.plan);
-  if (!recordings) {
-    return fail(recordings.error());
-  }
+  DYNCAL_TRY(daemon.join());
+  DYNCAL_TRY(auto recordings, BenchRecordings::create(daemon.participant(), options.plan));
   daemon.supervisor().describe("recordings in " + options.plan.folder.string());
   daemon.supervisor().serving();
   spdlog::info("recorder ready ({}), recordings in {}", daemon.network.dds,
                options.plan.folder.string());
   for (const std::stop_token stop = daemon.stop(); !stop.stop_requested();) {
-    (*recordings)->work();
-    for (const RecorderFigures& figures : (*recordings)->figures()) {
+    recordings->work();
+    for (const RecorderFigures& figures : recordings->figures()) {
       daemon.supervisor().report(figures);
     }
     daemon.turned();
   }
-  return (*recordings)->stop();
+  return recordings->stop();
 }
 
 } // namespace

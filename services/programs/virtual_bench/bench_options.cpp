@@ -289,9 +289,7 @@ Expected<void> read_triggered(const Words& words, BenchOptions& options) {
 
 Expected<void> read_bench_faults(const Words& words, device::BenchFaults& faults) {
   for (const std::string& text : words.faults) {
-    if (auto read = read_fault(text, faults); !read) {
-      return read;
-    }
+    DYNCAL_TRY(read_fault(text, faults));
   }
   return {};
 }
@@ -355,16 +353,11 @@ Expected<std::optional<BenchOptions>> parse_command_line(int argc, char** argv) 
   Words words;
   BenchOptions options;
   add_options(app, words, options);
-  const auto parsed = services::parse_command_line(app, argc, argv);
+  DYNCAL_TRY(const auto parsed, services::parse_command_line(app, argc, argv));
   if (!parsed) {
-    return fail(parsed.error());
-  }
-  if (!*parsed) {
     return std::nullopt;
   }
-  if (auto read = read_words(words, options); !read) {
-    return fail(read.error());
-  }
+  DYNCAL_TRY(read_words(words, options));
   return options;
 }
 

@@ -144,11 +144,8 @@ Expected<void> read_held(FaultText& text, BenchFaults& faults) {
 }
 
 Expected<void> read_fifo(FaultText& text, BenchFaults& faults) {
-  const auto samples = text.value("SAMPLES", 2.0, 1e6);
-  if (!samples) {
-    return fail(samples.error());
-  }
-  faults.fifo_samples = static_cast<std::size_t>(*samples);
+  DYNCAL_TRY(const auto samples, text.value("SAMPLES", 2.0, 1e6));
+  faults.fifo_samples = static_cast<std::size_t>(samples);
   return {};
 }
 
@@ -224,10 +221,7 @@ Expected<void> read_wandering(FaultText& text, BenchFaults& faults) {
 }
 
 Expected<void> read_loss(FaultText& text, BenchFaults& faults) {
-  const auto probability = text.value("PROBABILITY", 0.0, 1.0);
-  if (!probability) {
-    return fail(probability.error());
-  }
+  DYNCAL_TRY(const auto probability, text.value("PROBABILITY", 0.0, 1.0));
   const std::string at = text.take("at").value_or("");
   const std::string counted = text.take("counted").value_or("yes");
   if (at != "sensor" && at != "acs") {
@@ -236,7 +230,7 @@ Expected<void> read_loss(FaultText& text, BenchFaults& faults) {
   if (counted != "yes" && counted != "no") {
     return text.refuse("write counted=yes or counted=no");
   }
-  (at == "acs" ? faults.acs_loss : faults.sensor_loss) = {*probability, counted == "yes"};
+  (at == "acs" ? faults.acs_loss : faults.sensor_loss) = {probability, counted == "yes"};
   return {};
 }
 
@@ -249,38 +243,22 @@ Expected<void> read_free_running(FaultText& text, BenchFaults& faults) {
 }
 
 Expected<void> read_start_jitter(FaultText& text, BenchFaults& faults) {
-  const auto jitter_s = text.value("SECONDS", 0.0, 1.0);
-  if (!jitter_s) {
-    return fail(jitter_s.error());
-  }
-  faults.series_start.jitter_s = *jitter_s;
+  DYNCAL_TRY(faults.series_start.jitter_s, text.value("SECONDS", 0.0, 1.0));
   return {};
 }
 
 Expected<void> read_exciter_gain(FaultText& text, BenchFaults& faults) {
-  const auto factor = text.value("FACTOR", 1e-3, 1e3);
-  if (!factor) {
-    return fail(factor.error());
-  }
-  faults.exciter_gain = *factor;
+  DYNCAL_TRY(faults.exciter_gain, text.value("FACTOR", 1e-3, 1e3));
   return {};
 }
 
 Expected<void> read_ring_down(FaultText& text, BenchFaults& faults) {
-  const auto time_s = text.value("SECONDS", 1e-3, 10.0);
-  if (!time_s) {
-    return fail(time_s.error());
-  }
-  faults.ring_down_s = *time_s;
+  DYNCAL_TRY(faults.ring_down_s, text.value("SECONDS", 1e-3, 10.0));
   return {};
 }
 
 Expected<void> read_left_offset(FaultText& text, BenchFaults& faults) {
-  const auto offset_v = text.value("VOLTS", -10.0, 10.0);
-  if (!offset_v) {
-    return fail(offset_v.error());
-  }
-  faults.left_in_generator.offset_v = *offset_v;
+  DYNCAL_TRY(faults.left_in_generator.offset_v, text.value("VOLTS", -10.0, 10.0));
   return {};
 }
 
@@ -309,11 +287,8 @@ Expected<void> read_output_stays_on(FaultText& text, BenchFaults& faults) {
 }
 
 Expected<void> read_stamp_fault(FaultText& text, BenchFaults& faults) {
-  const auto probability = text.value("PROBABILITY", 0.0, 1.0);
-  if (!probability) {
-    return fail(probability.error());
-  }
-  faults.stamps[text.name()] = *probability;
+  DYNCAL_TRY(const auto probability, text.value("PROBABILITY", 0.0, 1.0));
+  faults.stamps[text.name()] = probability;
   return {};
 }
 

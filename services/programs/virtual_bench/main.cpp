@@ -85,9 +85,7 @@ Expected<std::unique_ptr<CanPart>> open_can(const BenchOptions& options) {
     return fail(ErrorCode::device, sender.error().message);
   }
   auto part = std::make_unique<CanPart>(options, std::move(*sender));
-  if (auto written = write_if_named(options.dbc_file, part->sensor.dbc()); !written) {
-    return fail(written.error());
-  }
+  DYNCAL_TRY(write_if_named(options.dbc_file, part->sensor.dbc()));
   return part;
 }
 
@@ -106,13 +104,10 @@ Expected<void> serve(device::VirtualBench& bench, const BenchOptions& options) {
   if (settings.triggered) {
     settings.triggered->sensor = series_sensor_of(bench);
   }
-  auto can = open_can(options);
-  if (!can) {
-    return fail(can.error());
-  }
-  if (*can) {
+  DYNCAL_TRY(auto can, open_can(options));
+  if (can) {
     dyncal::drivers::virtual_bench::request_realtime_priority(5); // below the line
-    settings.after_advance = [&](double time_s) { (*can)->advance_to(time_s, bench); };
+    settings.after_advance = [&](double time_s) { can->advance_to(time_s, bench); };
   }
   device::BenchServer server(bench, settings);
   if (auto opened = server.open(); !opened) {
@@ -124,14 +119,12 @@ Expected<void> serve(device::VirtualBench& bench, const BenchOptions& options) {
     ports["dso"] = server.triggered()->scope_port();
     ports["tss"] = server.triggered()->sensor_port();
   }
-  if (auto written = write_if_named(options.ports_file, json_text(ports) + "\n"); !written) {
-    return written;
-  }
+  DYNCAL_TRY(write_if_named(options.ports_file, json_text(ports) + "\n"));
   fmt::print(stderr, "dyncal-virtual-bench: {}, ports {}, datagrams to {}\n",
              options.bench.preset.name, json_text(ports), options.server.dau.text());
   server.run(stop_signal());
-  if (*can) {
-    const auto& line = (*can)->line;
+  if (can) {
+    const auto& line = can->line;
     fmt::print(
         stderr,
         "dyncal-virtual-bench: {} frames on {}, {} of the {} of the sensor late, {} refused\n",
@@ -148,16 +141,10 @@ Expected<void> run(BenchOptions options) {
     options.bench.utc_origin_ns = dyncal::utc_now_ns();
   }
   device::VirtualBench bench(options.bench);
-  if (auto written = write_if_named(options.truth_file,
-                                    device::truth_json(bench, options.programme.frequencies_hz));
-      !written) {
-    return written;
-  }
-  if (auto written = write_if_named(
-          options.adc_file, device::adc_calibration_json(bench, options.programme.frequencies_hz));
-      !written) {
-    return written;
-  }
+  DYNCAL_TRY(write_if_named(options.truth_file,
+                            device::truth_json(bench, options.programme.frequencies_hz)));
+  DYNCAL_TRY(write_if_named(options.adc_file,
+                            device::adc_calibration_json(bench, options.programme.frequencies_hz)));
   return options.record_folder.empty() ? serve(bench, options) : record(bench, options);
 }
 

@@ -63,11 +63,8 @@ Expected<void> serve(WebProgram& program, Daemon& daemon) {
   if (program.web.guide_folder.empty()) {
     program.web.guide_folder = installed_guide();
   }
-  auto service = web::WebService::create(daemon, program.web);
-  if (!service) {
-    return fail(service.error());
-  }
-  return (*service)->serve();
+  DYNCAL_TRY(auto service, web::WebService::create(daemon, program.web));
+  return service->serve();
 }
 
 } // namespace

@@ -122,28 +122,20 @@ WebService::~WebService() = default;
 
 Expected<std::unique_ptr<WebService>> WebService::create(Daemon& daemon,
                                                          const WebOptions& options) {
-  if (const auto joined = daemon.join(); !joined) {
-    return fail(joined.error());
-  }
+  DYNCAL_TRY(daemon.join());
   ActionOptions actions{.token = {},
                         .benches_folder = options.benches_folder,
                         .runs_folder = options.runs_folder,
                         .network = daemon.network,
                         .sender = service_name(daemon.identity())};
   if (!options.token_file.empty()) {
-    auto token = read_token(options.token_file);
-    if (!token) {
-      return fail(token.error());
-    }
-    actions.token = std::move(*token);
+    DYNCAL_TRY(actions.token, read_token(options.token_file));
   }
   auto parts = std::make_unique<Parts>(daemon, options, std::move(actions));
-  auto readers = live::LaboratoryReaders::open(parts->participant, all_benches, parts->identity,
-                                               parts->clock, parts->wake_up);
-  if (!readers) {
-    return fail(readers.error());
-  }
-  parts->readers.emplace(std::move(*readers));
+  DYNCAL_TRY(auto readers,
+             live::LaboratoryReaders::open(parts->participant, all_benches, parts->identity,
+                                           parts->clock, parts->wake_up));
+  parts->readers.emplace(std::move(readers));
   return std::unique_ptr<WebService>(new WebService(std::move(parts)));
 }
 
@@ -151,9 +143,7 @@ Expected<void> WebService::serve() {
   Parts& parts = *parts_;
   const std::stop_token stop = parts.daemon.stop();
   parts.add_answers();
-  if (const auto started = parts.router.start(); !started) {
-    return fail(started.error());
-  }
+  DYNCAL_TRY(parts.router.start());
   if (!std::filesystem::exists(parts.options.javascript_folder + "/dygraphs/dygraph.min.js")) {
     spdlog::warn("{}/dygraphs is missing: the page shows no charts (Debian: libjs-dygraphs)",
                  parts.options.javascript_folder);

@@ -71,18 +71,13 @@ BenchIntake::open(bus::Participant& participant, bus::Clock& clock, std::string 
                   std::string run, std::shared_ptr<bus::WakeUp> wake_up, Sink sink) {
   std::unique_ptr<BenchIntake> intake(new BenchIntake(
       participant, clock, std::move(bench), std::move(run), std::move(wake_up), std::move(sink)));
-  if (auto opened = intake->open_readers(); !opened) {
-    return fail(opened.error());
-  }
+  DYNCAL_TRY(intake->open_readers());
   return intake;
 }
 
 Expected<void> BenchIntake::open_readers() {
-  auto requests = participant_.writer(bus::topics::catch_up_request, bench_);
-  if (!requests) {
-    return fail(requests.error());
-  }
-  requests_.emplace(std::move(*requests));
+  DYNCAL_TRY(auto requests, participant_.writer(bus::topics::catch_up_request, bench_));
+  requests_.emplace(std::move(requests));
   Expected<void> opened;
   for_each_recorded_topic([&]<class T>(const bus::Topic<T>& topic) {
     if (opened) {
@@ -95,13 +90,10 @@ Expected<void> BenchIntake::open_readers() {
 template <class T>
 Expected<void> BenchIntake::open_reader(const bus::Topic<T>& topic) {
   const auto profile = is_of_source<T> ? bus::Profile::live_samples : topic.profile;
-  auto reader = is_result<T> && !reads_results_of_bench_
-                    ? participant_.reader_of_run(topic, bench_, only_run_, wake_up_)
-                    : participant_.reader<T>(topic.name, profile, bench_, wake_up_);
-  if (!reader) {
-    return fail(reader.error());
-  }
-  readers_.push_back(std::make_unique<ReaderOf<T>>(std::move(*reader), channel_of(topic.name)));
+  DYNCAL_TRY(auto reader, is_result<T> && !reads_results_of_bench_
+                              ? participant_.reader_of_run(topic, bench_, only_run_, wake_up_)
+                              : participant_.reader<T>(topic.name, profile, bench_, wake_up_));
+  readers_.push_back(std::make_unique<ReaderOf<T>>(std::move(reader), channel_of(topic.name)));
   return {};
 }
 
@@ -264,9 +256,7 @@ Expected<void> BenchIntake::open_answer_readers() {
 
 Expected<void> BenchIntake::ask() {
   if (older_analysis_ && !reads_results_of_bench_) {
-    if (auto opened = read_results_of_bench(); !opened) {
-      return opened;
-    }
+    DYNCAL_TRY(read_results_of_bench());
   }
   const Instant now = clock_.now();
   ask_for_beginnings(now);
@@ -276,9 +266,7 @@ Expected<void> BenchIntake::ask() {
       continue;
     }
     if (!answers_) {
-      if (auto opened = open_answer_readers(); !opened) {
-        return opened;
-      }
+      DYNCAL_TRY(open_answer_readers());
     }
     wire::CatchUpRequest request;
     request.bench(bench_);

@@ -53,18 +53,13 @@ public:
   ~Work() { (void)stop(); }
 
   [[nodiscard]] Expected<void> begin() {
-    auto status = participant_.writer(bus::topics::service_status, options_.bench);
-    if (!status) {
-      return fail(status.error());
-    }
-    status_writer_.emplace(std::move(*status));
+    DYNCAL_TRY(auto status, participant_.writer(bus::topics::service_status, options_.bench));
+    status_writer_.emplace(std::move(status));
     auto intake = BenchIntake::open(
         participant_, clock_, options_.bench, options_.run, wake_up_,
         {.store = [this](const TakenMessage& message) { store(message); },
          .attach = [this](const Attachment& attachment) { file_.put(attachment); }});
-    if (!intake) {
-      return fail(intake.error());
-    }
+    DYNCAL_TRY(intake);
     intake_ = std::move(*intake);
     chunk_.reserve(chunk_bytes + chunk_bytes / 8);
     next_status_ = clock_.now();
@@ -80,9 +75,7 @@ public:
       intake_.reset();
       status_writer_.reset();
     }
-    if (const auto closed = file_.close(); !closed) {
-      return fail(closed.error());
-    }
+    DYNCAL_TRY(file_.close());
     return status();
   }
 
@@ -219,21 +212,14 @@ Recorder::~Recorder() = default;
 
 Expected<std::unique_ptr<Recorder>> Recorder::start(bus::Participant& participant,
                                                     RecorderOptions options) {
-  auto writer = RecordingWriter::create(options.path, {.library = services::software_version(),
-                                                       .schemas = recorded_schemas(),
-                                                       .channels = recorded_channels(),
-                                                       .compression = options.compression});
-  if (!writer) {
-    return fail(writer.error());
-  }
-  auto begun = writer->add_metadata(beginning_of(options, bus::system_clock().utc_now_ns()));
-  if (!begun) {
-    return fail(begun.error());
-  }
-  auto work = std::make_unique<Work>(participant, std::move(options), std::move(*writer));
-  if (auto started = work->begin(); !started) {
-    return fail(started.error());
-  }
+  DYNCAL_TRY(auto writer,
+             RecordingWriter::create(options.path, {.library = services::software_version(),
+                                                    .schemas = recorded_schemas(),
+                                                    .channels = recorded_channels(),
+                                                    .compression = options.compression}));
+  DYNCAL_TRY(writer.add_metadata(beginning_of(options, bus::system_clock().utc_now_ns())));
+  auto work = std::make_unique<Work>(participant, std::move(options), std::move(writer));
+  DYNCAL_TRY(work->begin());
   return std::unique_ptr<Recorder>(new Recorder(std::move(work)));
 }
 

@@ -60,39 +60,28 @@ std::string lines_of(const Rows& rows) {
 
 Expected<void> write_table(const RowTable& table, const std::filesystem::path& path,
                            RowProgress& progress) {
-  auto file = OutputStream::create(path);
-  if (!file) {
-    return fail(file.error());
-  }
-  return file->write(first_line(table))
+  DYNCAL_TRY(auto file, OutputStream::create(path));
+  return file.write(first_line(table))
       .and_then([&] {
         return progress.for_each(table,
-                                 [&](const Rows& rows) { return file->write(lines_of(rows)); });
+                                 [&](const Rows& rows) { return file.write(lines_of(rows)); });
       })
-      .and_then([&] { return file->finish(); });
+      .and_then([&] { return file.finish(); });
 }
 
 } // namespace
 
 Expected<void> export_csv(const RowExport& wanted) {
-  auto folder = OutputFolder::create(wanted.to);
-  if (!folder) {
-    return fail(folder.error());
-  }
+  DYNCAL_TRY(auto folder, OutputFolder::create(wanted.to));
   RowProgress progress(wanted);
   for (const RowTable& table : wanted.tables) {
-    const auto path = folder->unfinished_path() / (table.source().name + ".csv");
-    if (auto written = write_table(table, path, progress); !written) {
-      return written;
-    }
+    const auto path = folder.unfinished_path() / (table.source().name + ".csv");
+    DYNCAL_TRY(write_table(table, path, progress));
   }
-  auto contents = OutputStream::create(folder->unfinished_path() / "contents.json");
-  if (!contents) {
-    return fail(contents.error());
-  }
-  return contents->write(wanted.contents)
-      .and_then([&] { return contents->finish(); })
-      .and_then([&] { return folder->finish(); });
+  DYNCAL_TRY(auto contents, OutputStream::create(folder.unfinished_path() / "contents.json"));
+  return contents.write(wanted.contents).and_then([&] { return contents.finish(); }).and_then([&] {
+    return folder.finish();
+  });
 }
 
 } // namespace dyncal::services

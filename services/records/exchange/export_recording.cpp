@@ -16,11 +16,8 @@ Expected<void> write(const ExportOptions& wish, const ExportedRecording& recordi
   if (wish.format == ExportFormat::hdf5) {
     return export_hdf5(recording, runs, wish.to, progress);
   }
-  const auto tables = row_tables(recording, wish.channels);
-  if (!tables) {
-    return fail(tables.error());
-  }
-  const RowExport rows{*tables, contents_json(recording, runs), wish.to, progress};
+  DYNCAL_TRY(const auto tables, row_tables(recording, wish.channels));
+  const RowExport rows{tables, contents_json(recording, runs), wish.to, progress};
   switch (wish.format) {
   case ExportFormat::npz:
     return export_npz(rows);
@@ -76,23 +73,13 @@ Expected<ExportedFigures> export_recording(const ExportOptions& wish,
                 "--channel is for csv, npz and mcap-rows: an HDF5 file holds the whole recording");
   }
   const bool is_folder = wish.format == ExportFormat::csv;
-  if (auto is_new = is_folder ? Expected<void>{} : check_new_output(wish.to); !is_new) {
-    return fail(is_new.error());
-  }
-  auto opened = open_recording(wish.recording, wish.count, wish.stop);
-  if (!opened) {
-    return fail(opened.error());
-  }
-  const auto recording = ExportedRecording::open(opened->reader, progress, wish.count, wish.stop);
-  if (!recording) {
-    return fail(recording.error());
-  }
-  const auto runs = read_runs(opened->reader);
-  if (!runs) {
-    return fail(runs.error());
-  }
-  return write(wish, *recording, *runs, progress).map([&] {
-    return figures_of(*recording, std::move(opened->warnings));
+  DYNCAL_TRY(is_folder ? Expected<void>{} : check_new_output(wish.to));
+  DYNCAL_TRY(auto opened, open_recording(wish.recording, wish.count, wish.stop));
+  DYNCAL_TRY(const auto recording,
+             ExportedRecording::open(opened.reader, progress, wish.count, wish.stop));
+  DYNCAL_TRY(const auto runs, read_runs(opened.reader));
+  return write(wish, recording, runs, progress).map([&] {
+    return figures_of(recording, std::move(opened.warnings));
   });
 }
 

@@ -88,9 +88,7 @@ Expected<void> walk(const recording::RecordingReader& reader, const RecordedSour
     if (!decoded) {
       continue; // the index has refused what is of another contract
     }
-    if (auto visited = visit(position.session, *decoded, place); !visited) {
-      return visited;
-    }
+    DYNCAL_TRY(visit(position.session, *decoded, place));
   }
   return {};
 }
@@ -176,9 +174,7 @@ Expected<void> ExportedRecording::add_parts(const std::string& bench, const std:
         described == recorded.descriptions.end() ? recorded.newest : described->second;
   }
   for (std::size_t i = first; i < sources_.size(); ++i) {
-    if (auto surveyed = survey<T>(sources_[i]); !surveyed) {
-      return surveyed;
-    }
+    DYNCAL_TRY(survey<T>(sources_[i]));
   }
   return {};
 }
@@ -262,20 +258,15 @@ Expected<ExportedRecording> ExportedRecording::open(recording::RecordingReader& 
                                                     const ExportProgress& progress,
                                                     const SharedWorkCount& count,
                                                     const std::stop_token& stop) {
-  auto contents = index_contents(reader, count, stop);
-  if (!contents) {
-    return fail(contents.error());
-  }
-  ExportedRecording recording(reader, std::move(*contents));
+  DYNCAL_TRY(auto contents, index_contents(reader, count, stop));
+  ExportedRecording recording(reader, std::move(contents));
   std::size_t done = 0;
   for (const auto& [key, source] : recording.contents_.sources) {
     if (!progress(0.2 * static_cast<double>(done++) /
                   static_cast<double>(recording.contents_.sources.size()))) {
       return fail(ErrorCode::interrupted, "stopped before anything was written");
     }
-    if (auto added = recording.add_source(key, source); !added) {
-      return fail(added.error());
-    }
+    DYNCAL_TRY(recording.add_source(key, source));
   }
   if (recording.samples() == 0) {
     return fail(ErrorCode::bad_file,

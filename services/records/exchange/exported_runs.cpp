@@ -134,9 +134,7 @@ Expected<ExportedRuns> read_runs(recording::RecordingReader& reader) {
       {.message = take,
        .attachment = [&](const recording::Attachment& one) { runs.attachments.push_back(one); },
        .metadata = [&](const recording::Metadata& one) { runs.metadata.push_back(one); }});
-  if (!report) {
-    return fail(report.error());
-  }
+  DYNCAL_TRY(report);
   runs.excitations = values_of(std::move(excitations));
   runs.results = values_of(std::move(results));
   return runs;

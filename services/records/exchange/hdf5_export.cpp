@@ -35,9 +35,7 @@ public:
       return not_written();
     }
     for (const ExportedSource& source : recording_.sources()) {
-      if (auto written = write_source(source); !written) {
-        return written;
-      }
+      DYNCAL_TRY(write_source(source));
     }
     return write_tables() && write_texts_of_file() && close() ? Expected<void>{} : not_written();
   }
@@ -192,18 +190,13 @@ private:
 
 Expected<void> export_hdf5(const ExportedRecording& recording, const ExportedRuns& runs,
                            const std::filesystem::path& to, const ExportProgress& progress) {
-  auto output = OutputStream::create(to);
-  if (!output) {
-    return fail(output.error());
-  }
+  DYNCAL_TRY(auto output, OutputStream::create(to));
   {
     const drivers::files::Hdf5Lock lock;
-    Hdf5Export file(recording, runs, *output, progress);
-    if (auto written = file.write(); !written) {
-      return written;
-    }
+    Hdf5Export file(recording, runs, output, progress);
+    DYNCAL_TRY(file.write());
   }
-  return output->finish();
+  return output.finish();
 }
 
 } // namespace dyncal::services

@@ -139,18 +139,11 @@ private:
 
 Expected<void> write_rows(const RowExport& wanted, const std::filesystem::path& path) {
   const recording::WriterOptions options = options_of(wanted.tables);
-  auto writer = recording::RecordingWriter::create(path, options);
-  if (!writer) {
-    return fail(writer.error());
-  }
-  if (auto added =
-          writer->add_attachment({0, "contents.json", "application/json", wanted.contents});
-      !added) {
-    return added;
-  }
+  DYNCAL_TRY(auto writer, recording::RecordingWriter::create(path, options));
+  DYNCAL_TRY(writer.add_attachment({0, "contents.json", "application/json", wanted.contents}));
   RowProgress progress(wanted);
   for (std::size_t i = 0; i < wanted.tables.size(); ++i) {
-    RowWriter rows(*writer, options.channels[i], wanted.tables[i]);
+    RowWriter rows(writer, options.channels[i], wanted.tables[i]);
     auto written =
         progress.for_each(wanted.tables[i], [&](const Rows& some) { return rows.add(some); })
             .and_then([&] { return rows.flush(); });
@@ -158,15 +151,13 @@ Expected<void> write_rows(const RowExport& wanted, const std::filesystem::path& 
       return written;
     }
   }
-  return writer->close();
+  return writer.close();
 }
 
 } // namespace
 
 Expected<void> export_mcap_rows(const RowExport& wanted) {
-  if (auto is_new = check_new_output(wanted.to); !is_new) {
-    return is_new;
-  }
+  DYNCAL_TRY(check_new_output(wanted.to));
   const std::filesystem::path unfinished = wanted.to.string() + ".part";
   std::error_code ignored;
   std::filesystem::remove(unfinished, ignored);

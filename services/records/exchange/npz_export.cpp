@@ -62,27 +62,23 @@ std::string bytes_of(const Rows& rows) {
 } // namespace
 
 Expected<void> export_npz(const RowExport& wanted) {
-  auto file = ZipFile::create(wanted.to);
-  if (!file) {
-    return fail(file.error());
-  }
+  DYNCAL_TRY(auto file, ZipFile::create(wanted.to));
   RowProgress progress(wanted);
   for (const RowTable& table : wanted.tables) {
-    auto written =
-        file->begin_entry(table.source().name + ".npy")
-            .and_then([&] { return file->write(npy_head(type_of(table), table.rows())); })
-            .and_then([&] {
-              return progress.for_each(
-                  table, [&](const Rows& rows) { return file->write(bytes_of(rows)); });
-            });
+    auto written = file.begin_entry(table.source().name + ".npy")
+                       .and_then([&] { return file.write(npy_head(type_of(table), table.rows())); })
+                       .and_then([&] {
+                         return progress.for_each(
+                             table, [&](const Rows& rows) { return file.write(bytes_of(rows)); });
+                       });
     if (!written) {
       return written;
     }
   }
-  return file->begin_entry("contents_json.npy")
-      .and_then([&] { return file->write(npy_head("'|u1'", wanted.contents.size())); })
-      .and_then([&] { return file->write(wanted.contents); })
-      .and_then([&] { return file->finish(); });
+  return file.begin_entry("contents_json.npy")
+      .and_then([&] { return file.write(npy_head("'|u1'", wanted.contents.size())); })
+      .and_then([&] { return file.write(wanted.contents); })
+      .and_then([&] { return file.finish(); });
 }
 
 } // namespace dyncal::services

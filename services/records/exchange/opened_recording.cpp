@@ -24,10 +24,7 @@ std::vector<std::filesystem::path> recordings_in(const std::filesystem::path& fo
 Expected<void> append(const std::filesystem::path& path, TemporaryRecording& joined,
                       std::vector<std::string>& warnings, ByteCount& bytes,
                       const std::stop_token& stop) {
-  auto reader = recording::RecordingReader::open(path);
-  if (!reader) {
-    return fail(reader.error());
-  }
+  DYNCAL_TRY(auto reader, recording::RecordingReader::open(path));
   Expected<void> added;
   const auto note = [&](Expected<void> outcome) {
     if (added) {
@@ -37,26 +34,24 @@ Expected<void> append(const std::filesystem::path& path, TemporaryRecording& joi
   const auto& channels = recording::recorded_channels();
   const std::uint64_t before = bytes.done();
   const auto report =
-      reader->scan({.message =
-                        [&](const recording::MessageInFile& message) {
-                          for (const recording::Channel& channel : channels) {
-                            if (channel.topic == message.channel.topic) {
-                              recording::Message one = message.message;
-                              one.channel_id = channel.id;
-                              note(joined.add(channel, one));
-                            }
-                          }
-                        },
-                    .attachment = [&](const recording::Attachment& one) { note(joined.add(one)); },
-                    .metadata = [&](const recording::Metadata& one) { note(joined.add(one)); },
-                    .walked =
-                        [&](std::uint64_t walked) {
-                          bytes.set_done(before + walked);
-                          return !stop.stop_requested();
-                        }});
-  if (!report) {
-    return fail(report.error());
-  }
+      reader.scan({.message =
+                       [&](const recording::MessageInFile& message) {
+                         for (const recording::Channel& channel : channels) {
+                           if (channel.topic == message.channel.topic) {
+                             recording::Message one = message.message;
+                             one.channel_id = channel.id;
+                             note(joined.add(channel, one));
+                           }
+                         }
+                       },
+                   .attachment = [&](const recording::Attachment& one) { note(joined.add(one)); },
+                   .metadata = [&](const recording::Metadata& one) { note(joined.add(one)); },
+                   .walked =
+                       [&](std::uint64_t walked) {
+                         bytes.set_done(before + walked);
+                         return !stop.stop_requested();
+                       }});
+  DYNCAL_TRY(report);
   for (const recording::Damage& damage : report->damages) {
     warnings.push_back(to_string(damage, path));
   }
@@ -70,18 +65,13 @@ Expected<OpenedRecording> join(const std::filesystem::path& folder,
   options.library = fmt::format("{} recordings of a run", files.size());
   options.schemas = recording::recorded_schemas();
   options.channels = recording::recorded_channels();
-  auto joined = TemporaryRecording::create(std::move(options));
-  if (!joined) {
-    return fail(joined.error());
-  }
+  DYNCAL_TRY(auto joined, TemporaryRecording::create(std::move(options)));
   std::vector<std::string> warnings;
   ByteCount bytes(count, "reading", bytes_of_files(files));
   for (const auto& file : files) {
-    if (auto added = append(file, *joined, warnings, bytes, stop); !added) {
-      return fail(added.error());
-    }
+    DYNCAL_TRY(append(file, joined, warnings, bytes, stop));
   }
-  return joined->read(folder).map([&](recording::RecordingReader reader) {
+  return joined.read(folder).map([&](recording::RecordingReader reader) {
     return OpenedRecording{std::move(reader), std::move(warnings)};
   });
 }

@@ -62,9 +62,7 @@ Expected<void> TemporaryRecording::add(recording::Metadata metadata) {
 }
 
 Expected<recording::RecordingReader> TemporaryRecording::read(const std::filesystem::path& name) {
-  if (auto closed = flush().and_then([&] { return writer_.close(); }); !closed) {
-    return fail(closed.error());
-  }
+  DYNCAL_TRY(flush().and_then([&] { return writer_.close(); }));
   drivers::FileDescriptor file(::open((folder_ / file_name).c_str(), O_RDONLY | O_CLOEXEC));
   if (!file.is_open()) {
     return fail(ErrorCode::bad_file,

@@ -70,11 +70,8 @@ std::string ZipFile::directory_entry_of(const Entry& entry) {
 }
 
 Expected<ZipFile> ZipFile::create(const std::filesystem::path& path) {
-  auto file = OutputStream::create(path);
-  if (!file) {
-    return fail(file.error());
-  }
-  return ZipFile(std::move(*file));
+  DYNCAL_TRY(auto file, OutputStream::create(path));
+  return ZipFile(std::move(file));
 }
 
 Expected<void> ZipFile::begin_entry(const std::string& name) {
@@ -97,9 +94,7 @@ Expected<void> ZipFile::end_entry() {
 }
 
 Expected<void> ZipFile::finish() {
-  if (auto ended = end_entry(); !ended) {
-    return ended;
-  }
+  DYNCAL_TRY(end_entry());
   const std::uint64_t begin = file_.written();
   std::string directory;
   for (const Entry& entry : entries_) {

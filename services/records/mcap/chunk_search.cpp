@@ -18,24 +18,16 @@ Expected<std::optional<std::uint64_t>> ChunkSearch::next(std::uint64_t from,
                                                          const WalkTo& walk_to) {
   while (from + chunk_fields_bytes <= reader_.size_bytes()) {
     const std::uint64_t count = std::min(window_bytes, reader_.size_bytes() - from);
-    const auto window = reader_.bytes(from, count);
-    if (!window) {
-      return fail(window.error());
-    }
-    for (std::size_t at = window->find('\x06'); at != std::string::npos;
-         at = window->find('\x06', at + 1)) {
-      const auto whole = is_whole(from + at);
-      if (!whole) {
-        return fail(whole.error());
-      }
-      if (*whole) {
+    DYNCAL_TRY(const auto window, reader_.bytes(from, count));
+    for (std::size_t at = window.find('\x06'); at != std::string::npos;
+         at = window.find('\x06', at + 1)) {
+      DYNCAL_TRY(const auto whole, is_whole(from + at));
+      if (whole) {
         return from + at;
       }
     }
     from += count;
-    if (const auto walked = walk_to(from); !walked) {
-      return fail(walked.error());
-    }
+    DYNCAL_TRY(walk_to(from));
   }
   return std::nullopt;
 }
@@ -46,18 +38,15 @@ Expected<bool> ChunkSearch::is_whole(std::uint64_t offset) {
   if (left < chunk_fields_bytes || failed_candidates_ >= max_failed_candidates) {
     return false;
   }
-  const auto fields = reader_.bytes(offset, chunk_fields_bytes);
-  if (!fields) {
-    return fail(fields.error());
-  }
-  const std::uint64_t length = number_at(*fields, 1, 8);
-  const std::uint64_t letters = number_at(*fields, head_bytes + 28, 4);
+  DYNCAL_TRY(const auto fields, reader_.bytes(offset, chunk_fields_bytes));
+  const std::uint64_t length = number_at(fields, 1, 8);
+  const std::uint64_t letters = number_at(fields, head_bytes + 28, 4);
   if (length > left - head_bytes || length > max_record_bytes || letters > 4 || length < 44 ||
-      number_at(*fields, head_bytes + 32 + letters, 8) != length - 40 - letters) {
+      number_at(fields, head_bytes + 32 + letters, 8) != length - 40 - letters) {
     return false;
   }
   const bool whole =
-      reader_.chunk_records(offset).has_value() && number_at(*fields, head_bytes + 24, 4) != 0;
+      reader_.chunk_records(offset).has_value() && number_at(fields, head_bytes + 24, 4) != 0;
   failed_candidates_ += whole ? 0 : 1;
   return whole;
 }

@@ -32,12 +32,9 @@ Ending judge_ending(std::string_view text, std::uint64_t begin) {
 Expected<std::optional<std::uint64_t>> footer_behind(const RecordingReader& reader,
                                                      std::uint64_t offset) {
   while (reader.size_bytes() - offset >= footer_bytes + magic.size()) {
-    const auto head = reader.bytes(offset, head_bytes);
-    if (!head) {
-      return fail(head.error());
-    }
-    const std::uint64_t length = number_at(*head, 1, 8);
-    if (static_cast<Opcode>((*head)[0]) == Opcode::footer) {
+    DYNCAL_TRY(const auto head, reader.bytes(offset, head_bytes));
+    const std::uint64_t length = number_at(head, 1, 8);
+    if (static_cast<Opcode>(head[0]) == Opcode::footer) {
       return length == footer_bytes - head_bytes ? std::optional(offset) : std::nullopt;
     }
     if (length > reader.size_bytes() - offset - head_bytes) {
@@ -51,18 +48,12 @@ Expected<std::optional<std::uint64_t>> footer_behind(const RecordingReader& read
 } // namespace
 
 Expected<Ending> ending_behind(const RecordingReader& reader, std::uint64_t begin) {
-  const auto footer = footer_behind(reader, begin);
-  if (!footer) {
-    return fail(footer.error());
-  }
-  if (!*footer || **footer - begin >= max_record_bytes) {
+  DYNCAL_TRY(const auto footer, footer_behind(reader, begin));
+  if (!footer || *footer - begin >= max_record_bytes) {
     return Ending::damaged;
   }
-  const auto text = reader.bytes(begin, **footer - begin + footer_bytes + magic.size());
-  if (!text) {
-    return fail(text.error());
-  }
-  return judge_ending(*text, begin);
+  DYNCAL_TRY(const auto text, reader.bytes(begin, *footer - begin + footer_bytes + magic.size()));
+  return judge_ending(text, begin);
 }
 
 } // namespace dyncal::recording

@@ -144,18 +144,14 @@ Expected<void> RecordingFile::append(std::span<const std::string_view> parts, st
   }
   const std::uint64_t new_end = end_ + bytes + filler.size();
   if (new_end + head_bytes > limit_) {
-    if (auto extended = extend(new_end - end_); !extended) {
-      return extended;
-    }
+    DYNCAL_TRY(extend(new_end - end_));
   }
   std::uint64_t offset = end_ + head_bytes;
   for (std::string_view part : parts) {
     if (offset == end_ + head_bytes) {
       part.remove_prefix(head_bytes);
     }
-    if (auto written = write(part, offset); !written) {
-      return written;
-    }
+    DYNCAL_TRY(write(part, offset));
     offset += part.size();
   }
   auto committed = write(filler + filler_head(new_end, limit_), offset).and_then([&] {
@@ -171,9 +167,7 @@ Expected<void> RecordingFile::append(std::span<const std::string_view> parts, st
 Expected<void> RecordingFile::finish(std::string_view ending) {
   const std::uint64_t size = end_ + ending.size();
   if (size > limit_) {
-    if (auto extended = extend(ending.size()); !extended) {
-      return extended;
-    }
+    DYNCAL_TRY(extend(ending.size()));
   }
   const auto finished = write(ending.substr(head_bytes), end_ + head_bytes).and_then([&] {
     return write(ending.substr(0, head_bytes), end_);

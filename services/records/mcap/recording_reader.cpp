@@ -38,11 +38,9 @@ Expected<RecordingReader> RecordingReader::read(drivers::FileDescriptor file,
   }
   RecordingReader reader(std::move(name), std::move(file),
                          static_cast<std::uint64_t>(status.st_size));
-  const auto begin = reader.bytes(0, std::min<std::uint64_t>(reader.size_, magic.size()));
-  if (!begin) {
-    return fail(begin.error());
-  }
-  if (*begin != magic) {
+  DYNCAL_TRY(const auto begin,
+             reader.bytes(0, std::min<std::uint64_t>(reader.size_, magic.size())));
+  if (begin != magic) {
     return fail(ErrorCode::bad_file,
                 fmt::format("{}: at byte 0: this is not an MCAP recording", reader.path_.string()));
   }

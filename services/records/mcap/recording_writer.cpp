@@ -59,11 +59,8 @@ Expected<RecordingWriter> RecordingWriter::create(const std::filesystem::path& p
                                                   WriterOptions options) {
   std::string beginning(magic);
   append_header(beginning, options.library);
-  auto file = RecordingFile::create(path, beginning);
-  if (!file) {
-    return fail(file.error());
-  }
-  return RecordingWriter(std::move(*file), std::move(options));
+  DYNCAL_TRY(auto file, RecordingFile::create(path, beginning));
+  return RecordingWriter(std::move(file), std::move(options));
 }
 
 Expected<void> RecordingWriter::append(const std::string& record) {
@@ -104,9 +101,7 @@ Expected<void> RecordingWriter::add_channels(const Chunk& chunk) {
       append_schema(records, by_id(options_.schemas, channel.schema_id));
     }
     append_channel(records, channel);
-    if (auto added = append(records); !added) {
-      return added;
-    }
+    DYNCAL_TRY(append(records));
     channels_there_.insert(id);
     if (new_schema) {
       schemas_there_.insert(channel.schema_id);
@@ -116,9 +111,7 @@ Expected<void> RecordingWriter::add_channels(const Chunk& chunk) {
 }
 
 Expected<void> RecordingWriter::add_chunk(const Chunk& chunk) {
-  if (auto added = add_channels(chunk); !added) {
-    return added;
-  }
+  DYNCAL_TRY(add_channels(chunk));
   const std::string& records = chunk.records();
   const std::string smaller = compress(records, options_.compression);
   const std::string_view stored = smaller.empty() ? records : smaller;

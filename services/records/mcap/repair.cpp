@@ -125,54 +125,42 @@ private:
 Expected<ScanReport> repair(const std::filesystem::path& path,
                             const std::filesystem::path& repaired, const std::string& library,
                             const services::SharedWorkCount& count) {
-  auto reader = RecordingReader::open(path);
-  if (!reader) {
-    return fail(reader.error());
-  }
-  if (auto is_new = services::check_new_output(repaired); !is_new) {
-    return fail(is_new.error());
-  }
-  services::ByteCount read(count, "reading", reader->size_bytes());
+  DYNCAL_TRY(auto reader, RecordingReader::open(path));
+  DYNCAL_TRY(services::check_new_output(repaired));
+  services::ByteCount read(count, "reading", reader.size_bytes());
   Definitions definitions;
   auto report =
-      reader->scan({.message = [&](const MessageInFile& message) { definitions.add(message); },
-                    .attachment = {},
-                    .metadata = {},
-                    .walked =
-                        [&](std::uint64_t bytes) {
-                          read.set_done(bytes);
-                          return true;
-                        }});
+      reader.scan({.message = [&](const MessageInFile& message) { definitions.add(message); },
+                   .attachment = {},
+                   .metadata = {},
+                   .walked =
+                       [&](std::uint64_t bytes) {
+                         read.set_done(bytes);
+                         return true;
+                       }});
   if (!report) {
     return report;
   }
   const Unfinished file(repaired);
-  auto writer = RecordingWriter::create(file.path(), definitions.options(library));
-  if (!writer) {
-    return fail(writer.error());
-  }
-  Copy copy(*writer, definitions);
-  services::ByteCount copied_bytes(count, "copying", reader->size_bytes());
+  DYNCAL_TRY(auto writer, RecordingWriter::create(file.path(), definitions.options(library)));
+  Copy copy(writer, definitions);
+  services::ByteCount copied_bytes(count, "copying", reader.size_bytes());
   const auto copied =
-      reader->scan({.message = [&](const MessageInFile& message) { copy.add(message); },
-                    .attachment = [&](const Attachment& attachment) { copy.add(attachment); },
-                    .metadata = [&](const Metadata& metadata) { copy.add(metadata); },
-                    .walked =
-                        [&](std::uint64_t bytes) {
-                          copied_bytes.set_done(bytes);
-                          return true;
-                        }});
+      reader.scan({.message = [&](const MessageInFile& message) { copy.add(message); },
+                   .attachment = [&](const Attachment& attachment) { copy.add(attachment); },
+                   .metadata = [&](const Metadata& metadata) { copy.add(metadata); },
+                   .walked =
+                       [&](std::uint64_t bytes) {
+                         copied_bytes.set_done(bytes);
+                         return true;
+                       }});
   copy.flush();
-  if (!copied) {
-    return fail(copied.error());
-  }
+  DYNCAL_TRY(copied);
   auto written = copy.outcome()
-                     .and_then([&] { return writer->add_metadata(repair_metadata(path, *report)); })
-                     .and_then([&] { return writer->close(); })
+                     .and_then([&] { return writer.add_metadata(repair_metadata(path, *report)); })
+                     .and_then([&] { return writer.close(); })
                      .and_then([&] { return file.finish(); });
-  if (!written) {
-    return fail(written.error());
-  }
+  DYNCAL_TRY(written);
   return report;
 }
 

@@ -59,15 +59,9 @@ Expected<ScanReport> Scan::run() {
   offset_ = magic.size();
   crc_ = crc32_of(magic);
   for (;;) {
-    const auto goes_on = step();
+    DYNCAL_TRY(const auto goes_on, step());
+    DYNCAL_TRY(walk_to(goes_on ? offset_ : reader_.size_bytes()));
     if (!goes_on) {
-      return fail(goes_on.error());
-    }
-    const auto walked = walk_to(*goes_on ? offset_ : reader_.size_bytes());
-    if (!walked) {
-      return fail(walked.error());
-    }
-    if (!*goes_on) {
       return std::move(report_);
     }
   }
@@ -79,12 +73,9 @@ Expected<bool> Scan::step() {
     damage(offset_, left, "the file was cut off here");
     return false;
   }
-  const auto head = reader_.bytes(offset_, head_bytes);
-  if (!head) {
-    return fail(head.error());
-  }
-  const auto opcode = static_cast<Opcode>(static_cast<std::uint8_t>((*head)[0]));
-  const std::uint64_t length = number_at(*head, 1, 8);
+  DYNCAL_TRY(const auto head, reader_.bytes(offset_, head_bytes));
+  const auto opcode = static_cast<Opcode>(static_cast<std::uint8_t>(head[0]));
+  const std::uint64_t length = number_at(head, 1, 8);
   const std::uint64_t begin = offset_;
   if (length > left - head_bytes) {
     return go_on_behind(begin).map([&] { return offset_ < reader_.size_bytes(); });
@@ -100,20 +91,17 @@ Expected<bool> Scan::step() {
     offset_ += head_bytes + length;
     return true;
   }
-  const auto content = reader_.bytes(begin + head_bytes, length);
-  if (!content) {
-    return fail(content.error());
-  }
+  DYNCAL_TRY(const auto content, reader_.bytes(begin + head_bytes, length));
   if (opcode == Opcode::data_end && length == 4) {
-    const auto crc = static_cast<std::uint32_t>(number_at(*content, 0, 4));
+    const auto crc = static_cast<std::uint32_t>(number_at(content, 0, 4));
     return take_end(crc, begin + head_bytes + length).map([] { return false; });
   }
-  const Finding finding = take(opcode, *content);
+  const Finding finding = take(opcode, content);
   if (finding == Finding::unreadable) {
     return go_on_behind(begin).map([&] { return offset_ < reader_.size_bytes(); });
   }
   if (crc_) {
-    crc_ = crc32_of(*content, crc32_of(*head, *crc_));
+    crc_ = crc32_of(content, crc32_of(head, *crc_));
   }
   offset_ = begin + head_bytes + length;
   return true;
@@ -303,12 +291,9 @@ Expected<void> Scan::take_end(std::uint32_t crc, std::uint64_t begin) {
   if (crc != 0 && crc_ && *crc_ != crc && report_.damage_count == 0) {
     damage(0, begin, "something outside the chunks was changed: the CRC of the data is wrong");
   }
-  const auto ending = ending_behind(reader_, begin);
-  if (!ending) {
-    return fail(ending.error());
-  }
-  report_.ended_in_order = *ending == Ending::with_summary;
-  if (*ending == Ending::damaged) {
+  DYNCAL_TRY(const auto ending, ending_behind(reader_, begin));
+  report_.ended_in_order = ending == Ending::with_summary;
+  if (ending == Ending::damaged) {
     damage(begin, reader_.size_bytes() - begin,
            "the summary at the end is damaged, no message is lost");
   }
@@ -316,15 +301,13 @@ Expected<void> Scan::take_end(std::uint32_t crc, std::uint64_t begin) {
 }
 
 Expected<void> Scan::go_on_behind(std::uint64_t offset) {
-  const auto next = chunks_.next(offset + 1, [this](std::uint64_t from) { return walk_to(from); });
-  if (!next) {
-    return fail(next.error());
-  }
+  DYNCAL_TRY(const auto next,
+             chunks_.next(offset + 1, [this](std::uint64_t from) { return walk_to(from); }));
   crc_.reset();
-  offset_ = next->value_or(reader_.size_bytes());
+  offset_ = next.value_or(reader_.size_bytes());
   damage(offset, offset_ - offset,
-         *next ? "these bytes are no records: what stood here is lost"
-               : "from here to the end there are no records: what stood here is lost");
+         next ? "these bytes are no records: what stood here is lost"
+              : "from here to the end there are no records: what stood here is lost");
   return {};
 }
 

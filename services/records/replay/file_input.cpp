@@ -50,11 +50,8 @@ FileInput::~FileInput() {
 }
 
 Expected<std::unique_ptr<FileInput>> FileInput::open(const SourceSettings& settings) {
-  auto driver = driver_of(settings);
-  if (!driver) {
-    return fail(driver.error());
-  }
-  std::unique_ptr<FileInput> input(new FileInput(settings.name, std::move(*driver)));
+  DYNCAL_TRY(auto driver, driver_of(settings));
+  std::unique_ptr<FileInput> input(new FileInput(settings.name, std::move(driver)));
   auto described = input->driver_->describe();
   if (!described) {
     return fail(ErrorCode::bad_file,

@@ -6,11 +6,7 @@ namespace dyncal::services {
 
 Expected<recording::Message> RecordedMessages::at(const RecordedPlace& place) {
   if (!records_ || chunk_ != place.chunk) {
-    auto records = reader_.chunk_records(place.chunk);
-    if (!records) {
-      return fail(records.error());
-    }
-    records_ = std::move(*records);
+    DYNCAL_TRY(records_, reader_.chunk_records(place.chunk));
     chunk_ = place.chunk;
   }
   const std::string_view records = *records_;

@@ -95,39 +95,33 @@ bool has_restarted_source(const RecordedRunIndex& index, const Recipe& recipe) {
 Expected<RecordedRunOutcome> evaluate_recording(recording::RecordingReader& reader,
                                                 const RecordedRunOptions& wish,
                                                 const std::stop_token& stop) {
-  const auto index = index_recording(reader, wish.run, wish.count, stop);
-  if (!index) {
-    return fail(index.error());
-  }
-  auto recipe = wish.recipe ? Expected<Recipe>(*wish.recipe) : parse_recipe(index->plan);
-  if (!recipe) {
-    return fail(recipe.error());
-  }
-  recipe->bench = index->plan.bench().to_string();
-  recipe->run = index->plan.run().to_string();
+  DYNCAL_TRY(const auto index, index_recording(reader, wish.run, wish.count, stop));
+  DYNCAL_TRY(auto recipe, wish.recipe ? Expected<Recipe>(*wish.recipe) : parse_recipe(index.plan));
+  recipe.bench = index.plan.bench().to_string();
+  recipe.run = index.plan.run().to_string();
   if (wish.recipe) {
-    recipe->source_settings.clear(); // the sources had read the file of their run
+    recipe.source_settings.clear(); // the sources had read the file of their run
   }
   RecordedRunOutcome result;
-  result.live_results = index->live_results;
-  result.source_restarted = has_restarted_source(*index, *recipe);
-  result.outcome = outcome_of(*recipe);
-  result.outcome.adc_file = wish.recipe ? std::nullopt : adc_file_of(index->plan);
-  result.warnings = warnings_of(*index, *recipe, reader.path());
-  add_setup(*index, result.outcome);
-  const bool behind = begins_behind(*index, *recipe);
-  RunEvaluator evaluator(std::move(*recipe),
+  result.live_results = index.live_results;
+  result.source_restarted = has_restarted_source(index, recipe);
+  result.outcome = outcome_of(recipe);
+  result.outcome.adc_file = wish.recipe ? std::nullopt : adc_file_of(index.plan);
+  result.warnings = warnings_of(index, recipe, reader.path());
+  add_setup(index, result.outcome);
+  const bool behind = begins_behind(index, recipe);
+  RunEvaluator evaluator(std::move(recipe),
                          {.evaluations_at_once = std::clamp<std::size_t>(
                               std::thread::hardware_concurrency(), 1, max_evaluations),
-                          .clock_to_the_end = index->clock_end.has_value(),
-                          .clock_end = index->clock_end,
+                          .clock_to_the_end = index.clock_end.has_value(),
+                          .clock_end = index.clock_end,
                           .count = wish.count,
                           .behind = behind,
                           .may_begin_late = true});
   const std::stop_callback end(stop, [&evaluator, all = wish.whole_or_none] {
     all ? evaluator.give_up() : evaluator.stop_checks();
   });
-  RecordedRunFeed feed(reader, *index, evaluator, result.outcome);
+  RecordedRunFeed feed(reader, index, evaluator, result.outcome);
   const auto walked =
       reader.scan({.message =
                        [&](const recording::MessageInFile& message) {
@@ -141,10 +135,8 @@ Expected<RecordedRunOutcome> evaluate_recording(recording::RecordingReader& read
   if (!walked && walked.error().code != ErrorCode::interrupted) {
     return fail(walked.error());
   }
-  const bool aborted = stop.stop_requested() || index->newest.state() != wire::MEASUREMENT_DONE;
-  if (const auto finished = feed.finish(aborted); !finished) {
-    return fail(finished.error());
-  }
+  const bool aborted = stop.stop_requested() || index.newest.state() != wire::MEASUREMENT_DONE;
+  DYNCAL_TRY(feed.finish(aborted));
   if (wish.whole_or_none && stop.stop_requested()) {
     return fail(ErrorCode::interrupted, "interrupted");
   }

@@ -188,9 +188,7 @@ Expected<RecordingContents> index_contents(recording::RecordingReader& reader,
              bytes.set_done(walked);
              return !stop.stop_requested();
            }});
-  if (!report) {
-    return fail(report.error());
-  }
+  DYNCAL_TRY(report);
   if (gathering.undecodable() > 0) {
     return fail(ErrorCode::bad_file,
                 fmt::format("{}: {} messages are not of the contract of this version: read it with "
@@ -205,16 +203,13 @@ Expected<RecordingContents> index_contents(recording::RecordingReader& reader,
 Expected<RecordedRunIndex> index_recording(recording::RecordingReader& reader,
                                            const std::string& run, const SharedWorkCount& count,
                                            const std::stop_token& stop) {
-  auto contents = index_contents(reader, count, stop);
-  if (!contents) {
-    return fail(contents.error());
-  }
+  DYNCAL_TRY(auto contents, index_contents(reader, count, stop));
   const std::string path = reader.path().string();
-  if (contents->runs.empty()) {
+  if (contents.runs.empty()) {
     return fail(ErrorCode::bad_file, fmt::format("{}: holds no run (no Measurement)", path));
   }
   std::vector<std::string> names;
-  for (const auto& [name, one] : contents->runs) {
+  for (const auto& [name, one] : contents.runs) {
     names.push_back(name);
   }
   if (run.empty() && names.size() > 1) {
@@ -222,19 +217,19 @@ Expected<RecordedRunIndex> index_recording(recording::RecordingReader& reader,
                 fmt::format("{}: holds several runs ({}): name one with --run", path,
                             fmt::join(names, ", ")));
   }
-  const auto found = contents->runs.find(run.empty() ? names.front() : run);
-  if (found == contents->runs.end()) {
+  const auto found = contents.runs.find(run.empty() ? names.front() : run);
+  if (found == contents.runs.end()) {
     return fail(ErrorCode::bad_argument,
                 fmt::format("{}: holds no run '{}', but: {}", path, run, fmt::join(names, ", ")));
   }
   RecordedRunIndex index = std::move(found->second);
   const std::string bench = index.plan.bench().to_string();
-  for (auto& [key, source] : contents->sources) {
+  for (auto& [key, source] : contents.sources) {
     if (key.first == bench) {
       index.sources.emplace(key.second, std::move(source));
     }
   }
-  index.report = std::move(contents->report);
+  index.report = std::move(contents.report);
   return index;
 }
 

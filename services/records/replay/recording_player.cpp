@@ -35,9 +35,7 @@ Expected<std::string> recorded_bench(recording::RecordingReader& reader) {
                        },
                    .attachment = {},
                    .metadata = {}});
-  if (!report) {
-    return fail(report.error());
-  }
+  DYNCAL_TRY(report);
   if (benches.size() != 1) {
     return fail(
         ErrorCode::bad_file,
@@ -169,9 +167,7 @@ Expected<Players> open_players(bus::Participant& participant, const std::string&
     }
     players.emplace(name, std::make_unique<PlayerOf<T>>(std::move(*writer)));
   });
-  if (!opened) {
-    return fail(opened.error());
-  }
+  DYNCAL_TRY(opened);
   return players;
 }
 
@@ -211,47 +207,33 @@ private:
 
 Expected<RecordingPlayer> RecordingPlayer::open(bus::Participant& participant, ReplayOptions wish,
                                                 const std::stop_token& stop) {
-  auto reader = recording::RecordingReader::open(wish.recording);
-  if (!reader) {
-    return fail(reader.error());
-  }
-  auto bench = recorded_bench(*reader);
-  if (!bench) {
-    return fail(bench.error());
-  }
+  DYNCAL_TRY(auto reader, recording::RecordingReader::open(wish.recording));
+  DYNCAL_TRY(auto bench, recorded_bench(reader));
   if (wish.bench.empty()) {
-    wish.bench = *bench;
+    wish.bench = bench;
   }
-  if (const auto checked = bus::check_bench_name(wish.bench); !checked) {
-    return fail(checked.error());
-  }
-  const auto live = live_sender(participant, wish.bench, stop);
-  if (!live) {
-    return fail(live.error());
-  }
-  if (*live) {
+  DYNCAL_TRY(bus::check_bench_name(wish.bench));
+  DYNCAL_TRY(const auto live, live_sender(participant, wish.bench, stop));
+  if (live) {
     return fail(ErrorCode::no_source,
                 fmt::format("bench '{}' is live in this domain ({}), and recorded samples must not "
                             "be taken for its own: give the replay another name of the bench "
                             "(--bench) or another domain (--domain)",
-                            wish.bench, **live));
+                            wish.bench, *live));
   }
-  return RecordingPlayer(participant, std::move(wish), std::move(*reader));
+  return RecordingPlayer(participant, std::move(wish), std::move(reader));
 }
 
 Expected<ReplayFigures> RecordingPlayer::play(const std::stop_token& stop) {
-  auto players = open_players(*participant_, wish_.bench, wish_.results);
-  if (!players) {
-    return fail(players.error());
-  }
+  DYNCAL_TRY(auto players, open_players(*participant_, wish_.bench, wish_.results));
   const std::string replay = "replay of " + wish_.recording.filename().string();
   ReplayFigures figures;
   Pace pace(wish_.speed);
   pace.wait_for_readers(stop);
   auto report = reader_.scan({.message =
                                   [&](const recording::MessageInFile& message) {
-                                    const auto player = players->find(message.channel.topic);
-                                    if (stop.stop_requested() || player == players->end()) {
+                                    const auto player = players.find(message.channel.topic);
+                                    if (stop.stop_requested() || player == players.end()) {
                                       ++figures.left_out;
                                       return;
                                     }
@@ -264,11 +246,9 @@ Expected<ReplayFigures> RecordingPlayer::play(const std::stop_token& stop) {
                                   },
                               .attachment = {},
                               .metadata = {}});
-  if (!report) {
-    return fail(report.error());
-  }
+  DYNCAL_TRY(report);
   figures.report = std::move(*report);
-  for (const auto& [topic, player] : *players) {
+  for (const auto& [topic, player] : players) {
     player->wait_for_acknowledgments(acknowledgment_limit);
   }
   return figures;

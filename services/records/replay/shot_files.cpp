@@ -136,24 +136,18 @@ Expected<ShotFiles> read_shot_files(const BenchFile& bench, const std::string& n
                                                  "files, use 'dyncal run' for live sources",
                                                  source.where, source.name));
   }
-  const auto files = find_files(folder);
-  if (!files) {
-    return fail(files.error());
-  }
+  DYNCAL_TRY(const auto files, find_files(folder));
   std::vector<std::string> wanted;
   for (const ChannelName& channel : trace ? std::vector{bench.method.sync_dau} : bench.method.dut) {
     wanted.push_back(channel.channel);
   }
   ShotFiles result;
-  for (const auto& [number, path] : *files) {
-    auto series = read_file(path, source, wanted);
-    if (!series) {
-      return fail(series.error());
-    }
+  for (const auto& [number, path] : files) {
+    DYNCAL_TRY(auto series, read_file(path, source, wanted));
     if (result.records.empty()) {
-      result.description = describe(source, *series);
+      result.description = describe(source, series);
     }
-    result.records.push_back(record_of(number, std::move(*series)));
+    result.records.push_back(record_of(number, std::move(series)));
   }
   return result;
 }

@@ -103,11 +103,8 @@ std::optional<RunIdentity> run_of_folder(const std::string& folder, const std::s
 
 // Of a run that is resumed: results by two bench files would stand side by side.
 Expected<void> check_same_bench(const fs::path& folder, const BenchFile& bench) {
-  const auto begun_with = read_whole_file(folder / copied_bench_file, max_bench_bytes);
-  if (!begun_with) {
-    return fail(begun_with.error());
-  }
-  if (*begun_with == bench.text) {
+  DYNCAL_TRY(const auto begun_with, read_whole_file(folder / copied_bench_file, max_bench_bytes));
+  if (begun_with == bench.text) {
     return {};
   }
   return fail(ErrorCode::bad_file,
@@ -157,14 +154,9 @@ Expected<std::unique_ptr<RunFolder>> RunFolder::reopen(const std::filesystem::pa
   if (newest.empty()) {
     return std::unique_ptr<RunFolder>();
   }
-  if (auto same = check_same_bench(newest, bench); !same) {
-    return fail(same.error());
-  }
-  auto lock = lock_folder(newest);
-  if (!lock) {
-    return fail(lock.error());
-  }
-  return std::unique_ptr<RunFolder>(new RunFolder(newest, std::move(*lock), false));
+  DYNCAL_TRY(check_same_bench(newest, bench));
+  DYNCAL_TRY(auto lock, lock_folder(newest));
+  return std::unique_ptr<RunFolder>(new RunFolder(newest, std::move(lock), false));
 }
 
 std::filesystem::path RunFolder::recording_path() const {
@@ -186,9 +178,7 @@ Expected<void> RunFolder::check_room(const SpaceEstimate& need) const {
 }
 
 Expected<void> RunFolder::finish(const RunOutcome& outcome) {
-  if (auto written = results_->finish(outcome); !written) {
-    return written;
-  }
+  DYNCAL_TRY(results_->finish(outcome));
   const auto drawn = write_figures(outcome, path_ / figures_folder_name);
   return drawn ? Expected<void>{} : fail(drawn.error());
 }

@@ -7,9 +7,7 @@
 namespace dyncal::services {
 
 Expected<void> Database::transaction(const std::function<Expected<void>()>& write) {
-  if (auto begun = begin_writing(); !begun) {
-    return begun;
-  }
+  DYNCAL_TRY(begin_writing());
   if (auto written = write(); !written) {
     static_cast<void>(execute("ROLLBACK")); // the error of the write is what counts
     return written;

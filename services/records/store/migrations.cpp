@@ -41,21 +41,14 @@ const std::vector<Change>& changes() {
 Expected<int> version_of(Database& database) {
   const auto made =
       database.execute("CREATE TABLE IF NOT EXISTS store_version (version BIGINT NOT NULL)");
-  if (!made) {
-    return fail(made.error());
-  }
-  const auto rows = database.execute("SELECT MAX(version) FROM store_version");
-  if (!rows) {
-    return fail(rows.error());
-  }
-  return rows->empty() ? 0 : static_cast<int>(integer_of(rows->front().front()));
+  DYNCAL_TRY(made);
+  DYNCAL_TRY(const auto rows, database.execute("SELECT MAX(version) FROM store_version"));
+  return rows.empty() ? 0 : static_cast<int>(integer_of(rows.front().front()));
 }
 
 Expected<void> apply(Database& database, int change) {
   for (const std::string& statement : changes()[static_cast<std::size_t>(change) - 1]) {
-    if (const auto done = database.execute(statement); !done) {
-      return fail(done.error());
-    }
+    DYNCAL_TRY(database.execute(statement));
   }
   const auto noted =
       database.execute("INSERT INTO store_version (version) VALUES ($1)", {std::int64_t{change}});
@@ -70,20 +63,15 @@ int newest_store_version() {
 
 Expected<void> migrate(Database& database, int version) {
   return database.transaction([&]() -> Expected<void> {
-    const auto now = version_of(database);
-    if (!now) {
-      return fail(now.error());
-    }
-    if (*now > newest_store_version()) {
+    DYNCAL_TRY(const auto now, version_of(database));
+    if (now > newest_store_version()) {
       return fail(ErrorCode::bad_file,
                   fmt::format("the store is of version {}, made by a newer dyncal; this one knows "
                               "versions to {}: use the newer one",
-                              *now, newest_store_version()));
+                              now, newest_store_version()));
     }
-    for (int change = *now + 1; change <= version; ++change) {
-      if (auto applied = apply(database, change); !applied) {
-        return applied;
-      }
+    for (int change = now + 1; change <= version; ++change) {
+      DYNCAL_TRY(apply(database, change));
     }
     return {};
   });

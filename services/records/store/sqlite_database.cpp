@@ -112,9 +112,7 @@ Expected<std::unique_ptr<Database>> open_sqlite(const std::string& path) {
   sqlite3_extended_result_codes(raw, 1);
   sqlite3_busy_timeout(raw, patience_ms);
   auto database = std::make_unique<SqliteDatabase>(std::move(handle), path);
-  if (const auto keys = database->execute("PRAGMA foreign_keys = ON", {}); !keys) {
-    return fail(keys.error());
-  }
+  DYNCAL_TRY(database->execute("PRAGMA foreign_keys = ON", {}));
   return database;
 }
 

@@ -91,15 +91,12 @@ std::string store_place(const std::string& option, const std::filesystem::path& 
 }
 
 Expected<std::unique_ptr<Store>> Store::open(const std::string& place) {
-  auto database = is_server(place) ? open_postgres(place) : open_sqlite(place);
-  if (!database) {
-    return fail(database.error());
-  }
-  if (const auto ready = migrate(**database); !ready) {
+  DYNCAL_TRY(auto database, is_server(place) ? open_postgres(place) : open_sqlite(place));
+  if (const auto ready = migrate(*database); !ready) {
     return fail(ready.error().code,
                 fmt::format("{}: {}", without_password(place), ready.error().message));
   }
-  return std::unique_ptr<Store>(new Store(std::move(*database)));
+  return std::unique_ptr<Store>(new Store(std::move(database)));
 }
 
 Expected<std::unique_ptr<Store>> Store::open_existing(const std::string& place) {
@@ -113,40 +110,29 @@ Expected<std::unique_ptr<Store>> Store::open_existing(const std::string& place) 
 }
 
 Expected<StoreAddition> Store::add(const std::filesystem::path& path) {
-  const auto record = read_result_record(path);
-  if (!record) {
-    return fail(record.error());
-  }
+  DYNCAL_TRY(const auto record, read_result_record(path));
   StoreAddition addition = StoreAddition::added;
   const auto written = database_->transaction([&]() -> Expected<void> {
-    const auto way = make_way(*record);
-    if (!way) {
-      return fail(way.error());
-    }
-    addition = *way;
-    return addition == StoreAddition::already_there ? Expected<void>{} : insert(*record);
+    DYNCAL_TRY(addition, make_way(record));
+    return addition == StoreAddition::already_there ? Expected<void>{} : insert(record);
   });
-  if (!written) {
-    return fail(written.error());
-  }
+  DYNCAL_TRY(written);
   return addition;
 }
 
 // What becomes of the record, beside those of its run that are there.
 Expected<StoreAddition> Store::make_way(const ResultRecord& record) {
-  const auto rows = database_->execute(
-      "SELECT result_sha256, content_sha256, recipe_sha256, state, folder, began_utc "
-      "FROM results WHERE bench = $1 AND run = $2",
-      {record.bench, record.run});
-  if (!rows) {
-    return fail(rows.error());
-  }
-  for (const DatabaseRow& row : *rows) {
+  DYNCAL_TRY(const auto rows,
+             database_->execute(
+                 "SELECT result_sha256, content_sha256, recipe_sha256, state, folder, began_utc "
+                 "FROM results WHERE bench = $1 AND run = $2",
+                 {record.bench, record.run}));
+  for (const DatabaseRow& row : rows) {
     if (text_of(row[0]) == record.result_sha256 || text_of(row[1]) == record.content_sha256) {
       return StoreAddition::already_there;
     }
   }
-  for (const DatabaseRow& row : *rows) {
+  for (const DatabaseRow& row : rows) {
     const bool other_files = record.run == run_of_files && text_of(row[5]) != record.began_utc;
     if (text_of(row[2]) != record.recipe_sha256 || other_files) {
       continue;
@@ -154,9 +140,7 @@ Expected<StoreAddition> Store::make_way(const ResultRecord& record) {
     if (text_of(row[3]) != to_string(RunCompletion::unfinished)) {
       return fail(other_result(record, row));
     }
-    if (const auto removed = remove(text_of(row[0])); !removed) {
-      return fail(removed.error());
-    }
+    DYNCAL_TRY(remove(text_of(row[0])));
     return StoreAddition::replaced_unfinished;
   }
   return StoreAddition::added;
@@ -172,18 +156,14 @@ Expected<void> Store::insert(const ResultRecord& record) {
        to_string(record.state), record.method, record.began_utc, record.ended_utc, record.software,
        record.planned_steps, record.measured_steps, record.problem, record.recipe, record.folder,
        now_utc(), record.document});
-  if (!done) {
-    return fail(done.error());
-  }
+  DYNCAL_TRY(done);
   for (const RecordedInstrument& source : record.sources) {
     const auto inserted = database_->execute(
         "INSERT INTO sources (result_sha256, source, device, serial, firmware, software) "
         "VALUES ($1, $2, $3, $4, $5, $6)",
         {record.result_sha256, source.source, source.device, source.serial, source.firmware,
          source.software});
-    if (!inserted) {
-      return fail(inserted.error());
-    }
+    DYNCAL_TRY(inserted);
   }
   return insert_values(record);
 }
@@ -200,18 +180,14 @@ Expected<void> Store::insert_values(const ResultRecord& record) {
          value(point.u_magnitude), value(point.k_magnitude), value(point.expanded_magnitude),
          value(point.phase_rad), value(point.u_phase_rad), value(point.k_phase),
          value(point.expanded_phase_rad), point.flags});
-    if (!inserted) {
-      return fail(inserted.error());
-    }
+    DYNCAL_TRY(inserted);
   }
   for (const RecordedSamples& samples : record.samples) {
     const auto inserted = database_->execute(
         "INSERT INTO samples (result_sha256, channel, step, repetition, data_sha256) "
         "VALUES ($1, $2, $3, $4, $5)",
         {record.result_sha256, samples.channel, samples.step, samples.repetition, samples.sha256});
-    if (!inserted) {
-      return fail(inserted.error());
-    }
+    DYNCAL_TRY(inserted);
   }
   return {};
 }
@@ -220,28 +196,19 @@ Expected<void> Store::remove(const std::string& result_sha256) {
   for (const char* table : {"samples", "points", "sources", "results"}) {
     const auto removed = database_->execute(
         fmt::format("DELETE FROM {} WHERE result_sha256 = $1", table), {result_sha256});
-    if (!removed) {
-      return fail(removed.error());
-    }
+    DYNCAL_TRY(removed);
   }
   return {};
 }
 
 Expected<std::vector<StoredRun>> Store::runs(const RunFilter& filter,
                                              const SharedWorkCount& count) {
-  const auto rows = database_->execute(select_runs);
-  if (!rows) {
-    return fail(rows.error());
-  }
-  begin_work(count, "looking through the store", "runs", rows->size());
+  DYNCAL_TRY(const auto rows, database_->execute(select_runs));
+  begin_work(count, "looking through the store", "runs", rows.size());
   std::vector<StoredRun> found;
-  for (const DatabaseRow& row : *rows) {
+  for (const DatabaseRow& row : rows) {
     StoredRun run = run_of(row);
-    auto sources = sources_of(run.result_sha256);
-    if (!sources) {
-      return fail(sources.error());
-    }
-    run.sources = std::move(*sources);
+    DYNCAL_TRY(run.sources, sources_of(run.result_sha256));
     if (passes(run, filter)) {
       found.push_back(std::move(run));
     }
@@ -251,15 +218,14 @@ Expected<std::vector<StoredRun>> Store::runs(const RunFilter& filter,
 }
 
 Expected<std::vector<RecordedInstrument>> Store::sources_of(const std::string& result_sha256) {
-  const auto rows = database_->execute(
-      "SELECT source, device, serial, firmware, software FROM sources WHERE result_sha256 = $1 "
-      "ORDER BY source",
-      {result_sha256});
-  if (!rows) {
-    return fail(rows.error());
-  }
+  DYNCAL_TRY(
+      const auto rows,
+      database_->execute(
+          "SELECT source, device, serial, firmware, software FROM sources WHERE result_sha256 = $1 "
+          "ORDER BY source",
+          {result_sha256}));
   std::vector<RecordedInstrument> sources;
-  for (const DatabaseRow& row : *rows) {
+  for (const DatabaseRow& row : rows) {
     sources.push_back(
         {text_of(row[0]), text_of(row[1]), text_of(row[2]), text_of(row[3]), text_of(row[4])});
   }
@@ -268,16 +234,17 @@ Expected<std::vector<RecordedInstrument>> Store::sources_of(const std::string& r
 
 Expected<std::vector<RecordedPoint>> Store::points_of(const std::string& result_sha256,
                                                       const std::string& source) {
-  const auto rows = database_->execute(
-      "SELECT channel, frequency_text_hz, frequency_hz, level_m_s2, unit, magnitude, u_magnitude, "
-      "k_magnitude, expanded_magnitude, phase_rad, u_phase_rad, k_phase, expanded_phase_rad, flags "
-      "FROM points WHERE result_sha256 = $1 AND source = $2 ORDER BY channel, frequency_hz",
-      {result_sha256, source});
-  if (!rows) {
-    return fail(rows.error());
-  }
+  DYNCAL_TRY(
+      const auto rows,
+      database_->execute(
+          "SELECT channel, frequency_text_hz, frequency_hz, level_m_s2, unit, magnitude, "
+          "u_magnitude, "
+          "k_magnitude, expanded_magnitude, phase_rad, u_phase_rad, k_phase, expanded_phase_rad, "
+          "flags "
+          "FROM points WHERE result_sha256 = $1 AND source = $2 ORDER BY channel, frequency_hz",
+          {result_sha256, source}));
   std::vector<RecordedPoint> points;
-  for (const DatabaseRow& row : *rows) {
+  for (const DatabaseRow& row : rows) {
     points.push_back({.source = source,
                       .channel = text_of(row[0]),
                       .frequency_text_hz = text_of(row[1]),
@@ -299,21 +266,16 @@ Expected<std::vector<RecordedPoint>> Store::points_of(const std::string& result_
 
 Expected<std::vector<Calibration>> Store::calibrations(const std::string& sensor,
                                                        const SharedWorkCount& count) {
-  auto runs_with_sensor = runs({.sensor = sensor}, count);
-  if (!runs_with_sensor) {
-    return fail(runs_with_sensor.error());
-  }
-  begin_work(count, "reading", "calibrations", runs_with_sensor->size());
+  DYNCAL_TRY(auto runs_with_sensor, runs({.sensor = sensor}, count));
+  begin_work(count, "reading", "calibrations", runs_with_sensor.size());
   std::vector<Calibration> calibrations;
-  for (const StoredRun& run : *runs_with_sensor) {
+  for (const StoredRun& run : runs_with_sensor) {
     for (const RecordedInstrument& source : run.sources) {
-      auto points = is_sensor(source, sensor) ? points_of(run.result_sha256, source.source)
-                                              : Expected<std::vector<RecordedPoint>>{};
-      if (!points) {
-        return fail(points.error());
-      }
-      if (!points->empty()) {
-        calibrations.push_back({run, source.source, std::move(*points)});
+      DYNCAL_TRY(auto points, is_sensor(source, sensor)
+                                  ? points_of(run.result_sha256, source.source)
+                                  : Expected<std::vector<RecordedPoint>>{});
+      if (!points.empty()) {
+        calibrations.push_back({run, source.source, std::move(points)});
       }
     }
     add_done(count);

@@ -62,11 +62,7 @@ SensorFile described_sensor(const StoredResult& result, const std::string& chann
 
 Expected<void> gather_sensor(const CertificateRequest& request, CertificateContents& contents) {
   if (!request.sensor.empty()) {
-    auto sensor = read_sensor_file(request.sensor);
-    if (!sensor) {
-      return fail(sensor.error());
-    }
-    contents.sensor = std::move(*sensor);
+    DYNCAL_TRY(contents.sensor, read_sensor_file(request.sensor));
     return {};
   }
   contents.sensor = described_sensor(contents.result, contents.channels.front().channel);
@@ -80,11 +76,7 @@ Expected<void> gather_sensor(const CertificateRequest& request, CertificateConte
 }
 
 Expected<void> gather_laboratory(const CertificateRequest& request, CertificateContents& contents) {
-  auto laboratory = read_laboratory_file(request.laboratory);
-  if (!laboratory) {
-    return fail(laboratory.error());
-  }
-  contents.laboratory = std::move(*laboratory);
+  DYNCAL_TRY(contents.laboratory, read_laboratory_file(request.laboratory));
   const std::filesystem::path& file = contents.laboratory.path;
   if (contents.laboratory.persons.empty()) {
     return missing(file, "table [[person]]", "a certificate names who is responsible for it");
@@ -175,11 +167,7 @@ Expected<void> gather_values(const CertificateRequest& request, CertificateConte
                                                   "there is nothing to certify",
                                                   contents.result.file.string()));
   }
-  auto channels = certified_channels(contents.result, names);
-  if (!channels) {
-    return fail(channels.error());
-  }
-  contents.channels = std::move(*channels);
+  DYNCAL_TRY(contents.channels, certified_channels(contents.result, names));
   contents.objections = objections_to(contents.result, names);
   contents.flags = stated_flags(contents.result, names);
   contents.has_monte_carlo = std::all_of(
@@ -211,23 +199,15 @@ Expected<void> refuse_unless_forced(const CertificateRequest& request,
 
 Expected<CertificateContents> gather(const CertificateRequest& request) {
   CertificateContents contents;
-  auto result = read_stored_result(request.run);
-  if (!result) {
-    return fail(result.error());
-  }
-  contents.result = std::move(*result);
+  DYNCAL_TRY(contents.result, read_stored_result(request.run));
   using Step = Expected<void> (*)(const CertificateRequest&, CertificateContents&);
   for (const Step step :
        {Step{gather_values}, Step{gather_laboratory}, Step{gather_sensor}, Step{gather_dates}}) {
-    if (auto done = step(request, contents); !done) {
-      return fail(done.error());
-    }
+    DYNCAL_TRY(step(request, contents));
   }
   for (auto done : {gather_customer(contents), refuse_unless_forced(request, contents),
                     hash_recording(request.run, contents)}) {
-    if (!done) {
-      return fail(done.error());
-    }
+    DYNCAL_TRY(done);
   }
   contents.number = request.number.empty() ? contents.sensor.certificate_number : request.number;
   contents.identifier = new_uuid();

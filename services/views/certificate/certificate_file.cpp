@@ -24,15 +24,10 @@ Expected<void> check_name(const std::filesystem::path& output) {
 Expected<void> check_text(const std::string& text, const CertificateFileRequest& request,
                           const DccSchema& schema) {
   const std::string name = request.output.string();
-  const auto document = XmlDocument::parse(text, name);
-  if (!document) {
-    return fail(document.error());
-  }
-  if (auto valid = schema.validate(*document, name); !valid) {
-    return valid;
-  }
+  DYNCAL_TRY(const auto document, XmlDocument::parse(text, name));
+  DYNCAL_TRY(schema.validate(document, name));
   if (request.key) {
-    if (const auto signer = check_signature(*document); !signer) {
+    if (const auto signer = check_signature(document); !signer) {
       return fail(ErrorCode::bad_file, fmt::format("{}: {}", name, signer.error().message));
     }
   }
@@ -42,30 +37,19 @@ Expected<void> check_text(const std::string& text, const CertificateFileRequest&
 } // namespace
 
 Expected<CertificateContents> write_certificate(const CertificateFileRequest& request) {
-  if (auto possible = check_name(request.output); !possible) {
-    return fail(possible.error());
-  }
-  const auto schema = DccSchema::load(request.schema);
-  if (!schema) {
-    return fail(schema.error());
-  }
+  DYNCAL_TRY(check_name(request.output));
+  DYNCAL_TRY(const auto schema, DccSchema::load(request.schema));
   auto contents = gather_certificate(request.certificate);
   if (!contents) {
     return contents;
   }
   XmlDocument document = dcc_of(*contents);
   if (request.key) {
-    if (auto done = sign(document, *request.key); !done) {
-      return fail(done.error());
-    }
+    DYNCAL_TRY(sign(document, *request.key));
   }
   const std::string text = document.text();
-  if (auto checked = check_text(text, request, *schema); !checked) {
-    return fail(checked.error());
-  }
-  if (auto written = write_output_file(request.output, text); !written) {
-    return fail(written.error());
-  }
+  DYNCAL_TRY(check_text(text, request, schema));
+  DYNCAL_TRY(write_output_file(request.output, text));
   return contents;
 }
 

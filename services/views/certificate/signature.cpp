@@ -301,28 +301,22 @@ Expected<void> sign(XmlDocument& document, const SigningKey& files) {
   if (!start_xmlsec()) {
     return not_signed("xmlsec does not start");
   }
-  const auto certificates = read_certificates(files.certificate);
-  if (!certificates) {
-    return fail(certificates.error());
-  }
-  const auto key = read_private_key(files.key);
-  if (!key) {
-    return fail(key.error());
-  }
-  if (X509_check_private_key(certificates->front().get(), key->get()) != 1) {
+  DYNCAL_TRY(const auto certificates, read_certificates(files.certificate));
+  DYNCAL_TRY(const auto key, read_private_key(files.key));
+  if (X509_check_private_key(certificates.front().get(), key.get()) != 1) {
     ERR_clear_error();
     return not_signed(fmt::format("the key in {} does not belong to the first certificate in {}",
                                   files.key.string(), files.certificate.string()));
   }
-  const xmlSecTransformId method = method_for(key->get());
+  const xmlSecTransformId method = method_for(key.get());
   if (method == xmlSecTransformIdUnknown) {
     return not_signed(fmt::format("{}: the key must be RSA with {} bits or more, or of an elliptic "
                                   "curve",
                                   files.key.string(), min_rsa_bits));
   }
-  XmlSecPointer<xmlSecKey> signing_key = xmlsec_key(key->get());
+  XmlSecPointer<xmlSecKey> signing_key = xmlsec_key(key.get());
   XmlSecPointer<xmlSecDSigCtx> context(xmlSecDSigCtxCreate(nullptr));
-  if (!signing_key || !context || !add_certificates(signing_key.get(), *certificates)) {
+  if (!signing_key || !context || !add_certificates(signing_key.get(), certificates)) {
     return not_signed("xmlsec does not take the key");
   }
   context->signKey = signing_key.release();

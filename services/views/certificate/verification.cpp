@@ -100,12 +100,9 @@ std::vector<std::string> channels_of(const StatedResults& certificate) {
 
 Expected<StatedResults> results_of_run(const StoredResult& run,
                                        const std::vector<std::string>& channels) {
-  const auto certified = certified_channels(run, channels);
-  if (!certified) {
-    return fail(certified.error());
-  }
+  DYNCAL_TRY(const auto certified, certified_channels(run, channels));
   const XmlDocument made = XmlDocument::make_dcc();
-  add_results(made.root(), *certified, false);
+  add_results(made.root(), certified, false);
   return *stated_results(*made.root().child("results"));
 }
 
@@ -155,12 +152,9 @@ const char* to_string(Verification question) {
 }
 
 Expected<std::vector<Finding>> verify(const VerificationRequest& request) {
-  const auto text = read_whole_file(request.certificate, max_certificate_bytes);
-  if (!text) {
-    return fail(text.error());
-  }
+  DYNCAL_TRY(const auto text, read_whole_file(request.certificate, max_certificate_bytes));
   std::vector<Finding> findings;
-  const auto document = XmlDocument::parse(*text, request.certificate.string());
+  const auto document = XmlDocument::parse(text, request.certificate.string());
   if (!document) {
     findings.push_back(failed(Verification::readable, document.error().message));
     return findings;
@@ -168,11 +162,8 @@ Expected<std::vector<Finding>> verify(const VerificationRequest& request) {
   findings.push_back(check_schema(request, *document));
   add_signature(request, *document, findings);
   if (!request.run.empty()) {
-    const auto run = read_stored_result(request.run);
-    if (!run) {
-      return fail(run.error());
-    }
-    findings.push_back(check_numbers(*document, *run));
+    DYNCAL_TRY(const auto run, read_stored_result(request.run));
+    findings.push_back(check_numbers(*document, run));
   }
   for (const XmlElement& statement : document->root().descendants("statement", dcc_namespace)) {
     if (statement.attribute("refType") == "dyncal_forced") {

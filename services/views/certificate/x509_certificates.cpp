@@ -41,11 +41,8 @@ std::string decoded(const std::string& base64_text) {
 } // namespace
 
 Expected<Certificates> read_certificates(const std::filesystem::path& path) {
-  const auto text = read_whole_file(path, max_pem_bytes);
-  if (!text) {
-    return fail(text.error());
-  }
-  const OpenSslPointer<BIO> reader = reader_of(*text);
+  DYNCAL_TRY(const auto text, read_whole_file(path, max_pem_bytes));
+  const OpenSslPointer<BIO> reader = reader_of(text);
   Certificates certificates;
   while (X509* one = PEM_read_bio_X509(reader.get(), nullptr, nullptr, nullptr)) {
     certificates.emplace_back(one);
@@ -60,11 +57,8 @@ Expected<Certificates> read_certificates(const std::filesystem::path& path) {
 }
 
 Expected<OpenSslPointer<EVP_PKEY>> read_private_key(const std::filesystem::path& path) {
-  const auto text = read_whole_file(path, max_pem_bytes);
-  if (!text) {
-    return fail(text.error());
-  }
-  const OpenSslPointer<BIO> reader = reader_of(*text);
+  DYNCAL_TRY(const auto text, read_whole_file(path, max_pem_bytes));
+  const OpenSslPointer<BIO> reader = reader_of(text);
   OpenSslPointer<EVP_PKEY> key(PEM_read_bio_PrivateKey(reader.get(), nullptr, nullptr, nullptr));
   ERR_clear_error();
   if (!key) {

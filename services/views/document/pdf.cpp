@@ -62,15 +62,12 @@ private:
 
 Expected<void> run_weasyprint(const std::filesystem::path& program,
                               const std::filesystem::path& folder) {
-  auto child =
-      ChildProcess::start(program,
-                          {"--quiet", "--encoding", "utf-8", (folder / "document.html").string(),
-                           (folder / "document.pdf").string()},
-                          {folder / "output", folder / "output"});
-  if (!child) {
-    return fail(child.error());
-  }
-  const auto end = child->wait_for(patience);
+  DYNCAL_TRY(auto child, ChildProcess::start(program,
+                                             {"--quiet", "--encoding", "utf-8",
+                                              (folder / "document.html").string(),
+                                              (folder / "document.pdf").string()},
+                                             {folder / "output", folder / "output"}));
+  const auto end = child.wait_for(patience);
   if (!end) {
     return fail(ErrorCode::bad_file,
                 fmt::format("weasyprint took more than {} min and was ended; the HTML report is "
@@ -78,8 +75,8 @@ Expected<void> run_weasyprint(const std::filesystem::path& program,
                             patience.count()));
   }
   if (end->status != 0) {
-    return fail(ErrorCode::bad_file, fmt::format("weasyprint ended with status {}: {}", end->status,
-                                                 child->last_line()));
+    return fail(ErrorCode::bad_file,
+                fmt::format("weasyprint ended with status {}: {}", end->status, child.last_line()));
   }
   return {};
 }
@@ -99,12 +96,8 @@ Expected<std::string> make_pdf(std::string_view html) {
     return fail(ErrorCode::bad_file, "no folder for temporary files can be made; set TMPDIR to one "
                                      "that can be written");
   }
-  if (auto written = write_output_file(folder.path() / "document.html", html); !written) {
-    return fail(written.error());
-  }
-  if (auto made = run_weasyprint(*program, folder.path()); !made) {
-    return fail(made.error());
-  }
+  DYNCAL_TRY(write_output_file(folder.path() / "document.html", html));
+  DYNCAL_TRY(run_weasyprint(*program, folder.path()));
   auto pdf = read_whole_file(folder.path() / "document.pdf", max_pdf_bytes);
   if (pdf && !pdf->starts_with("%PDF-")) {
     return fail(ErrorCode::bad_file, "weasyprint wrote something that is not a PDF; the HTML "

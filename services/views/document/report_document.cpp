@@ -88,18 +88,10 @@ void add_pictures(const std::filesystem::path& run, ReportContents& contents) {
 
 Expected<void> add_laboratory(const ReportRequest& request, ReportContents& contents) {
   if (!request.laboratory.empty()) {
-    auto laboratory = read_laboratory_file(request.laboratory);
-    if (!laboratory) {
-      return fail(laboratory.error());
-    }
-    contents.laboratory = std::move(*laboratory);
+    DYNCAL_TRY(contents.laboratory, read_laboratory_file(request.laboratory));
   }
   if (!request.sensor.empty()) {
-    auto sensor = read_sensor_file(request.sensor);
-    if (!sensor) {
-      return fail(sensor.error());
-    }
-    contents.sensor = std::move(*sensor);
+    DYNCAL_TRY(contents.sensor, read_sensor_file(request.sensor));
   }
   return {};
 }
@@ -133,19 +125,9 @@ std::string body_of(const ReportContents& contents) {
 
 Expected<ReportContents> gather_report(const ReportRequest& request) {
   ReportContents contents;
-  auto result = read_stored_result(request.run);
-  if (!result) {
-    return fail(result.error());
-  }
-  contents.result = std::move(*result);
-  auto channels = chosen_channels(contents.result, request.channels);
-  if (!channels) {
-    return fail(channels.error());
-  }
-  contents.channels = std::move(*channels);
-  if (const auto added = add_laboratory(request, contents); !added) {
-    return fail(added.error());
-  }
+  DYNCAL_TRY(contents.result, read_stored_result(request.run));
+  DYNCAL_TRY(contents.channels, chosen_channels(contents.result, request.channels));
+  DYNCAL_TRY(add_laboratory(request, contents));
   add_pictures(request.run, contents);
   contents.issued = today();
   contents.software = software_version();

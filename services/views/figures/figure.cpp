@@ -10,15 +10,11 @@ namespace dyncal::services::figures {
 
 Expected<std::vector<std::filesystem::path>> write(const Figure& figure,
                                                    const std::filesystem::path& folder) {
-  if (const auto possible = check_output_folder(folder); !possible) {
-    return fail(possible.error());
-  }
+  DYNCAL_TRY(check_output_folder(folder));
   const std::vector<std::filesystem::path> paths = {folder / (figure.name + ".svg"),
                                                     folder / (figure.name + ".csv")};
   for (std::size_t i = 0; i < paths.size(); ++i) {
-    if (auto written = write_output_file(paths[i], i == 0 ? figure.svg() : figure.csv); !written) {
-      return fail(written.error());
-    }
+    DYNCAL_TRY(write_output_file(paths[i], i == 0 ? figure.svg() : figure.csv));
   }
   return paths;
 }

@@ -98,11 +98,8 @@ std::string EmbeddedPicture::data_uri() const {
 }
 
 Expected<EmbeddedPicture> read_picture(const std::filesystem::path& path) {
-  auto bytes = read_whole_file(path, max_picture_bytes);
-  if (!bytes) {
-    return fail(bytes.error());
-  }
-  EmbeddedPicture picture{path.filename().string(), type_of(*bytes), std::move(*bytes)};
+  DYNCAL_TRY(auto bytes, read_whole_file(path, max_picture_bytes));
+  EmbeddedPicture picture{path.filename().string(), type_of(bytes), std::move(bytes)};
   if (picture.mime_type.empty()) {
     return fail(ErrorCode::bad_file,
                 fmt::format("{}: is neither PNG, JPEG nor SVG", path.string()));

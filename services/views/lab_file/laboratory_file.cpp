@@ -138,11 +138,8 @@ Expected<LaboratoryFile> parse_laboratory_file(std::string_view text,
 }
 
 Expected<LaboratoryFile> read_laboratory_file(const std::filesystem::path& path) {
-  const auto text = read_whole_file(path, max_file_bytes);
-  if (!text) {
-    return fail(text.error());
-  }
-  return parse_laboratory_file(*text, path);
+  DYNCAL_TRY(const auto text, read_whole_file(path, max_file_bytes));
+  return parse_laboratory_file(text, path);
 }
 
 } // namespace dyncal::services

@@ -66,11 +66,8 @@ Expected<SensorFile> parse_sensor_file(std::string_view text, const std::filesys
 }
 
 Expected<SensorFile> read_sensor_file(const std::filesystem::path& path) {
-  const auto text = read_whole_file(path, max_file_bytes);
-  if (!text) {
-    return fail(text.error());
-  }
-  return parse_sensor_file(*text, path);
+  DYNCAL_TRY(const auto text, read_whole_file(path, max_file_bytes));
+  return parse_sensor_file(text, path);
 }
 
 } // namespace dyncal::services

@@ -218,9 +218,7 @@ std::string reason_of(const analysis::ResponseChoice& choice) {
 }
 
 Expected<ChannelModel> model_channel(MeasuredResponse measured, const ModelRequest& request) {
-  if (auto checked = check_values(measured); !checked) {
-    return fail(checked.error());
-  }
+  DYNCAL_TRY(check_values(measured));
   auto choice = analysis::choose_response(measured.points(), measured.common, request.kind);
   if (!choice) {
     return fail(ErrorCode::bad_file, fmt::format("{}: {}: {}", files_of(measured), measured.channel,
@@ -231,9 +229,7 @@ Expected<ChannelModel> model_channel(MeasuredResponse measured, const ModelReque
   warn_of_other_delays(model);
   warn_of_values(model);
   if (request.filter) {
-    if (auto added = add_filter(*request.filter, model); !added) {
-      return fail(added.error());
-    }
+    DYNCAL_TRY(add_filter(*request.filter, model));
   }
   return model;
 }

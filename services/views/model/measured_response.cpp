@@ -208,16 +208,12 @@ Expected<MeasuredResponse> read_channel(const std::vector<ResultContents>& files
         first = &contents;
         response.unit = value.unit;
       }
-      if (auto checked = check_units(response, first->file, contents, value); !checked) {
-        return fail(checked.error());
-      }
+      DYNCAL_TRY(check_units(response, first->file, contents, value));
       if (const auto reason = reason_to_leave_out(value, selection)) {
         response.left_out.push_back({contents.file, value.frequency_text_hz, *reason});
         continue;
       }
-      if (auto checked = check_uncertainty(contents, value); !checked) {
-        return fail(checked.error());
-      }
+      DYNCAL_TRY(check_uncertainty(contents, value));
       raw.push_back(raw_value(contents, value));
     }
     for (const auto& [source, rate_hz] : contents.source_rates_hz) {
@@ -322,15 +318,10 @@ read_responses(const std::vector<std::filesystem::path>& files, const ResponseSe
           ErrorCode::bad_argument,
           fmt::format("{}: this result is given twice, and would count twice", file.string()));
     }
-    auto one = read_result(file, bytes);
-    if (!one) {
-      return fail(one.error());
-    }
-    contents.push_back(std::move(*one));
+    DYNCAL_TRY(auto one, read_result(file, bytes));
+    contents.push_back(std::move(one));
   }
-  if (auto checked = check_channels(contents, selection.channels); !checked) {
-    return fail(checked.error());
-  }
+  DYNCAL_TRY(check_channels(contents, selection.channels));
   const std::vector<std::string> channels =
       selection.channels.empty() ? channels_of(contents) : selection.channels;
   if (channels.empty()) {
@@ -341,11 +332,8 @@ read_responses(const std::vector<std::filesystem::path>& files, const ResponseSe
   }
   std::vector<MeasuredResponse> responses;
   for (const std::string& channel : channels) {
-    auto response = read_channel(contents, channel, selection);
-    if (!response) {
-      return fail(response.error());
-    }
-    responses.push_back(std::move(*response));
+    DYNCAL_TRY(auto response, read_channel(contents, channel, selection));
+    responses.push_back(std::move(response));
   }
   return responses;
 }

@@ -75,11 +75,8 @@ Expected<std::vector<std::filesystem::path>> write_figures(const RunOutcome& out
                                                            figures::ErrorBars error_bars) {
   std::vector<std::filesystem::path> paths;
   for (const figures::Figure& figure : run_figures(outcome, error_bars)) {
-    const auto written = figures::write(figure, folder);
-    if (!written) {
-      return fail(written.error());
-    }
-    paths.insert(paths.end(), written->begin(), written->end());
+    DYNCAL_TRY(const auto written, figures::write(figure, folder));
+    paths.insert(paths.end(), written.begin(), written.end());
   }
   return paths;
 }

@@ -82,9 +82,7 @@ Expected<void> write_results(const RunOutcome& outcome, const std::filesystem::p
 Expected<void> check_outputs(const std::optional<std::filesystem::path>& json,
                              const FigureFiles& figures) {
   if (json) {
-    if (auto possible = check_output_file(*json); !possible) {
-      return possible;
-    }
+    DYNCAL_TRY(check_output_file(*json));
   }
   return figures.folder ? check_output_folder(*figures.folder) : Expected<void>{};
 }
@@ -95,16 +93,11 @@ Expected<void> show_outcome(const RunOutcome& outcome,
   fmt::print("bench {}, run {}{}\n", one_line(outcome.bench),
              one_line(RunIdentity::parse(outcome.run).name), result_table(outcome));
   if (json) {
-    if (const auto written = write_results(outcome, *json); !written) {
-      return fail(written.error());
-    }
+    DYNCAL_TRY(write_results(outcome, *json));
   }
   if (figures.folder) {
-    const auto written = write_figures(outcome, *figures.folder, figures.error_bars);
-    if (!written) {
-      return fail(written.error());
-    }
-    for (const std::filesystem::path& path : *written) {
+    DYNCAL_TRY(const auto written, write_figures(outcome, *figures.folder, figures.error_bars));
+    for (const std::filesystem::path& path : written) {
       fmt::print("wrote {}\n", path.string());
     }
   }
@@ -137,11 +130,8 @@ Expected<void> check_end(const RunOutcome& outcome, const std::string& kept) {
 Expected<void> check_complete(const RunOutcome& outcome) {
   const std::size_t steps = outcome.planned_steps;
   const std::size_t measured = steps_with_a_result(outcome);
-  if (auto ended =
-          check_end(outcome, fmt::format("{} of {} steps were measured and kept", measured, steps));
-      !ended) {
-    return ended;
-  }
+  DYNCAL_TRY(
+      check_end(outcome, fmt::format("{} of {} steps were measured and kept", measured, steps)));
   if (measured < steps) {
     return fail(ErrorCode::no_result,
                 fmt::format("{} of {} steps have no result; the reasons are listed above",

@@ -20,12 +20,9 @@ Expected<ExtendedFit> fit_one(const ExtendedBasis& basis, Weighting weighting,
                               const std::vector<std::int64_t>& stamps,
                               const std::vector<double>& values, const char* frequency_hz = "80") {
   const std::span<const double> channels[] = {values};
-  auto fits = fit_sine_extended(*Frequency::parse(frequency_hz), basis, weighting, epoch_ns, stamps,
-                                channels);
-  if (!fits) {
-    return fail(fits.error());
-  }
-  return fits->front();
+  DYNCAL_TRY(auto fits, fit_sine_extended(*Frequency::parse(frequency_hz), basis, weighting,
+                                          epoch_ns, stamps, channels));
+  return fits.front();
 }
 
 void add(std::vector<double>& values, const Signal& signal,

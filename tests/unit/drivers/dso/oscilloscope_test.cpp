@@ -98,11 +98,8 @@ protected:
     oscilloscope_ = std::make_unique<Oscilloscope>(settings, stop_);
   }
   Expected<Shot> shoot() {
-    if (auto ready = oscilloscope_->prepare(
-            {.before_trigger_s = 1e-4, .after_trigger_s = 9e-4, .points = 1000});
-        !ready) {
-      return fail(ready.error());
-    }
+    DYNCAL_TRY(oscilloscope_->prepare(
+        {.before_trigger_s = 1e-4, .after_trigger_s = 9e-4, .points = 1000}));
     return oscilloscope_->acquire(trigger_limit_);
   }
   // The shot fails with this, and the next one succeeds over a new connection.

@@ -73,17 +73,12 @@ protected:
   }
   // One step, from connecting to the end of the object.
   Expected<void> excite() {
-    auto excitation = open();
-    if (!excitation) {
-      return fail(excitation.error());
-    }
-    if (auto begun = (*excitation)->begin(); !begun) {
-      return begun;
-    }
-    auto excited = (*excitation)->excite(measurement().steps()[0], 1, stop_.get_token());
+    DYNCAL_TRY(auto excitation, open());
+    DYNCAL_TRY(excitation->begin());
+    auto excited = excitation->excite(measurement().steps()[0], 1, stop_.get_token());
     EXPECT_FALSE(instrument_.on && instrument_.failing_call != "set_output(false)");
-    fault_may_pass_ = (*excitation)->fault_may_pass();
-    (*excitation)->end();
+    fault_may_pass_ = excitation->fault_may_pass();
+    excitation->end();
     return excited;
   }
 };

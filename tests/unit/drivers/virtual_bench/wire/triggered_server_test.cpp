@@ -53,11 +53,8 @@ protected:
     }
   }
   Expected<dso::Shot> shoot() {
-    if (auto ready =
-            scope_->prepare({.before_trigger_s = 0.01, .after_trigger_s = 0.01, .points = 10'000});
-        !ready) {
-      return fail(ready.error());
-    }
+    DYNCAL_TRY(
+        scope_->prepare({.before_trigger_s = 0.01, .after_trigger_s = 0.01, .points = 10'000}));
     return scope_->acquire(trigger_limit_);
   }
 

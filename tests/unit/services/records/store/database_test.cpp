@@ -54,9 +54,7 @@ TEST_P(DatabaseTest, KeepsNothingOfATransactionThatFails) {
   const auto write = [&](std::int64_t second) {
     return database->transaction([&]() -> Expected<void> {
       for (const std::int64_t i : {std::int64_t{1}, second}) {
-        if (const auto done = database->execute("INSERT INTO t (i) VALUES ($1)", {i}); !done) {
-          return fail(done.error());
-        }
+        DYNCAL_TRY(database->execute("INSERT INTO t (i) VALUES ($1)", {i}));
       }
       return {};
     });
