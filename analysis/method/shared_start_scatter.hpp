@@ -17,9 +17,9 @@
 // sqrt(3) s, of a start that waits s. Where nothing is shown the second term, what is not known of
 // s, makes most of it, 1.8 u*. U holds 95.45 % of rectangles that are not shown, and is at most 1.5
 // times what errors of a clean run of three frequencies make it. From one or two steps no rule does
-// both; there 3.8 (two) and 2.6 (one) stand for 4.4, so that U of a clean run stays below 1.5 times,
-// and holds 87 to 98 % of rectangles that are not shown. The scatter is shown where the sum over all
-// steps has a maximum above 10: chance, 1e-3.
+// both; there 3.8 (two) and 2.6 (one) stand for 4.4, so that U of a clean run stays below 1.5
+// times, and holds 87 to 98 % of rectangles that are not shown. The scatter is shown where the sum
+// over all steps has a maximum above 10: chance, 1e-3.
 //
 // Plain function, any thread.
 #pragma once
