@@ -41,10 +41,6 @@ void PeriodCount::add(std::uint64_t sample, std::int64_t stamp_ns) {
   }
 }
 
-void PeriodCount::restart() {
-  begins_stretch_ = true;
-}
-
 void PeriodCount::finish() {
   if (!learned_) {
     learn();
@@ -366,20 +362,28 @@ std::uint64_t PeriodCount::periods() const {
   return periods_ + (moves_as_made() ? periods_across_moves_ : 0);
 }
 
-std::vector<UnnumberedGap> PeriodCount::take_gaps() {
-  return std::exchange(gaps_, {});
-}
-
 double PeriodCount::mean_ns() const {
   const std::int64_t span_ns = span_ns_ + (moves_as_made() ? span_across_moves_ns_ : 0);
   return static_cast<double>(static_cast<long double>(span_ns) /
                              static_cast<long double>(periods()));
 }
 
+// Beside losses a move of the stamps may be one; and where ticks are of about a period, all losses
+// look like ticks whose line is wide, was left, or has few of them.
+std::uint64_t PeriodCount::losses_like_ticks() const {
+  if (!ticked_ || unnumbered_ == 0) {
+    return 0;
+  }
+  const bool about_period = static_cast<double>(tick_ns_) >= tick_about_period * period_ns_;
+  const bool is_loose = ticked_->is_wide() || moves_ > 0 || ticks_on_line_ < ticks_that_convince;
+  return about_period && is_loose ? unnumbered_ : moves_;
+}
+
 double PeriodCount::u_ends_ns() const {
   const bool is_coarse = coarse_tick_ns_ > 0.0 || moves_ > 0 || ticked_;
   const double tick_ns = is_coarse ? static_cast<double>(tick_ns_) : 0.0;
-  const std::uint64_t unsure = unsure_ticks_ + slips_.unsure_losses() +
+  const std::uint64_t unsure = unsure_ticks_ +
+                               std::max(slips_.unsure_losses(), losses_like_ticks()) +
                                (ticks_on_line_ < ticks_that_convince ? unsure_as_ticks_ : 0);
   const double unsure_ns = static_cast<double>(unsure) * static_cast<double>(tick_ns_);
   double variance_ns2 = tick_ns * tick_ns / 6.0 + unsure_ns * unsure_ns;

@@ -23,6 +23,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "analysis/clock/first_stamps.hpp"
@@ -43,12 +44,12 @@ public:
   // The next sample with a trusted stamp.
   void add(std::uint64_t sample, std::int64_t stamp_ns);
   // The numbering begins anew: the next sample begins a stretch.
-  void restart();
+  void restart() { begins_stretch_ = true; }
   // Learns from what there is when that is less than usual, and counts what waits for a next one.
   void finish();
 
   // Since the last call; each stands where it was found.
-  [[nodiscard]] std::vector<UnnumberedGap> take_gaps();
+  [[nodiscard]] std::vector<UnnumberedGap> take_gaps() { return std::exchange(gaps_, {}); }
 
   [[nodiscard]] bool knows_period() const { return period_ns_ > 0.0; }
   [[nodiscard]] std::uint64_t periods() const;
@@ -61,7 +62,8 @@ public:
   // Standard uncertainty of the distance of the first from the last stamp by how stamps are made:
   // both ends lie anywhere within a tick T (T^2 / 6); a record begins, as a rule, behind a read-out
   // of the FIFO and ends before one, and so is wrong by the mean move, and moves scatter; as many
-  // ticks as there are gaps that may be ticks or losses. 0: nothing of the kind.
+  // ticks as there are gaps that may be ticks or losses: all losses, where ticks are of about a
+  // period and losses have hidden the line on which they lie. 0: nothing of the kind.
   [[nodiscard]] double u_ends_ns() const;
   // Stamps are whole ticks of more than a quarter of a period; 0: not so.
   [[nodiscard]] double coarse_tick_ns() const {
@@ -87,6 +89,7 @@ private:
   void add_missing(std::int64_t before_ns, std::int64_t after_ns, std::uint64_t missing);
   void follow_tick(std::int64_t distance_ns);
   [[nodiscard]] bool moves_as_made() const;
+  [[nodiscard]] std::uint64_t losses_like_ticks() const;
   [[nodiscard]] bool in_order(const TimedSample& before, const TimedSample& sample) const;
   // Periods from the last one in order to the doubtful one; empty when these are as many as the
   // numbers say, or not known.

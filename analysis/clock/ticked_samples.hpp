@@ -43,6 +43,7 @@ public:
   void begin(std::uint64_t number, std::int64_t stamp_ns);
 
   [[nodiscard]] double period_ns() const { return line_.period_ns(); }
+  [[nodiscard]] bool is_wide() const { return line_.is_wide(); }
 
 private:
   void take(const TimedSample& sample);

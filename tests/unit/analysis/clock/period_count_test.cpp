@@ -1,7 +1,9 @@
 #include "analysis/clock/period_count.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -118,6 +120,78 @@ TEST(PeriodCount, GoesAcrossTheStepsOfCoarseTicks) {
         EXPECT_NEAR(periods.u_ends_ns(), static_cast<double>(tick_ns) / std::sqrt(6.0), 1.0);
       }
     }
+  }
+}
+
+struct LossyTicks {
+  double rate_hz;
+  std::int64_t tick_ns;
+  double lost; // part of all
+};
+
+struct IntervalOutcome {
+  int known = 0;
+  int covered = 0;
+  double usual_u_ticks = 0.0; // of the distance of the first from the last
+};
+
+IntervalOutcome outcome_of(const LossyTicks& ticks, int draws) {
+  std::mt19937_64 random(31);
+  std::uniform_real_distribution<double> part(0.0, 1.0);
+  IntervalOutcome outcome;
+  std::vector<double> all_u;
+  for (int draw = 0; draw < draws; ++draw) {
+    const double true_ns = 1e9 / ticks.rate_hz * (1.0 + 4e-4 * (part(random) - 0.5));
+    const double begin_ns = part(random) * static_cast<double>(ticks.tick_ns);
+    PeriodCount periods;
+    std::uint64_t number = 0;
+    std::int64_t before_ns = -1;
+    int losing = 0; // up to five at once
+    for (int i = 0; i < 20'000; ++i) {
+      if (losing == 0 && part(random) < ticks.lost / 3.0) {
+        losing = 1 + static_cast<int>(5.0 * part(random));
+      }
+      if (losing > 0) {
+        --losing;
+        continue;
+      }
+      const auto stamp_ns =
+          static_cast<std::int64_t>(true_ns * i + begin_ns) / ticks.tick_ns * ticks.tick_ns;
+      if (stamp_ns > before_ns) { // a repeated stamp is not trusted
+        periods.add(number, stamp_ns);
+        before_ns = stamp_ns;
+      }
+      ++number;
+    }
+    periods.finish();
+    if (periods.u_ends_ns() > 0.0) {
+      const double error_ns =
+          (periods.mean_ns() - true_ns) * static_cast<double>(periods.periods());
+      ++outcome.known;
+      outcome.covered += std::abs(error_ns) <= 2.0 * periods.u_ends_ns() ? 1 : 0;
+      all_u.push_back(periods.u_ends_ns() / static_cast<double>(ticks.tick_ns));
+    }
+  }
+  std::sort(all_u.begin(), all_u.end());
+  outcome.usual_u_ticks = all_u.empty() ? 0.0 : all_u[all_u.size() / 2];
+  return outcome;
+}
+
+// Losses that no number shows look like ticks, and hide where these lie.
+TEST(PeriodCount, LossesBesideCoarseTicksAreCovered) {
+  for (const LossyTicks& ticks :
+       {LossyTicks{1003.05, 1'000'000, 0.01}, LossyTicks{1000.3, 1'000'000, 0.01},
+        LossyTicks{997.05, 1'000'000, 0.01}, LossyTicks{1003.05, 500'000, 0.01}}) {
+    const IntervalOutcome outcome = outcome_of(ticks, 20);
+    EXPECT_GE(outcome.known, 10) << ticks.rate_hz << " " << ticks.tick_ns;
+    EXPECT_GE(outcome.covered, outcome.known - 3) << ticks.rate_hz << " " << ticks.tick_ns;
+  }
+}
+
+// Where the line is seen nothing is added.
+TEST(PeriodCount, LossesBesideFinerTicksCostNothing) {
+  for (const std::int64_t tick_ns : {250'000, 500'000}) {
+    EXPECT_LT(outcome_of({1003.05, tick_ns, 0.01}, 20).usual_u_ticks, 0.5) << tick_ns;
   }
 }
 
