@@ -5,19 +5,24 @@
 // changed. Of the network namespace in which the object was made. One thread.
 #pragma once
 
-#include "drivers/link/file_descriptor.hpp"
+#include <utility>
 
 namespace dyncal::services {
 
 class NetworkChanges {
 public:
   NetworkChanges();
+  ~NetworkChanges();
+  NetworkChanges(NetworkChanges&& other) noexcept : socket_(std::exchange(other.socket_, -1)) {}
+  NetworkChanges& operator=(NetworkChanges&&) = delete;
+  NetworkChanges(const NetworkChanges&) = delete;
+  NetworkChanges& operator=(const NetworkChanges&) = delete;
 
   // Since the last call, or since the object was made.
   [[nodiscard]] bool any();
 
 private:
-  drivers::FileDescriptor announcements_;
+  int socket_; // -1: the kernel cannot be asked
 };
 
 } // namespace dyncal::services

@@ -8,19 +8,21 @@
 #include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <thread>
+#include <unistd.h>
 
 namespace dyncal::services {
 namespace {
 
 // The kernel has announced it when this returns.
 void set_loopback(bool up) {
-  const drivers::FileDescriptor any(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  const int any = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   ifreq request{};
   std::string("lo").copy(request.ifr_name, IFNAMSIZ - 1);
-  ASSERT_EQ(ioctl(any.number(), SIOCGIFFLAGS, &request), 0);
+  ASSERT_EQ(ioctl(any, SIOCGIFFLAGS, &request), 0);
   request.ifr_flags =
       static_cast<short>(up ? request.ifr_flags | IFF_UP : request.ifr_flags & ~IFF_UP);
-  ASSERT_EQ(ioctl(any.number(), SIOCSIFFLAGS, &request), 0);
+  ASSERT_EQ(ioctl(any, SIOCSIFFLAGS, &request), 0);
+  close(any);
 }
 
 TEST(NetworkChanges, AreAnnouncedOnceAndNothingElseIs) {
