@@ -64,11 +64,11 @@ foreach(component IN LISTS exported)
     COMPONENT development)
 endforeach()
 
-# The contract's types use fastrtps, too.
-set(bus_packages fastcdr fastrtps fmt OpenSSL tl-expected ZLIB)
+set(bus_packages fastcdr fmt OpenSSL tl-expected ZLIB)
 set(bus_modules fmt libcrypto zlib)
 set(bus_libs -lfastcdr)
 if(DYNCAL_FAST_DDS)
+  list(APPEND bus_packages fastrtps)
   list(PREPEND bus_libs -lfastrtps)
 endif()
 if(DYNCAL_CYCLONE_DDS)
@@ -97,11 +97,10 @@ endforeach()
 # Headers, the contract, and how another DDS tool reads it.
 install(CODE "
   set(root \"${PROJECT_SOURCE_DIR}\")
+  set(generated \"${CMAKE_BINARY_DIR}/generated\")
   set(made \"${made}\")
   set(includedir \"${CMAKE_INSTALL_INCLUDEDIR}\")"
   COMPONENT development)
 install(SCRIPT deploy/cmake/InstallHeaders.cmake COMPONENT development)
-install(FILES ${CMAKE_BINARY_DIR}/generated/idl/dyncal.h
-  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/dyncal/idl COMPONENT development)
-install(FILES idl/dyncal.idl DESTINATION ${data}/idl COMPONENT development)
+install(FILES idl/COPYRIGHT idl/dyncal.idl DESTINATION ${data}/idl COMPONENT development)
 install(DIRECTORY idl/profiles DESTINATION ${data}/idl COMPONENT development)

@@ -1,6 +1,7 @@
 #include "services/bus/bus.hpp"
 
 #include "services/bus/adapters.hpp"
+#include "services/bus/vendor.hpp"
 
 namespace dyncal::bus {
 namespace {
@@ -63,6 +64,8 @@ std::string to_string(Vendor vendor) {
   return vendor == Vendor::fast_dds ? "fastdds" : "cyclonedds";
 }
 
+// Cyclone DDS first where there is a choice, because Fast DDS 2.9 lives only behind its screen
+// (services/bus/fastdds).
 std::vector<Vendor> vendors_in_this_build() {
   return {
 #ifdef DYNCAL_HAVE_CYCLONE_DDS

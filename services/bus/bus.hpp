@@ -44,17 +44,18 @@
 
 namespace dyncal::bus {
 
-enum class Vendor { fast_dds, cyclone_dds };
+// A DDS implementation, as parse_vendor() gives it.
+enum class Vendor : std::uint8_t;
 
 struct ParticipantOptions {
-  Vendor vendor = Vendor::cyclone_dds;
+  Vendor vendor{}; // the one that parse_vendor() knows first
   int domain = 0;
   std::string name;               // shown by discovery tools
   std::vector<std::string> peers; // addresses to find others at when multicast cannot be used
   bool multicast = true;          // false: discovery by `peers` alone
   std::string interface_name;     // network interface or its address; empty: the vendor's choice
   bool watch_discovery = false;   // for discovered()
-  // False: packets reach Fast DDS as they come. To measure what its screen costs, only.
+  // False: packets reach the implementation as they come. To measure what a screen costs, only.
   bool screened = true;
   // One sentence for the user, e.g. that a host limit is too low; may be empty. Called from any
   // thread while the participant lives.
@@ -210,7 +211,7 @@ public:
   }
 
   // Messages dropped because they do not match the contract (idl/README.md). Not 0 if there was
-  // one; Fast DDS counts some of them twice.
+  // one; some are counted twice.
   [[nodiscard]] std::uint64_t malformed_messages() const { return untyped_->malformed_messages(); }
   // Counts on, also when the participant is gone.
   [[nodiscard]] std::shared_ptr<const RefusedPackets> refused_packets() const {
@@ -236,12 +237,10 @@ private:
   std::unique_ptr<UntypedParticipant> untyped_;
 };
 
-// "fastdds" or "cyclonedds", as --dds takes them. Fails (bad_argument) on any other name, with
-// those of this build.
+// From a name as --dds takes it. Fails (bad_argument) on any other name, with those of this build.
 [[nodiscard]] services::Expected<Vendor> parse_vendor(const std::string& name);
 [[nodiscard]] std::string to_string(Vendor vendor);
-// The first is the default of --dds: Cyclone DDS where there is a choice, because Fast DDS
-// 2.9 lives only behind its screen (services/bus/fastdds).
+// The first is the default of --dds.
 [[nodiscard]] std::vector<Vendor> vendors_in_this_build();
 
 } // namespace dyncal::bus

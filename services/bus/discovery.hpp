@@ -11,7 +11,7 @@ namespace dyncal::bus {
 struct DiscoveredParticipant {
   std::string id;     // the prefix of its GUID in hexadecimal, as in the header of its packets
   std::string name;   // as it calls itself; may be empty
-  std::string vendor; // "Fast DDS", "Cyclone DDS", or its number
+  std::string vendor; // its name, or its number
 };
 
 enum class EndpointKind { writer, reader };
@@ -47,7 +47,7 @@ struct Discovery {
   std::vector<DiscoveredEndpoint> endpoints;
 };
 
-// "010f..." is "Fast DDS": the vendor's number leads every GUID.
+// By the vendor's number, which leads every GUID.
 [[nodiscard]] std::string vendor_of(const std::string& id);
 
 // Bytes in hexadecimal.

@@ -17,7 +17,7 @@ public:
     const std::lock_guard lock(mutex_);
     addresses_ = std::move(addresses);
   }
-  // IPv4. Empty where none is known: Cyclone DDS tells with the first writer or reader.
+  // IPv4. Empty where none is known: some tell with the first writer or reader.
   [[nodiscard]] std::vector<std::string> get() const {
     const std::lock_guard lock(mutex_);
     return addresses_;

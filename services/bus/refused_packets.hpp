@@ -23,7 +23,7 @@ public:
 
   // `sender` is an IPv4 address, the first byte uppermost; 0 if it is not known.
   void add(std::uint32_t sender);
-  // A packet that is RTPS, but does not go on from those before (fastdds/screen/message_check.hpp).
+  // A packet that is RTPS, but does not go on from those before (message_check.hpp).
   // Some do not after a link was down: so they count from the one behind `many_implausible` on.
   void add_implausible(std::uint32_t sender);
   static constexpr std::uint64_t many_implausible = 1000;

@@ -1,9 +1,9 @@
 // What the bus needs to know of a message type: its name, its key, and how it turns into bytes and
 // back.
 //
-// One set of C++ types (idl/dyncal.idl through fastddsgen) and one encoder (Fast CDR) serve every
-// vendor, so the bytes on the wire are the same by construction. Bytes here mean a whole DDS
-// payload: the 4-byte encapsulation header, then plain CDR (XCDR1).
+// One set of C++ types (made from idl/dyncal.idl) and one encoder serve every vendor, so the bytes
+// on the wire are the same by construction. Bytes here mean a whole DDS payload: the 4-byte
+// encapsulation header, then plain CDR (XCDR1).
 //
 // Growth: members may be appended to a type. A message from an older program lacks those that were
 // appended since the first release; deserialize() then reads zeros, empty strings and empty

@@ -25,6 +25,7 @@
 #include <fmt/core.h>
 
 #include "services/bus/bus.hpp"
+#include "services/bus/vendor.hpp"
 #include "tests/dds_domain.hpp"
 #include "tests/patience.hpp"
 

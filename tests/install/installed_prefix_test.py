@@ -5,7 +5,7 @@ needs no network.
     installed_prefix_test.py --build BUILD ... Files|Programs|Library|Uninstall
 
 Files      every file is where it belongs, units start the programs of the prefix, no file names the
-           source or the build tree
+           source or the build tree, no header a DDS library
 Programs   run from the prefix
 Library    deploy/example-library by find_package and by pkg-config, all headers, the bus, the
            mathematics alone by add_subdirectory
@@ -22,6 +22,10 @@ import sys
 import tempfile
 
 TOP = pathlib.Path(__file__).resolve().parents[2]
+# Whoever includes dyncal's headers needs no DDS library for it, and learns of none.
+DDS_LIBRARY = re.compile(
+    r"fast[ _-]?(dds|rtps|cdr)|eprosima|cyclone|\bddsc|opendds|rti[ _-]?connext", re.IGNORECASE
+)
 PROGRAMS = [
     "dyncal",
     "dyncal-acs",
@@ -83,7 +87,9 @@ def check_files(options, prefix):
         "include/dyncal/method.hpp",
         "include/dyncal/sine.hpp",
         "include/dyncal/services/bus/bus.hpp",
+        "include/dyncal/idl/bounded_string.hpp",
         "include/dyncal/idl/dyncal.h",
+        "share/dyncal/idl/COPYRIGHT",
         "share/dyncal/idl/dyncal.idl",
         "share/doc/dyncal/LICENSE",
         "share/doc/dyncal/example-lab/documents/laboratory.toml",
@@ -127,6 +133,8 @@ def check_files(options, prefix):
     for header in headers:
         stray = re.search(r'#include "(?!dyncal/).*"', header.read_text())
         expect(not stray, f"{header}: {stray and stray[0]}")
+        vendor = DDS_LIBRARY.search(header.read_text())
+        expect(not vendor, f"{header} names a DDS library: {vendor and vendor[0]}")
 
 
 def check_programs(options, prefix):
@@ -153,17 +161,11 @@ def compile_headers(options, prefix, folder):
         source.write_text(
             "".join(f"#include <{header.relative_to(prefix / 'include')}>\n" for header in headers)
         )
-        run(
-            options.compiler,
-            "-std=c++20",
-            "-fsyntax-only",
-            "-Wall",
-            "-Wextra",
-            "-Werror",
-            "-I",
-            prefix / "include",
-            source,
-        )
+        command = [options.compiler, "-std=c++20", "-Wall", "-Wextra", "-Werror"]
+        command += ["-I", prefix / "include", source]
+        run(*command, "-fsyntax-only")
+        vendor = DDS_LIBRARY.search(run(*command, "-M"))
+        expect(not vendor, f"the headers of {part} include those of {vendor and vendor[0]}")
 
 
 def check_library(options, prefix):
@@ -209,6 +211,20 @@ def check_library(options, prefix):
         in build(TOP / "tests/install/bus", "list_vendors", f"-DCMAKE_PREFIX_PATH={prefix}"),
         "list_vendors prints nothing",
     )
+
+    # Where Fast DDS is not installed. A whole build takes minutes: one source of the contract's.
+    alone = folder / "alone"
+    run(
+        options.cmake,
+        *("-G", "Ninja", "-S", TOP, "-B", alone, f"-DCMAKE_CXX_COMPILER={options.compiler}"),
+        *("-DDYNCAL_FAST_DDS=OFF", "-DDYNCAL_BUILD_TESTS=OFF", "-DDYNCAL_PRECOMPILED_HEADERS=OFF"),
+        "-DCMAKE_DISABLE_FIND_PACKAGE_fastrtps=TRUE",
+    )
+    built = "services/contract/CMakeFiles/dyncal_contract.dir/source_kind.cpp.o"
+    run(options.cmake, "--build", alone, "--target", built)
+    used = run("ninja", "-C", alone, "-t", "deps", built)
+    expect("idl/dyncal.h" in used, f"{built} does not include the contract:\n{used}")
+    expect(not re.search("fastrtps|fastdds", used), f"{built} includes Fast DDS:\n{used}")
 
     # As part of another project: it is only configured, since building it takes minutes.
     whole = folder / "whole"

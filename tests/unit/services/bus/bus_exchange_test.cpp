@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "services/bus/qos_profiles.hpp"
+#include "services/bus/vendor.hpp"
 #include "services/contract/topics.hpp"
 #include "tests/unit/services/bus/bus_pair.hpp"
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "services/bus/bus.hpp"
+#include "services/bus/vendor.hpp"
 #include "services/contract/topics.hpp"
 #include "tests/dds_domain.hpp"
 #include "tests/patience.hpp"

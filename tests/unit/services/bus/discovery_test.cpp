@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "services/bus/vendor.hpp"
 #include "services/contract/topics.hpp"
 #include "tests/unit/services/bus/bus_pair.hpp"
 

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "services/bus/vendor.hpp"
 #include "services/contract/topics.hpp"
 #include "tests/unit/services/bus/bus_pair.hpp"
 

@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "services/bus/vendor.hpp"
 #include "tests/unit/services/stream/bench_listener.hpp"
 
 namespace dyncal::services {

@@ -1,4 +1,5 @@
 // What dyncal-can says on DDS of frames that a script brings.
+#include "services/bus/vendor.hpp"
 #include "services/programs/can/can_source.hpp"
 
 #include <filesystem>
