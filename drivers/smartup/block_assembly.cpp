@@ -10,20 +10,22 @@ namespace {
 
 constexpr std::size_t max_samples = 4096;
 
-void append_columns(std::vector<double>& values, const std::vector<SampleRow>& rows,
-                    std::uint16_t columns, std::uint16_t SampleRow::*present,
-                    std::array<float, channels_of_unit> SampleRow::*measured) {
+// Behind `values`; returns their new end.
+double* append_columns(double* values, const std::vector<SampleRow>& rows, std::uint16_t columns,
+                       std::uint16_t SampleRow::*present,
+                       std::array<float, channels_of_unit> SampleRow::*measured) {
   constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t channel = 0; channel < channels_of_unit; ++channel) {
     if ((columns & (1U << channel)) == 0) {
       continue;
     }
     for (const SampleRow& row : rows) {
-      values.push_back((row.*present & (1U << channel)) != 0
-                           ? static_cast<double>((row.*measured)[channel])
-                           : not_measured);
+      *values++ = (row.*present & (1U << channel)) != 0
+                      ? static_cast<double>((row.*measured)[channel])
+                      : not_measured;
     }
   }
+  return values;
 }
 
 } // namespace
@@ -46,38 +48,45 @@ SampleBlock BlockAssembly::take() {
       block.flags.push_back(row.flags);
     }
   }
-  block.values.reserve(rows_.size() * static_cast<std::size_t>(std::popcount(columns_.own) +
-                                                               std::popcount(columns_.sync)));
-  append_columns(block.values, rows_, columns_.own, &SampleRow::present, &SampleRow::values);
-  append_columns(block.values, rows_, columns_.sync, &SampleRow::sync_present,
-                 &SampleRow::sync_values);
+  block.values.resize(rows_.size() * static_cast<std::size_t>(std::popcount(columns_.own) +
+                                                              std::popcount(columns_.sync)));
+  double* const sync = append_columns(block.values.data(), rows_, columns_.own, &SampleRow::present,
+                                      &SampleRow::values);
+  append_columns(sync, rows_, columns_.sync, &SampleRow::sync_present, &SampleRow::sync_values);
   block.received_utc_ns = last_arrival_.utc_ns;
   rows_.clear();
   return block;
 }
 
-std::optional<SampleBlock> BlockAssembly::add(const SampleRow& row, double period_ns,
-                                              HostTime arrival) {
-  std::optional<SampleBlock> ready;
-  if (!rows_.empty() && row.sample != rows_.back().sample + 1) {
-    ready = take();
-  }
+void BlockAssembly::append(const SampleRow& row, HostTime arrival) {
   if (rows_.empty()) {
     first_arrival_ = arrival;
   }
   rows_.push_back(row);
+  next_sample_ = row.sample + 1;
   last_arrival_ = arrival;
-  if (ready) {
-    return ready; // a block of one sample never fills in the same step
-  }
-  const bool full =
+}
+
+bool BlockAssembly::is_full(double period_ns, HostTime arrival) const {
+  const bool is_long =
       period_ns > 0.0
           ? static_cast<double>(rows_.size()) * period_ns >= static_cast<double>(block_ns_)
           : arrival.monotonic_ns - first_arrival_.monotonic_ns >= block_ns_;
-  if (full || rows_.size() >= max_samples) {
-    ready = take();
+  return is_long || rows_.size() >= max_samples;
+}
+
+std::optional<SampleBlock> BlockAssembly::add(const SampleRow& row, double period_ns,
+                                              HostTime arrival) {
+  if (!rows_.empty() && row.sample != next_sample_) {
+    SampleBlock before_gap = take();
+    append(row, arrival); // a block of one sample never fills in the same step
+    return before_gap;
   }
-  return ready;
+  append(row, arrival);
+  if (!is_full(period_ns, arrival)) {
+    return std::nullopt;
+  }
+  return take();
 }
 
 std::optional<SampleBlock> BlockAssembly::flush(std::optional<HostTime> now) {

@@ -34,11 +34,14 @@ public:
   [[nodiscard]] std::size_t held() const { return rows_.size(); }
 
 private:
+  void append(const SampleRow& row, HostTime arrival);
+  [[nodiscard]] bool is_full(double period_ns, HostTime arrival) const;
   [[nodiscard]] SampleBlock take();
 
   const std::int64_t block_ns_;
   Columns columns_;
   std::vector<SampleRow> rows_;
+  std::uint64_t next_sample_ = 0; // if there is no gap
   HostTime first_arrival_;
   HostTime last_arrival_;
 };

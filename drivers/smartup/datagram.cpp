@@ -55,6 +55,8 @@ std::string text_of(Bytes bytes) {
 
 class DataFields {
 public:
+  explicit DataFields(DataMessage& message) : message_(message) {}
+
   // False when the field cannot be read.
   bool read(WireReader& reader, Tag tag) {
     if (tag.type == WireType::varint && tag.field >= 1 && tag.field <= 5) {
@@ -91,7 +93,6 @@ public:
     }
     return rejected;
   }
-  DataMessage& message() { return message_; }
 
 private:
   static constexpr std::uint32_t first_value_field = 6;
@@ -114,27 +115,30 @@ private:
     }
   }
 
-  DataMessage message_;
+  DataMessage& message_;
   std::uint32_t seen_ = 0;
 };
 
+// Where it stands already: a copy would cost as much as reading it.
 void decode_data(Bytes bytes, std::size_t framed_bytes, Datagram& datagram) {
+  DataMessage& message = datagram.data.emplace_back();
+  message.bytes = static_cast<std::uint16_t>(std::min<std::size_t>(framed_bytes, UINT16_MAX));
   WireReader reader(bytes);
-  DataFields fields;
+  DataFields fields(message);
+  std::optional<Rejection> problem;
   Tag tag;
-  while (!reader.at_end()) {
+  while (!reader.at_end() && !problem) {
     if (!read_tag(reader, tag) || !fields.read(reader, tag)) {
-      datagram.rejected.push_back(fields.rejected(Rejection::malformed));
-      return;
+      problem = Rejection::malformed;
     }
   }
-  if (!fields.complete()) {
-    datagram.rejected.push_back(fields.rejected(Rejection::missing_field));
-    return;
+  if (!problem && !fields.complete()) {
+    problem = Rejection::missing_field;
   }
-  fields.message().bytes =
-      static_cast<std::uint16_t>(std::min<std::size_t>(framed_bytes, UINT16_MAX));
-  datagram.data.push_back(fields.message());
+  if (problem) {
+    datagram.rejected.push_back(fields.rejected(*problem));
+    datagram.data.pop_back();
+  }
 }
 
 class DescriptionFields {

@@ -2,7 +2,7 @@
 // nothing that could wait: batches by recvmmsg, a receive buffer as large as the system allows, the
 // kernel's count of what did not fit.
 //
-// At high rates the thread rests two milliseconds after it has emptied the sockets, so that
+// At high rates the thread rests five milliseconds after it has emptied the sockets, so that
 // datagrams come in batches: the buffer holds far more than that, and a core is spared the
 // wake-ups.
 //

@@ -124,9 +124,9 @@ std::optional<std::uint64_t> Sensor::take(const DataMessage& message, HostTime n
   counts_.stamp_uncertainty_ns = row.stamp_uncertainty_ns;
   if (row.flags != 0) {
     ++counts_.stamps_not_trusted;
-  }
-  for (std::size_t bit = 0; bit < stamp_flag_count; ++bit) {
-    counts_.stamp_flags[bit] += (row.flags >> bit) & 1U;
+    for (std::size_t bit = 0; bit < stamp_flag_count; ++bit) {
+      counts_.stamp_flags[bit] += (row.flags >> bit) & 1U;
+    }
   }
 
   if (sync_of_ != nullptr) {

@@ -125,7 +125,7 @@ std::uint8_t StampCheck::signature(double residual, double tolerance, const Stam
   if (seconds >= 1.0 && is_close(residual, seconds * second_ns, tolerance)) {
     return stamp_second_slip;
   }
-  if (has_last_ && stamp.stamp_ns < last_.stamp_ns) {
+  if (has_last_ && stamp.stamp_ns < last_stamp_ns_) {
     return stamp_backwards;
   }
   return stamp_offset_below_second;
@@ -141,8 +141,8 @@ bool StampCheck::is_of_lost_samples(double residual) const {
 }
 
 bool StampCheck::follows_from_last(const Stamp& stamp, double tolerance) const {
-  const double expected_ns = static_cast<double>(stamp.sample - last_.sample) * period_ns_;
-  return std::abs(static_cast<double>(stamp.stamp_ns - last_.stamp_ns) - expected_ns) <= tolerance;
+  const double expected_ns = static_cast<double>(stamp.sample - last_sample_) * period_ns_;
+  return std::abs(static_cast<double>(stamp.stamp_ns - last_stamp_ns_) - expected_ns) <= tolerance;
 }
 
 // Whether stamps have been off for so long that the model must be wrong. The model is then founded
@@ -159,8 +159,8 @@ void StampCheck::follow(const Stamp& stamp, double residual) {
   const double correction = phase_gain * residual;
   const double predicted_from_stamp = -residual + correction;
   const double whole = std::round(predicted_from_stamp);
-  origin_ = stamp;
-  origin_.stamp_ns += static_cast<std::int64_t>(whole);
+  origin_.sample = stamp.sample;
+  origin_.stamp_ns = stamp.stamp_ns + static_cast<std::int64_t>(whole);
   phase_ns_ = predicted_from_stamp - whole;
   period_ns_ += period_gain * residual / samples;
   usual_residual_ns_ += residual_memory * (std::abs(residual) - usual_residual_ns_);
@@ -198,17 +198,19 @@ std::uint8_t StampCheck::check(const Stamp& stamp) {
   }
   if (stamp.no_fix) {
     flags |= stamp_no_fix; // its time says nothing about the model
-  } else if (has_last_ && stamp.stamp_ns == last_.stamp_ns) {
+  } else if (has_last_ && stamp.stamp_ns == last_stamp_ns_) {
     flags |= stamp_repeated;
   } else if (founded_) {
     flags |= check_against_model(stamp);
   } else {
-    if (has_last_ && !last_.no_fix && stamp.stamp_ns < last_.stamp_ns) {
+    if (has_last_ && !last_no_fix_ && stamp.stamp_ns < last_stamp_ns_) {
       flags |= stamp_backwards;
     }
     found(stamp);
   }
-  last_ = stamp;
+  last_sample_ = stamp.sample;
+  last_no_fix_ = stamp.no_fix;
+  last_stamp_ns_ = stamp.stamp_ns;
   has_last_ = true;
   return static_cast<std::uint8_t>(flags);
 }

@@ -23,6 +23,10 @@ public:
 
   // At most ten bytes; bits beyond the 64th are lost, as the format says.
   bool varint(std::uint64_t& value) {
+    if (position_ < bytes_.size() && (bytes_[position_] & 0x80U) == 0) {
+      value = bytes_[position_++]; // most tags and lengths
+      return true;
+    }
     std::uint64_t result = 0;
     for (std::size_t i = 0; i < max_varint && position_ + i < bytes_.size(); ++i) {
       const std::uint8_t byte = bytes_[position_ + i];
