@@ -1,13 +1,19 @@
 // Load of dyncal-dau: units send real datagrams over UDP at their real pace to a running dyncal-dau
-// while one subscriber reads all of it. Reports lost samples, the CPU of dyncal-dau as a fraction
-// of one core, and the latency from datagram to reader.
+// while one subscriber reads all of it. Reports lost samples, the processor time of dyncal-dau, as
+// a fraction of one core and for each block, and the latency from datagram to reader.
 //   dau_load [--dds V] [--units 16] [--sensors 4] [--rate 1000] [--channels 13] [--seconds 20]
-// Exit status 1 when a sample was lost.
+// With `--against PROGRAM [--rounds 5]` an older dyncal-dau takes turns with this one. Printed is
+// the ratio of what a block costs them, each in its quickest round: others disturb, and never help.
+// Exit status 1 when a sample was lost, or the ratio is above --max-ratio.
 #include <sys/resource.h>
+#include <time.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <csignal>
+#include <fstream>
+#include <limits>
 #include <map>
 #include <memory>
 #include <numeric>
@@ -38,6 +44,9 @@ struct Load {
   std::string dds = "fastdds";
   int domain = tests::own_dds_domain();
   std::string program = DYNCAL_DAU;
+  std::string against; // another one; empty: none
+  int rounds = 5;
+  double max_ratio = std::numeric_limits<double>::infinity();
   std::uint32_t units = 16;
   std::uint32_t sensors = 4;
   int rate_hz = 1000;
@@ -153,6 +162,7 @@ public:
     });
   }
 
+  [[nodiscard]] std::size_t blocks() const { return latencies_s_.size(); }
   [[nodiscard]] bool all_ready() const { return lost_by_account_.size() == sources_; }
 
   void report(std::uint32_t sent) const {
@@ -232,14 +242,44 @@ std::vector<std::string> write_benches(const Load& load, const tests::TemporaryF
   return files;
 }
 
-int run(const Load& load) {
+// Processor time of the only program that this thread has started.
+double cpu_of_child_s() {
+  pid_t child = 0;
+  std::ifstream("/proc/thread-self/children") >> child;
+  clockid_t clock{};
+  std::timespec time{};
+  if (child == 0 || clock_getcpuclockid(child, &clock) != 0 || clock_gettime(clock, &time) != 0) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+bool wait_until_ready(Subscriber& subscriber) {
+  const auto limit = Clock::now() + tests::patience;
+  while (!subscriber.all_ready() && Clock::now() < limit) {
+    subscriber.take();
+  }
+  return subscriber.all_ready();
+}
+
+std::uint64_t samples_to_send(const Load& load) {
+  return std::uint64_t{static_cast<std::uint32_t>(load.seconds * load.rate_hz)} * load.units *
+         load.sensors;
+}
+
+struct Outcome {
+  int status = 2;
+  double block_us = std::numeric_limits<double>::quiet_NaN(); // processor time, without start, end
+};
+
+Outcome run(const Load& load) {
   bus::ParticipantOptions options;
   options.vendor = *bus::parse_vendor(load.dds);
   options.domain = load.domain;
   auto network = bus::Participant::create(options);
   if (!network) {
     fmt::print(stderr, "{}\n", network.error().message);
-    return 2;
+    return {};
   }
   Subscriber subscriber(load, *network);
   const tests::TemporaryFolder folder;
@@ -249,28 +289,26 @@ int run(const Load& load) {
     arguments.push_back(std::move(file));
   }
   tests::ProgramRun program(load.program, arguments, folder.path());
-  const auto ready_by = Clock::now() + tests::patience;
-  while (!subscriber.all_ready() && Clock::now() < ready_by) {
-    subscriber.take();
-  }
-  if (!subscriber.all_ready()) {
+  if (!wait_until_ready(subscriber)) {
     fmt::print(stderr, "dyncal-dau is not there:\n{}", program.errors());
-    return 2;
+    return {};
   }
 
   const auto begin = Clock::now();
+  const double cpu_before_s = cpu_of_child_s();
   std::atomic<std::uint32_t> sent{0};
   std::jthread sender([&] { sent = send_all(load, port); });
   const auto limit =
       Clock::now() + std::chrono::duration_cast<Clock::duration>(
                          std::chrono::duration<double>(load.seconds) + tests::patience);
-  const std::uint64_t expected =
-      std::uint64_t{static_cast<std::uint32_t>(load.seconds * load.rate_hz)} * load.units *
-      load.sensors;
+  const std::uint64_t expected = samples_to_send(load);
   while (subscriber.received() < expected && Clock::now() < limit) {
     subscriber.take();
   }
   const double elapsed_s = std::chrono::duration<double>(Clock::now() - begin).count();
+  Outcome outcome;
+  outcome.block_us =
+      1e6 * (cpu_of_child_s() - cpu_before_s) / static_cast<double>(subscriber.blocks());
   sender.join();
   const auto settled_by = Clock::now() + std::chrono::seconds(1); // the last status
   while (Clock::now() < settled_by) {
@@ -285,12 +323,33 @@ int run(const Load& load) {
   if (exit) {
     fmt::print("CPU of dyncal-dau, start and end included: {:.3f} of one core\n",
                program.cpu_s() / elapsed_s);
+    fmt::print("CPU of dyncal-dau: {:.1f} us a block\n", outcome.block_us);
   }
-  const bool whole = subscriber.received() == expected;
-  if (!whole) {
+  outcome.status = subscriber.received() == expected && exit == 0 ? 0 : 1;
+  if (subscriber.received() != expected) {
     fmt::print("LOST {} samples\n{}", expected - subscriber.received(), program.errors());
   }
-  return whole && exit == 0 ? 0 : 1;
+  return outcome;
+}
+
+int compare(Load load) {
+  const std::array programs{load.program, load.against};
+  std::array<double, 2> quickest_us;
+  quickest_us.fill(std::numeric_limits<double>::infinity());
+  for (int round = 0; round < load.rounds; ++round) {
+    for (std::size_t i = 0; i < programs.size(); ++i) {
+      load.program = programs[i];
+      const Outcome outcome = run(load);
+      if (outcome.status != 0) {
+        return outcome.status;
+      }
+      quickest_us[i] = std::min(quickest_us[i], outcome.block_us);
+    }
+  }
+  const double ratio = quickest_us[0] / quickest_us[1];
+  fmt::print("{}: a block costs {:.1f} us, with {} {:.1f} us: ratio {:.3f}\n", load.dds,
+             quickest_us[0], load.against, quickest_us[1], ratio);
+  return ratio <= load.max_ratio ? 0 : 1;
 }
 
 } // namespace
@@ -301,11 +360,14 @@ int main(int argc, char** argv) {
   app.add_option("--dds", load.dds);
   app.add_option("--domain", load.domain);
   app.add_option("--program", load.program);
+  app.add_option("--against", load.against);
+  app.add_option("--rounds", load.rounds)->check(CLI::PositiveNumber);
+  app.add_option("--max-ratio", load.max_ratio);
   app.add_option("--units", load.units);
   app.add_option("--sensors", load.sensors);
   app.add_option("--rate", load.rate_hz);
   app.add_option("--channels", load.channels);
   app.add_option("--seconds", load.seconds);
   CLI11_PARSE(app, argc, argv);
-  return run(load);
+  return load.against.empty() ? run(load).status : compare(load);
 }
