@@ -31,6 +31,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "services/base/error.hpp"
@@ -68,15 +69,19 @@ enum class WriteOutcome { written, timed_out, failed };
 class UntypedWriter {
 public:
   virtual ~UntypedWriter() = default;
-  virtual WriteOutcome write(const void* sample, std::chrono::nanoseconds limit) = 0;
+  // `message` is never null.
+  virtual WriteOutcome write(const EncodedMessage& message, std::chrono::nanoseconds limit) = 0;
   [[nodiscard]] virtual int matched_readers() const = 0;
   virtual bool wait_for_acknowledgments(std::chrono::nanoseconds limit) = 0;
 };
 
 class UntypedReader {
 public:
+  // A sample, and the bytes that it came as; both until the call returns.
+  using Consume = std::function<void(const void* sample, std::string_view bytes)>;
+
   virtual ~UntypedReader() = default;
-  virtual std::size_t take(const std::function<void(const void*)>& consume) = 0;
+  virtual std::size_t take(const Consume& consume) = 0;
   [[nodiscard]] virtual int matched_writers() const = 0;
 };
 
@@ -109,7 +114,11 @@ public:
   // Returns when the sample is in the writer's history, or when `limit` has passed without room for
   // it (it then may be tried again).
   WriteOutcome write(const T& sample, std::chrono::nanoseconds limit = std::chrono::seconds(10)) {
-    return untyped_->write(&sample, limit);
+    return write_encoded(encode(sample), limit);
+  }
+  // The same for a T that is bytes already, by encode(), because somebody else keeps them too.
+  WriteOutcome write_encoded(const EncodedMessage& message, std::chrono::nanoseconds limit) {
+    return message ? untyped_->write(message, limit) : WriteOutcome::failed;
   }
   [[nodiscard]] int matched_readers() const { return untyped_->matched_readers(); }
   // Acknowledged by all readers that are there; true as well if there is none.
@@ -133,12 +142,17 @@ public:
   // none.
   template <class Consume>
   std::size_t take(Consume&& consume) {
+    return take_with_bytes([&](const T& message, std::string_view) { consume(message); });
+  }
+  // The same with the bytes that each message came as; they last until `consume` returns.
+  template <class Consume>
+  std::size_t take_with_bytes(Consume&& consume) {
     std::size_t taken = 0;
-    untyped_->take([&](const void* sample) {
+    untyped_->take([&](const void* sample, std::string_view bytes) {
       const T& message = *static_cast<const T*>(sample);
       if (bench_.empty() || message.bench() == bench_ || message.bench() == "") {
         ++taken;
-        consume(message);
+        consume(message, bytes);
       }
     });
     return taken;

@@ -33,6 +33,12 @@ struct Key {
 
 using KeyHash = std::array<unsigned char, 16>;
 
+// What DDS tells apart: a key, and the MD5 of its canonical form.
+struct Instance {
+  Key key;
+  KeyHash hash{};
+};
+
 enum class ByteOrder { little, big };
 
 // From a whole payload or one that ends after the key. Nothing when it is not plain CDR, ends too

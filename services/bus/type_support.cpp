@@ -1,5 +1,7 @@
 #include "services/bus/type_support.hpp"
 
+#include <cstring>
+
 #include "services/bus/type_support_of.hpp"
 
 namespace dyncal::bus {
@@ -16,7 +18,23 @@ const KeyLayout names_and_channel{{name_bound, name_bound, channel_bound}, 0};
 const KeyLayout names_and_asker{{name_bound, name_bound, asker_bound}, 0};
 const KeyLayout names_channel_and_step{{name_bound, name_bound, channel_bound}, 2};
 
+constexpr char header[cdr_header_bytes] = {0, 1, 0, 0}; // plain CDR, little-endian
+constexpr char no_checksum[checksum_bytes] = {};
+
 } // namespace
+
+EncodedMessage encode(const TypeSupport& type, const void* sample) {
+  std::string bytes(type.serialized_size(sample), '\0');
+  bytes.resize(type.serialize(sample, bytes.data(), bytes.size()));
+  return bytes.empty() ? nullptr : std::make_shared<const std::string>(std::move(bytes));
+}
+
+bool is_whole(const TypeSupport& type, const void* sample, std::string_view bytes) {
+  return bytes.size() == type.serialized_size(sample) &&
+         std::memcmp(bytes.data(), header, sizeof header) == 0 &&
+         std::memcmp(bytes.data() + bytes.size() - checksum_bytes, no_checksum,
+                     sizeof no_checksum) != 0;
+}
 
 template <>
 const TypeSupport& type_support<wire::SourceDescription>() {

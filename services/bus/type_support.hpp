@@ -16,7 +16,9 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "idl/dyncal.h"
@@ -30,27 +32,38 @@ struct KeyLayout {
   std::size_t numbers = 0;
 };
 
+// A message as bytes, which never change: who sends, keeps and records it shares them.
+using EncodedMessage = std::shared_ptr<const std::string>;
+
 struct TypeSupport {
   std::string name; // as DDS announces it, e.g. "dyncal::wire::SampleBlock"
   KeyLayout key;
   void* (*create)();
   void (*destroy)(void* sample);
   std::size_t (*serialized_size)(const void* sample);
-  // Bytes written; 0 if the sample does not fit `capacity` or cannot be encoded.
+  // Bytes written; 0 if the sample does not fit `capacity` or cannot be encoded. REQUIRES: `bytes`
+  // are zero, because padding stays as it is.
   std::size_t (*serialize)(const void* sample, char* bytes, std::size_t capacity);
-  // The same for header and key members alone.
-  std::size_t (*serialize_key)(const void* sample, char* bytes, std::size_t capacity);
-  // The key members as DDS identifies an instance by them: big-endian, no header, padding
-  // zero. Bytes written; 0 if they do not fit.
-  std::size_t (*canonical_key)(const void* sample, char* bytes, std::size_t capacity);
   // Returns false if the bytes are not such a message; the sample then holds an unspecified part of
   // it.
   bool (*deserialize)(void* sample, const char* bytes, std::size_t count);
 };
 
+// Null if the sample cannot be encoded.
+[[nodiscard]] EncodedMessage encode(const TypeSupport& type, const void* sample);
+
+// Whether bytes that deserialize() has read into `sample` are a message with all members of this
+// contract and its checksum, as encode() makes them: they may be kept in place of the sample.
+[[nodiscard]] bool is_whole(const TypeSupport& type, const void* sample, std::string_view bytes);
+
 // Exists for every topic type of the contract; a new one is added at the end of type_support.cpp.
 template <class T>
 [[nodiscard]] const TypeSupport& type_support();
+
+template <class T>
+[[nodiscard]] EncodedMessage encode(const T& message) {
+  return encode(type_support<T>(), &message);
+}
 
 template <>
 const TypeSupport& type_support<wire::SourceDescription>();

@@ -56,8 +56,7 @@ struct Encoder {
   }
 
   static std::size_t serialize(const void* sample, char* bytes, std::size_t capacity) {
-    std::memset(bytes, 0, capacity); // Fast CDR leaves padding as it is
-    const std::size_t count = write(bytes, capacity, Cdr::LITTLE_ENDIANNESS, [sample](Cdr& cdr) {
+    const std::size_t count = write(bytes, capacity, [sample](Cdr& cdr) {
       cdr.serialize_encapsulation();
       static_cast<const T*>(sample)->serialize(cdr);
     });
@@ -67,19 +66,6 @@ struct Encoder {
       }
     }
     return count;
-  }
-
-  static std::size_t serialize_key(const void* sample, char* bytes, std::size_t capacity) {
-    return write(bytes, capacity, Cdr::LITTLE_ENDIANNESS, [sample](Cdr& cdr) {
-      cdr.serialize_encapsulation();
-      static_cast<const T*>(sample)->serializeKey(cdr);
-    });
-  }
-
-  static std::size_t canonical_key(const void* sample, char* bytes, std::size_t capacity) {
-    std::memset(bytes, 0, capacity); // as above
-    return write(bytes, capacity, Cdr::BIG_ENDIANNESS,
-                 [sample](Cdr& cdr) { static_cast<const T*>(sample)->serializeKey(cdr); });
   }
 
   static bool deserialize(void* sample, const char* bytes, std::size_t count) {
@@ -113,11 +99,10 @@ private:
   };
 
   template <class Serialize>
-  static std::size_t write(char* bytes, std::size_t capacity, Cdr::Endianness byte_order,
-                           Serialize&& serialize_members) {
+  static std::size_t write(char* bytes, std::size_t capacity, Serialize&& serialize_members) {
     try {
       eprosima::fastcdr::FastBuffer buffer(bytes, capacity);
-      Cdr cdr(buffer, byte_order, Cdr::DDS_CDR);
+      Cdr cdr(buffer, Cdr::LITTLE_ENDIANNESS, Cdr::DDS_CDR);
       serialize_members(cdr);
       return cdr.getSerializedDataLength();
     } catch (const std::exception&) {
@@ -157,8 +142,6 @@ template <class T>
                      &Encoder<T>::destroy,
                      &Encoder<T>::serialized_size,
                      &Encoder<T>::serialize,
-                     &Encoder<T>::serialize_key,
-                     &Encoder<T>::canonical_key,
                      &Encoder<T>::deserialize};
 }
 

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "services/bus/payload_checksum.hpp"
 #include "services/contract/topics.hpp"
 
 namespace dyncal::services {
@@ -21,11 +22,11 @@ public:
   WriterOf(SourceOptions source, bus::Writer<Message> writer)
       : source_(std::move(source)), writer_(std::move(writer)) {}
 
-  bus::WriteOutcome write(const std::string& payload) override {
-    if (!bus::type_support<Message>().deserialize(&message_, payload.data(), payload.size())) {
+  bus::WriteOutcome write(const bus::EncodedMessage& payload) override {
+    if (!bus::ends_with_checksum(payload->data(), payload->size())) {
       return bus::WriteOutcome::failed;
     }
-    return writer_.write(message_, std::chrono::nanoseconds(0));
+    return writer_.write_encoded(payload, std::chrono::nanoseconds(0));
   }
   bus::WriteOutcome write_end(std::uint64_t session, std::uint64_t number,
                               const std::string& request) override {
@@ -52,7 +53,6 @@ private:
 
   const SourceOptions source_;
   bus::Writer<Message> writer_;
-  Message message_;
 };
 
 template <class Message>
@@ -97,7 +97,7 @@ bool CatchUpAnswer::give_next(Instant now) {
   if (writer_->write(found->payload) == bus::WriteOutcome::timed_out) {
     return false;
   }
-  pace_.wrote(found->payload.size());
+  pace_.wrote(found->payload->size());
   progress_ = now;
   ++messages_given_;
   next_ = found->place + 1;

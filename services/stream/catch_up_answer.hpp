@@ -38,7 +38,7 @@ public:
   virtual ~CatchUpWriter() = default;
 
   // The bytes of a message that was kept; damaged ones are left out.
-  [[nodiscard]] virtual bus::WriteOutcome write(const std::string& payload) = 0;
+  [[nodiscard]] virtual bus::WriteOutcome write(const bus::EncodedMessage& payload) = 0;
   // The empty message at the end.
   [[nodiscard]] virtual bus::WriteOutcome write_end(std::uint64_t session, std::uint64_t number,
                                                     const std::string& request) = 0;

@@ -49,13 +49,13 @@ void RetransmissionBuffer::note(const KeptMessage& message) {
 void RetransmissionBuffer::keep(KeptMessage message, Instant now) {
   const std::lock_guard lock(mutex_);
   note(message);
-  const std::size_t size = message.payload.size();
+  const std::size_t size = message.payload->size();
   entries_.push_back({.place = next_place_++,
                       .session = message.session,
                       .number = message.number,
                       .time = now,
                       .size = size,
-                      .payload = std::make_shared<const std::string>(std::move(message.payload))});
+                      .payload = std::move(message.payload)});
   memory_bytes_ += size + entry_bytes;
   while (memory_bytes_ > limits_.max_memory_bytes && entries_.size() > in_file_ + 1) {
     const Place dropped = entries_[in_file_].place;
@@ -230,13 +230,13 @@ std::optional<RetransmissionBuffer::Found> RetransmissionBuffer::at_or_behind(Pl
         .place = entry.place, .session = entry.session, .number = entry.number, .payload = {}};
     if (entry.payload) {
       lock.unlock();
-      found.payload = *entry.payload;
+      found.payload = entry.payload;
       return found;
     }
     lock.unlock();
     auto bytes = file_->read(entry.offset, entry.size);
     if (bytes) {
-      found.payload = std::move(*bytes);
+      found.payload = std::make_shared<const std::string>(std::move(*bytes));
       return found;
     }
     lock.lock();

@@ -23,6 +23,7 @@
 #include <string>
 #include <vector>
 
+#include "services/bus/type_support.hpp"
 #include "services/stream/byte_log.hpp"
 
 namespace dyncal::services {
@@ -41,7 +42,7 @@ struct KeptMessage {
   std::uint64_t session = 0;
   std::uint64_t number = 0;     // of the block or shot
   std::string acknowledged_run; // of an answer to ARM
-  std::string payload;          // the bytes that were written
+  bus::EncodedMessage payload;  // the bytes that were written; never null
 };
 
 class RetransmissionBuffer {
@@ -73,7 +74,7 @@ public:
     Place place = 0;
     std::uint64_t session = 0;
     std::uint64_t number = 0;
-    std::string payload;
+    bus::EncodedMessage payload;
   };
   // The first message at this place or behind it; nothing if there is none yet.
   [[nodiscard]] std::optional<Found> at_or_behind(Place place);
@@ -91,8 +92,8 @@ private:
     std::uint64_t number = 0;
     Instant time{};
     std::size_t size = 0;
-    std::uint64_t offset = 0;                   // in the file, if it has no payload
-    std::shared_ptr<const std::string> payload; // in memory
+    std::uint64_t offset = 0;    // in the file, if it has no payload
+    bus::EncodedMessage payload; // in memory
   };
   struct Session {
     std::uint64_t session = 0;

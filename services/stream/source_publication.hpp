@@ -60,6 +60,8 @@ public:
   [[nodiscard]] bool blocked() const { return pending_.has_value() || description_due_; }
   [[nodiscard]] bool idle() const { return !pending_ && publisher_->ring().empty(); }
 
+  [[nodiscard]] std::uint64_t messages_written() const { return written_; }
+
   // Writes the status when its state has changed or `interval` has passed; returns when it is next
   // due.
   Clock::time_point step_status(std::chrono::nanoseconds interval,

@@ -22,6 +22,10 @@ constexpr auto write_limit =
 constexpr auto retry_interval = std::chrono::milliseconds(10); // for what could not be written
 constexpr auto acknowledgment_limit = std::chrono::seconds(2);
 constexpr std::size_t max_name = 64; // bound of the keys of the contract
+// Blocks of many sources come one after the other, each with a wake-up: where a turn finds several,
+// the next one waits for more. Short beside the 20 ms to 100 ms that a block is long.
+constexpr auto rest = std::chrono::milliseconds(5);
+constexpr std::uint64_t rest_worthwhile = 2; // messages in one turn
 
 // What the bench asks of its sources.
 struct BenchReaders {
@@ -53,6 +57,7 @@ private:
   void give_again(const std::stop_token& stop);
   void finish();
   bool step_channels();
+  [[nodiscard]] std::uint64_t messages_written() const;
   void keep_up();
   void listen();
   void take_commands(const std::string& bench, BenchReaders& readers);
@@ -167,6 +172,14 @@ bool SourceService::Implementation::step_channels() {
   return more;
 }
 
+std::uint64_t SourceService::Implementation::messages_written() const {
+  std::uint64_t written = 0;
+  for (const auto& channel : channels_) {
+    written += channel->messages_written();
+  }
+  return written;
+}
+
 // A stream that is played faster than real time fills memory faster than the other thread looks.
 void SourceService::Implementation::keep_up() {
   if (std::ranges::any_of(channels_,
@@ -189,6 +202,7 @@ void SourceService::Implementation::run(const std::stop_token& stop) {
       options_.turned();
     }
     listen();
+    const std::uint64_t written_before = messages_written();
     const bool more = step_channels();
     keep_up();
     auto due = Clock::now() + options_.status_interval;
@@ -198,9 +212,13 @@ void SourceService::Implementation::run(const std::stop_token& stop) {
         due = std::min(due, Clock::now() + retry_interval);
       }
     }
-    if (!more) {
-      wake_up_->wait_until(due);
+    if (more) {
+      continue;
     }
+    if (messages_written() - written_before >= rest_worthwhile) {
+      std::this_thread::sleep_for(rest);
+    }
+    wake_up_->wait_until(due);
   }
   finish();
 }

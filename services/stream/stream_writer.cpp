@@ -15,18 +15,13 @@ public:
       : source_(std::move(source)), writer_(std::move(writer)) {}
 
   bus::WriteOutcome write(std::chrono::nanoseconds limit) override {
-    return writer_.write(message_, limit);
+    return writer_.write_encoded(next_.payload, limit);
   }
-  std::size_t keep_in(RetransmissionBuffer& kept) const override {
-    const bus::TypeSupport& type = bus::type_support<Message>();
-    std::string payload(type.serialized_size(&message_), '\0');
-    payload.resize(type.serialize(&message_, payload.data(), payload.size()));
-    const std::size_t bytes = payload.size();
-    kept.keep({.session = message_.session(),
-               .number = number_of(message_),
-               .acknowledged_run = message_.acknowledged_run(),
-               .payload = std::move(payload)},
-              std::chrono::steady_clock::now());
+  std::size_t keep_in(RetransmissionBuffer& kept) override {
+    const std::size_t bytes = next_.payload ? next_.payload->size() : 0;
+    if (bytes > 0) {
+      kept.keep(std::move(next_), std::chrono::steady_clock::now());
+    }
     return bytes;
   }
   bool wait_for_acknowledgments(std::chrono::nanoseconds limit) override {
@@ -35,14 +30,24 @@ public:
   [[nodiscard]] int matched_readers() const override { return writer_.matched_readers(); }
 
 protected:
+  // The only place where a block or record becomes bytes.
+  void encode(Message message, bool end_of_stream, const std::string& answers_run) {
+    message.end_of_stream(end_of_stream);
+    message.acknowledged_run(answers_run);
+    next_ = {.session = message.session(),
+             .number = number_of(message),
+             .acknowledged_run = answers_run,
+             .payload = bus::encode(message)};
+  }
+
   const SourceOptions source_;
-  Message message_;
 
 private:
   static std::uint64_t number_of(const wire::SampleBlock& message) { return message.block(); }
   static std::uint64_t number_of(const wire::TriggeredRecord& message) { return message.shot(); }
 
   bus::Writer<Message> writer_;
+  KeptMessage next_;
 };
 
 class BlockWriter : public WriterOf<wire::SampleBlock> {
@@ -61,9 +66,8 @@ public:
       entry.block.first_sample = next_sample_;
     }
     next_sample_ += entry.block.samples;
-    message_ = to_message(source_, session_, block_number_++, std::move(entry.block));
-    message_.end_of_stream(entry.end_of_stream);
-    message_.acknowledged_run(answers_run);
+    encode(to_message(source_, session_, block_number_++, std::move(entry.block)),
+           entry.end_of_stream, answers_run);
   }
 
 private:
@@ -77,10 +81,8 @@ public:
   using WriterOf::WriterOf;
 
   void prepare(RingEntry entry, const std::string& answers_run) override {
-    message_ =
-        to_message(source_, entry.session, entry.shot.value_or(Shot{}), std::move(entry.block));
-    message_.end_of_stream(entry.end_of_stream);
-    message_.acknowledged_run(answers_run);
+    encode(to_message(source_, entry.session, entry.shot.value_or(Shot{}), std::move(entry.block)),
+           entry.end_of_stream, answers_run);
   }
 };
 

@@ -1,6 +1,7 @@
 // The samples of one source on the bus: SampleBlocks numbered within their session, or the
 // TriggeredRecords of a source that records after a trigger. An empty message carries a mark: the
-// end of the stream, or the run that somebody arms for. Used by the publishing thread alone.
+// end of the stream, or the run that somebody arms for. Each becomes bytes once; those are sent,
+// and kept for who asks for them later. Used by the publishing thread alone.
 #pragma once
 
 #include <chrono>
@@ -21,11 +22,12 @@ public:
                                                                       const SourceOptions& source);
   virtual ~StreamWriter() = default;
 
-  // Makes the next message out of an entry of the ring; write() tries to hand it over.
+  // Makes the next message out of an entry of the ring; write() tries to hand it over, until it is
+  // kept.
   virtual void prepare(RingEntry entry, const std::string& answers_run) = 0;
   [[nodiscard]] virtual bus::WriteOutcome write(std::chrono::nanoseconds limit) = 0;
-  // Keeps the message, for who asks for it later. Returns its bytes.
-  virtual std::size_t keep_in(RetransmissionBuffer& kept) const = 0;
+  // Gives the message away, for who asks for it later. Returns its bytes.
+  virtual std::size_t keep_in(RetransmissionBuffer& kept) = 0;
   // Returns whether everything has been acknowledged in time.
   virtual bool wait_for_acknowledgments(std::chrono::nanoseconds limit) = 0;
   [[nodiscard]] virtual int matched_readers() const = 0;

@@ -38,10 +38,9 @@ void try_datagram(Bytes bytes) {
 
 template <class T>
 std::string written(const T& sample) {
-  const TypeSupport& type = type_support<T>();
-  std::string bytes(type.serialized_size(&sample), '\0');
-  bytes.resize(type.serialize(&sample, bytes.data(), bytes.size()));
-  return bytes;
+  const EncodedMessage bytes = encode(sample);
+  require(bytes != nullptr);
+  return *bytes;
 }
 
 template <class T>

@@ -12,6 +12,7 @@
 #include "services/bus/host_network.hpp"
 #include "services/bus/qos_profiles.hpp"
 #include "services/bus/write_within.hpp"
+#include "services/bus/writer_instance.hpp"
 
 namespace dyncal::bus {
 namespace {
@@ -136,13 +137,18 @@ Qos reader_qos(const EndpointQos& wanted, const std::string& partition) {
 
 class CycloneWriter : public UntypedWriter {
 public:
-  CycloneWriter(std::shared_ptr<CycloneParticipantHandle> participant, dds_entity_t topic,
-                dds_entity_t writer)
-      : participant_(std::move(participant)), topic_(topic), writer_(writer) {}
+  CycloneWriter(std::shared_ptr<CycloneParticipantHandle> participant, const TypeSupport& type,
+                dds_entity_t topic, dds_entity_t writer)
+      : participant_(std::move(participant)), topic_(topic), writer_(writer),
+        instance_(type.key, &cyclone_dds_key_hash) {}
 
-  WriteOutcome write(const void* sample, std::chrono::nanoseconds limit) override {
+  WriteOutcome write(const EncodedMessage& message, std::chrono::nanoseconds limit) override {
+    const OutgoingMessage outgoing{message, instance_.of(*message)};
+    if (!outgoing.instance) {
+      return WriteOutcome::failed;
+    }
     return write_within(limit, [&] {
-      const dds_return_t outcome = dds_write(writer_.get(), sample);
+      const dds_return_t outcome = dds_write(writer_.get(), &outgoing);
       return outcome == DDS_RETCODE_OK        ? WriteOutcome::written
              : outcome == DDS_RETCODE_TIMEOUT ? WriteOutcome::timed_out
                                               : WriteOutcome::failed;
@@ -163,7 +169,13 @@ private:
   std::shared_ptr<CycloneParticipantHandle> participant_;
   Entity topic_;
   Entity writer_;
+  WriterInstance instance_;
 };
+
+struct SerdataDeleter {
+  void operator()(ddsi_serdata* serdata) const { release_cyclone_serdata(serdata); }
+};
+using Serdata = std::unique_ptr<ddsi_serdata, SerdataDeleter>;
 
 void ring(dds_entity_t /*reader*/, void* wake_up) {
   static_cast<WakeUp*>(wake_up)->ring();
@@ -187,16 +199,15 @@ public:
     }
   }
 
-  std::size_t take(const std::function<void(const void*)>& consume) override {
+  std::size_t take(const Consume& consume) override {
     std::size_t taken = 0;
     ddsi_serdata* serdata = nullptr;
     dds_sample_info_t info;
     while (dds_takecdr(reader_.get(), &serdata, 1, &info, DDS_ANY_STATE) > 0) {
-      const bool read = info.valid_data && read_cyclone_serdata(type_, serdata, sample_.get());
-      release_cyclone_serdata(serdata);
-      if (read) {
+      const Serdata owned(serdata);
+      if (info.valid_data && read_cyclone_serdata(type_, serdata, sample_.get())) {
         ++taken;
-        consume(sample_.get());
+        consume(sample_.get(), payload_of(serdata));
       } else if (info.valid_data) { // otherwise it is the end of an instance
         participant_->malformed->add(type_.name);
       }
@@ -234,7 +245,8 @@ public:
     const Qos qos = writer_qos(qos_of_writer(profile), partitions);
     const dds_entity_t cyclone_writer =
         dds_create_writer(participant_->entity.get(), cyclone_topic, qos.get(), nullptr);
-    auto writer = std::make_unique<CycloneWriter>(participant_, cyclone_topic, cyclone_writer);
+    auto writer =
+        std::make_unique<CycloneWriter>(participant_, type, cyclone_topic, cyclone_writer);
     if (cyclone_writer < 0) {
       return fail(cyclone_error("Cyclone DDS refuses a writer of topic " + topic, cyclone_writer));
     }

@@ -11,20 +11,14 @@
 #include <dds/ddsi/q_radmin.h>
 #include <dds/ddsrt/md5.h>
 
-#include "services/bus/cdr_key.hpp"
 #include "services/bus/cyclonedds/known_keys.hpp"
 
 namespace dyncal::bus {
 namespace {
 
-KeyHash md5_of(const std::string& canonical) {
-  KeyHash hash;
-  ddsrt_md5_state_t state;
-  ddsrt_md5_init(&state);
-  ddsrt_md5_append(&state, reinterpret_cast<const ddsrt_md5_byte_t*>(canonical.data()),
-                   static_cast<unsigned>(canonical.size()));
-  ddsrt_md5_finish(&state, hash.data());
-  return hash;
+std::shared_ptr<const Instance> instance_of(Key key) {
+  const KeyHash hash = cyclone_dds_key_hash(canonical_key(key));
+  return std::make_shared<const Instance>(Instance{std::move(key), hash});
 }
 
 struct SerType : ddsi_sertype {
@@ -41,23 +35,25 @@ struct SerData : ddsi_serdata {
     ddsi_serdata_init(this, sertype, data_kind);
   }
 
-  Key key;
-  KeyHash key_hash{};
+  std::shared_ptr<const Instance> instance;
   // Header and members; Cyclone DDS may read up to 3 bytes more, to a multiple of 4.
-  std::string payload;
+  EncodedMessage payload;
   std::size_t size = 0; // without those bytes
 
-  void set_payload(std::string bytes) {
-    size = bytes.size();
+  void set_payload(EncodedMessage bytes) {
+    size = bytes->size();
     payload = std::move(bytes);
-    payload.resize((size + 3U) & ~std::size_t{3}, '\0');
+    if (size % 4 != 0) {
+      std::string padded = *payload;
+      padded.resize((size + 3U) & ~std::size_t{3}, '\0');
+      payload = std::make_shared<const std::string>(std::move(padded));
+    }
   }
 
-  void set_key(const SerType& sertype, Key new_key) {
-    key = std::move(new_key);
-    key_hash = md5_of(canonical_key(key));
+  void set_instance(const SerType& sertype, std::shared_ptr<const Instance> own_instance) {
+    instance = std::move(own_instance);
     std::uint32_t short_hash = 0;
-    std::memcpy(&short_hash, key_hash.data(), sizeof short_hash);
+    std::memcpy(&short_hash, instance->hash.data(), sizeof short_hash);
     hash = sertype.serdata_basehash ^ short_hash;
   }
 };
@@ -69,27 +65,26 @@ const SerData& own(const ddsi_serdata* serdata) {
   return *static_cast<const SerData*>(serdata);
 }
 
-// Null when the key of the payload is not the contract's.
-ddsi_serdata* from_payload(const ddsi_sertype* sertype, ddsi_serdata_kind kind,
-                           std::string payload) {
-  SerType& type = own(sertype);
-  auto key = read_key(type.type->key, payload.data(), payload.size());
-  if (!key) {
-    return nullptr;
-  }
+ddsi_serdata* make_serdata(const ddsi_sertype* sertype, ddsi_serdata_kind kind,
+                           EncodedMessage payload, std::shared_ptr<const Instance> instance) {
   auto* serdata = new SerData(sertype, kind);
   serdata->set_payload(std::move(payload));
-  serdata->set_key(type, std::move(*key));
-  type.keys.remember(serdata->key_hash, serdata->key);
+  serdata->set_instance(own(sertype), std::move(instance));
   return serdata;
 }
 
+// Null when the key of the payload is not the contract's.
 ddsi_serdata* received(const ddsi_sertype* sertype, ddsi_serdata_kind kind, std::string payload) {
-  ddsi_serdata* serdata = from_payload(sertype, kind, std::move(payload));
-  if (serdata == nullptr) {
-    own(sertype).malformed->add(own(sertype).type->name);
+  SerType& type = own(sertype);
+  auto key = read_key(type.type->key, payload.data(), payload.size());
+  if (!key) {
+    type.malformed->add(type.type->name);
+    return nullptr;
   }
-  return serdata;
+  auto instance = instance_of(std::move(*key));
+  type.keys.remember(instance->hash, instance->key);
+  return make_serdata(sertype, kind, std::make_shared<const std::string>(std::move(payload)),
+                      std::move(instance));
 }
 
 ddsi_serdata* from_ser(const ddsi_sertype* sertype, ddsi_serdata_kind kind,
@@ -125,31 +120,23 @@ ddsi_serdata* from_keyhash(const ddsi_sertype* sertype, const ddsi_keyhash* keyh
   if (!key) {
     return nullptr;
   }
-  auto* serdata = new SerData(sertype, SDK_KEY);
-  serdata->set_payload(key_payload(*key, ByteOrder::little));
-  serdata->set_key(own(sertype), std::move(*key));
-  return serdata;
+  auto payload = std::make_shared<const std::string>(key_payload(*key, ByteOrder::little));
+  return make_serdata(sertype, SDK_KEY, std::move(payload), instance_of(std::move(*key)));
 }
 
-std::string encode(const TypeSupport& type, ddsi_serdata_kind kind, const void* sample) {
-  const bool whole = kind == SDK_DATA;
-  std::string payload(whole ? type.serialized_size(sample) : max_key_payload_bytes, '\0');
-  payload.resize(
-      (whole ? type.serialize : type.serialize_key)(sample, payload.data(), payload.size()));
-  return payload;
-}
-
+// Only dds_write() of whole messages is called with a sample.
 ddsi_serdata* from_sample(const ddsi_sertype* sertype, ddsi_serdata_kind kind, const void* sample) {
-  return from_payload(sertype, kind, encode(*own(sertype).type, kind, sample));
+  const auto& message = *static_cast<const OutgoingMessage*>(sample);
+  return make_serdata(sertype, kind, message.payload, message.instance);
 }
 
 void to_ser(const ddsi_serdata* serdata, size_t offset, size_t size, void* buffer) {
-  std::memcpy(buffer, own(serdata).payload.data() + offset, size);
+  std::memcpy(buffer, own(serdata).payload->data() + offset, size);
 }
 
 ddsi_serdata* to_ser_ref(const ddsi_serdata* serdata, size_t offset, size_t size,
                          ddsrt_iovec_t* part) {
-  part->iov_base = const_cast<char*>(own(serdata).payload.data()) + offset;
+  part->iov_base = const_cast<char*>(own(serdata).payload->data()) + offset;
   part->iov_len = size;
   return ddsi_serdata_ref(serdata);
 }
@@ -159,7 +146,7 @@ void to_ser_unref(ddsi_serdata* serdata, const ddsrt_iovec_t* /*part*/) {
 }
 
 bool decode(const TypeSupport& type, const SerData& serdata, void* sample) {
-  return type.deserialize(sample, serdata.payload.data(), serdata.size);
+  return type.deserialize(sample, serdata.payload->data(), serdata.size);
 }
 
 bool to_sample(const ddsi_serdata* serdata, void* sample, void** /*buffer*/, void* /*limit*/) {
@@ -169,8 +156,7 @@ bool to_sample(const ddsi_serdata* serdata, void* sample, void** /*buffer*/, voi
 ddsi_serdata* to_untyped(const ddsi_serdata* serdata) {
   auto* untyped = new SerData(serdata->type, SDK_KEY);
   untyped->type = nullptr;
-  untyped->key = own(serdata).key;
-  untyped->key_hash = own(serdata).key_hash;
+  untyped->instance = own(serdata).instance;
   untyped->hash = serdata->hash;
   return untyped;
 }
@@ -181,7 +167,7 @@ bool untyped_to_sample(const ddsi_sertype* sertype, const ddsi_serdata* serdata,
 }
 
 bool keys_are_equal(const ddsi_serdata* a, const ddsi_serdata* b) {
-  return own(a).key == own(b).key;
+  return own(a).instance == own(b).instance || own(a).instance->key == own(b).instance->key;
 }
 
 std::uint32_t payload_size(const ddsi_serdata* serdata) {
@@ -201,7 +187,7 @@ size_t print(const ddsi_sertype* sertype, const ddsi_serdata* /*serdata*/, char*
 
 // Every key of the contract can be longer than 16 bytes, so the hash is always the MD5.
 void get_keyhash(const ddsi_serdata* serdata, ddsi_keyhash* keyhash, bool /*force_md5*/) {
-  std::memcpy(keyhash->value, own(serdata).key_hash.data(), sizeof keyhash->value);
+  std::memcpy(keyhash->value, own(serdata).instance->hash.data(), sizeof keyhash->value);
 }
 
 constexpr ddsi_serdata_ops make_serdata_ops() {
@@ -270,6 +256,16 @@ constexpr ddsi_sertype_ops sertype_ops = make_sertype_ops();
 
 } // namespace
 
+KeyHash cyclone_dds_key_hash(const std::string& canonical_key) {
+  KeyHash hash;
+  ddsrt_md5_state_t state;
+  ddsrt_md5_init(&state);
+  ddsrt_md5_append(&state, reinterpret_cast<const ddsrt_md5_byte_t*>(canonical_key.data()),
+                   static_cast<unsigned>(canonical_key.size()));
+  ddsrt_md5_finish(&state, hash.data());
+  return hash;
+}
+
 ddsi_sertype* make_cyclone_sertype(const TypeSupport& type,
                                    std::shared_ptr<MalformedMessages> malformed) {
   auto* sertype = new SerType(type, std::move(malformed));
@@ -288,6 +284,10 @@ const ddsi_domaingv& domain_of(const ddsi_sertype& sertype) {
 
 bool read_cyclone_serdata(const TypeSupport& type, const ddsi_serdata* serdata, void* sample) {
   return decode(type, own(serdata), sample);
+}
+
+std::string_view payload_of(const ddsi_serdata* serdata) {
+  return {own(serdata).payload->data(), own(serdata).size};
 }
 
 void release_cyclone_serdata(ddsi_serdata* serdata) {

@@ -16,13 +16,13 @@
 #include <set>
 
 #include "services/bus/adapters.hpp"
-#include "services/bus/cdr_key.hpp"
 #include "services/bus/fastdds/fast_dds_discovery.hpp"
 #include "services/bus/fastdds/fast_dds_participant_qos.hpp"
 #include "services/bus/fastdds/fast_dds_type.hpp"
 #include "services/bus/host_network.hpp"
 #include "services/bus/qos_profiles.hpp"
 #include "services/bus/write_within.hpp"
+#include "services/bus/writer_instance.hpp"
 
 namespace dyncal::bus {
 namespace {
@@ -160,9 +160,10 @@ private:
 
 class FastDdsWriter : public UntypedWriter {
 public:
-  FastDdsWriter(std::shared_ptr<FastDdsParticipantHandle> participant, dds::Publisher* publisher,
-                dds::DataWriter* writer)
-      : participant_(std::move(participant)), publisher_(publisher), writer_(writer) {}
+  FastDdsWriter(std::shared_ptr<FastDdsParticipantHandle> participant, const TypeSupport& type,
+                dds::Publisher* publisher, dds::DataWriter* writer)
+      : participant_(std::move(participant)), publisher_(publisher), writer_(writer),
+        instance_(type.key, &fast_dds_key_hash) {}
   ~FastDdsWriter() override {
     // Emptied under its lock first. Left to itself, 2.9 gives back the samples of a writer that is
     // destroyed without its lock, and a heartbeat that goes through them meanwhile to a reader that
@@ -173,9 +174,16 @@ public:
     participant_->get()->delete_publisher(publisher_);
   }
 
-  WriteOutcome write(const void* sample, std::chrono::nanoseconds limit) override {
+  WriteOutcome write(const EncodedMessage& message, std::chrono::nanoseconds limit) override {
+    const auto instance = instance_.of(*message);
+    if (!instance) {
+      return WriteOutcome::failed;
+    }
+    FastDdsSample sample;
+    sample.encoded = message.get();
+    sample.instance = instance.get();
     return write_within(limit, [&] {
-      const ReturnCode outcome = writer_->write(const_cast<void*>(sample), dds::InstanceHandle_t());
+      const ReturnCode outcome = writer_->write(&sample, dds::InstanceHandle_t());
       return outcome == ReturnCode::RETCODE_OK        ? WriteOutcome::written
              : outcome == ReturnCode::RETCODE_TIMEOUT ? WriteOutcome::timed_out
                                                       : WriteOutcome::failed;
@@ -196,6 +204,7 @@ private:
   std::shared_ptr<FastDdsParticipantHandle> participant_;
   dds::Publisher* publisher_;
   dds::DataWriter* writer_;
+  WriterInstance instance_;
 };
 
 class RingOnData : public dds::DataReaderListener {
@@ -212,7 +221,9 @@ public:
   FastDdsReader(std::shared_ptr<FastDdsParticipantHandle> participant, dds::Subscriber* subscriber,
                 const TypeSupport& type, std::unique_ptr<RingOnData> listener)
       : participant_(std::move(participant)), subscriber_(subscriber),
-        listener_(std::move(listener)), sample_(type.create(), type.destroy) {}
+        listener_(std::move(listener)), message_(type.create(), type.destroy) {
+    sample_.message = message_.get();
+  }
   ~FastDdsReader() override {
     if (reader_ != nullptr) {
       subscriber_->delete_datareader(reader_);
@@ -227,13 +238,13 @@ public:
     return reader_ != nullptr;
   }
 
-  std::size_t take(const std::function<void(const void*)>& consume) override {
+  std::size_t take(const Consume& consume) override {
     std::size_t taken = 0;
     dds::SampleInfo info;
-    while (reader_->take_next_sample(sample_.get(), &info) == ReturnCode::RETCODE_OK) {
+    while (reader_->take_next_sample(&sample_, &info) == ReturnCode::RETCODE_OK) {
       if (info.valid_data) {
         ++taken;
-        consume(sample_.get());
+        consume(sample_.message, sample_.bytes);
       }
     }
     return taken;
@@ -250,7 +261,8 @@ private:
   dds::Subscriber* subscriber_;
   std::unique_ptr<RingOnData> listener_;
   dds::DataReader* reader_ = nullptr;
-  std::unique_ptr<void, void (*)(void*)> sample_;
+  std::unique_ptr<void, void (*)(void*)> message_;
+  FastDdsSample sample_;
 };
 
 class FastDdsParticipant : public UntypedParticipant {
@@ -284,7 +296,7 @@ public:
       participant_->get()->delete_publisher(publisher);
       return fail(services::ErrorCode::network, "Fast DDS refuses a writer of topic " + topic);
     }
-    return std::make_unique<FastDdsWriter>(participant_, publisher, fast_writer);
+    return std::make_unique<FastDdsWriter>(participant_, type, publisher, fast_writer);
   }
 
   services::Expected<std::unique_ptr<UntypedReader>>

@@ -1,10 +1,8 @@
 #include "services/bus/fastdds/fast_dds_type.hpp"
 
 #include <algorithm>
-#include <array>
+#include <cstring>
 #include <fastrtps/utils/md5.h>
-
-#include "services/bus/cdr_key.hpp"
 
 namespace dyncal::bus {
 namespace {
@@ -27,42 +25,56 @@ FastDdsType::FastDdsType(const TypeSupport& type, std::shared_ptr<MalformedMessa
 }
 
 bool FastDdsType::serialize(void* sample, rtps::SerializedPayload_t* payload) {
-  const std::size_t bytes =
-      type_.serialize(sample, reinterpret_cast<char*>(payload->data), payload->max_size);
-  payload->length = static_cast<std::uint32_t>(bytes);
+  const std::string& bytes = *static_cast<const FastDdsSample*>(sample)->encoded;
+  if (bytes.size() > payload->max_size) {
+    return false;
+  }
+  std::memcpy(payload->data, bytes.data(), bytes.size());
+  payload->length = static_cast<std::uint32_t>(bytes.size());
   payload->encapsulation = CDR_LE;
-  return bytes > 0;
+  return true;
 }
 
 bool FastDdsType::deserialize(rtps::SerializedPayload_t* payload, void* sample) {
+  auto& to = *static_cast<FastDdsSample*>(sample);
   const char* bytes = reinterpret_cast<const char*>(payload->data);
-  const bool read = read_key(type_.key, bytes, payload->length) &&
-                    type_.deserialize(sample, bytes, payload->length);
-  if (!read) {
+  auto key = read_key(type_.key, bytes, payload->length);
+  if (!key || (to.message != nullptr && !type_.deserialize(to.message, bytes, payload->length))) {
     malformed_->add(type_.name);
+    return false;
   }
-  return read;
+  to.key = std::move(*key);
+  if (to.message != nullptr) {
+    to.bytes.assign(bytes, payload->length);
+  }
+  return true;
 }
 
 std::function<uint32_t()> FastDdsType::getSerializedSizeProvider(void* sample) {
-  return [this, sample] { return static_cast<std::uint32_t>(type_.serialized_size(sample)); };
+  return [sample] {
+    return static_cast<std::uint32_t>(static_cast<const FastDdsSample*>(sample)->encoded->size());
+  };
 }
 
 // Every key of the contract can be longer than 16 bytes, so the handle is always the MD5.
 bool FastDdsType::getKey(void* sample, rtps::InstanceHandle_t* handle, bool /*force_md5*/) {
-  std::array<char, max_key_payload_bytes> bytes{};
-  const std::size_t count = type_.canonical_key(sample, bytes.data(), bytes.size());
-  if (count == 0) {
-    return false;
-  }
-  MD5 md5;
-  md5.init();
-  md5.update(bytes.data(), static_cast<MD5::size_type>(count));
-  md5.finalize();
-  for (std::size_t i = 0; i < sizeof md5.digest; ++i) {
-    handle->value[static_cast<std::uint16_t>(i)] = md5.digest[i];
+  const auto& from = *static_cast<const FastDdsSample*>(sample);
+  const KeyHash hash =
+      from.instance != nullptr ? from.instance->hash : fast_dds_key_hash(canonical_key(from.key));
+  for (std::size_t i = 0; i < hash.size(); ++i) {
+    handle->value[static_cast<std::uint16_t>(i)] = hash[i];
   }
   return true;
+}
+
+KeyHash fast_dds_key_hash(const std::string& canonical_key) {
+  MD5 md5;
+  md5.init();
+  md5.update(canonical_key.data(), static_cast<MD5::size_type>(canonical_key.size()));
+  md5.finalize();
+  KeyHash hash;
+  std::ranges::copy(md5.digest, hash.begin());
+  return hash;
 }
 
 } // namespace dyncal::bus

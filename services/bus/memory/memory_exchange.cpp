@@ -140,7 +140,7 @@ void MemoryExchange::send(MemoryWriterState& writer, MemoryLink& link,
                           const MemoryMessagePointer& message) {
   const MessageInTransit transit{writer.topic,       writer.partitions.front(),
                                  writer.participant, link.reader->participant,
-                                 message->number,    message->payload};
+                                 message->number,    *message->payload};
   if (lost_ && lost_(transit)) {
     return;
   }
@@ -296,7 +296,7 @@ void MemoryExchange::inject(const std::string& topic, const std::string& partiti
   const std::lock_guard lock(mutex_);
   MemoryMessage message;
   message.key = payload; // nobody else's
-  message.payload = std::move(payload);
+  message.payload = std::make_shared<const std::string>(std::move(payload));
   const auto sent = std::make_shared<MemoryMessage>(std::move(message));
   for (const auto& reader : readers_) {
     if (reader->topic == topic && is_in({partition}, *reader)) {

@@ -27,7 +27,7 @@ namespace dyncal::bus {
 
 struct MemoryMessage {
   std::string key;
-  std::string payload;
+  EncodedMessage payload;
   std::uint64_t number = 0;
   int in_transit_to = 0; // readers that have not accepted it
 };

@@ -17,14 +17,15 @@ public:
         state_(exchange_->open_writer(std::move(endpoint))) {}
   ~MemoryWriter() override { exchange_->close(state_); }
 
-  WriteOutcome write(const void* sample, std::chrono::nanoseconds limit) override {
-    std::string payload(type_.serialized_size(sample), '\0');
-    payload.resize(type_.serialize(sample, payload.data(), payload.size()));
-    const auto message = message_with(std::move(payload));
-    if (!message) {
+  WriteOutcome write(const EncodedMessage& payload, std::chrono::nanoseconds limit) override {
+    const auto key = read_key(type_.key, payload->data(), payload->size());
+    if (!key) {
       return WriteOutcome::failed;
     }
-    const auto written = wait_until(limit, [&] { return exchange_->write(*state_, *message); });
+    MemoryMessage message;
+    message.key = canonical_key(*key);
+    message.payload = payload;
+    const auto written = wait_until(limit, [&] { return exchange_->write(*state_, message); });
     return written ? WriteOutcome::written : WriteOutcome::timed_out;
   }
 
@@ -35,17 +36,6 @@ public:
   }
 
 private:
-  [[nodiscard]] std::optional<MemoryMessage> message_with(std::string payload) const {
-    const auto key = read_key(type_.key, payload.data(), payload.size());
-    if (!key) {
-      return std::nullopt;
-    }
-    MemoryMessage message;
-    message.key = canonical_key(*key);
-    message.payload = std::move(payload);
-    return message;
-  }
-
   template <class Condition>
   bool wait_until(std::chrono::nanoseconds limit, Condition&& condition) {
     Clock& clock = exchange_->clock();
@@ -72,15 +62,15 @@ public:
         sample_(type.create(), type.destroy), state_(exchange_->open_reader(std::move(endpoint))) {}
   ~MemoryReader() override { exchange_->close(state_); }
 
-  std::size_t take(const std::function<void(const void*)>& consume) override {
+  std::size_t take(const Consume& consume) override {
     std::size_t taken = 0;
     while (const auto message = exchange_->take_next(*state_)) {
-      if (!decode(message->payload)) {
+      if (!decode(*message->payload)) {
         malformed_->add(type_.name);
         continue;
       }
       ++taken;
-      consume(sample_.get());
+      consume(sample_.get(), *message->payload);
     }
     return taken;
   }

@@ -47,9 +47,9 @@ public:
   ReaderOf(bus::Reader<T> reader, const Channel& channel)
       : reader_(std::move(reader)), channel_(channel) {}
   void take(BenchIntake& intake) override {
-    reader_.take([&](const T& message) {
+    reader_.take_with_bytes([&](const T& message, std::string_view bytes) {
       if (message.bench() == intake.bench_) {
-        intake.take(channel_, message);
+        intake.take(channel_, message, bytes);
       }
     });
   }
@@ -102,13 +102,16 @@ void BenchIntake::take() {
     reader->take(*this);
   }
   if (answers_) {
-    answers_->blocks.take([&](const wire::SampleBlock& block) { take_again(block); });
-    answers_->records.take([&](const wire::TriggeredRecord& record) { take_again(record); });
+    const auto again = [&](const auto& message, std::string_view bytes) {
+      take_again(message, bytes);
+    };
+    answers_->blocks.take_with_bytes(again);
+    answers_->records.take_with_bytes(again);
   }
 }
 
 template <class T>
-void BenchIntake::take(const Channel& channel, const T& message) {
+void BenchIntake::take(const Channel& channel, const T& message, std::string_view bytes) {
   if (const std::string run = run_of(message);
       !only_run_.empty() && !run.empty() && run != only_run_) {
     return;
@@ -130,11 +133,11 @@ void BenchIntake::take(const Channel& channel, const T& message) {
       return;
     }
   }
-  store(channel, message);
+  store(channel, message, bytes);
 }
 
 template <class T>
-void BenchIntake::take_again(const T& message) {
+void BenchIntake::take_again(const T& message, std::string_view bytes) {
   const auto found =
       message.bench() == bench_ ? sources_.find(message.source().to_string()) : sources_.end();
   if (found == sources_.end()) {
@@ -147,20 +150,22 @@ void BenchIntake::take_again(const T& message) {
   }
   if (from.channel != nullptr &&
       from.gaps.take_again(message.session(), number_in_source(message), clock_.now())) {
-    store(*from.channel, message);
+    store(*from.channel, message, bytes);
   }
 }
 
 template <class T>
-void BenchIntake::store(const Channel& channel, const T& message) {
-  const std::string bytes = encode(message);
+void BenchIntake::store(const Channel& channel, const T& message, std::string_view bytes) {
+  // What a program of another contract sent is brought into the form that the schema describes.
+  const bool as_sent = bus::is_whole(bus::type_support<T>(), &message, bytes);
+  const std::string encoded = as_sent ? "" : encode(message);
   const std::int64_t now_ns = clock_.utc_now_ns();
   const std::int64_t written_ns = written_utc_ns(message);
   TakenMessage taken{channel, {}, is_result<T>};
   taken.message.channel_id = channel.id;
   taken.message.log_time = static_cast<std::uint64_t>(now_ns);
   taken.message.publish_time = static_cast<std::uint64_t>(written_ns > 0 ? written_ns : now_ns);
-  taken.message.data = bytes;
+  taken.message.data = as_sent ? bytes : std::string_view(encoded);
   if constexpr (is_of_source<T>) {
     taken.message.sequence = static_cast<std::uint32_t>(number_in_source(message));
   } else {

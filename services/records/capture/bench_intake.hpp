@@ -1,5 +1,5 @@
-// Everything that is written on one bench's topics, as bytes for a recording, and what its sources
-// are asked for again.
+// Everything that is written on one bench's topics, as the bytes that it came as, for a recording;
+// and what its sources are asked for again.
 //
 // What is about another run than the one that is recorded is left out, and results of others are
 // not even asked for: an analysis keeps those of some runs, and a slow link would be full of them
@@ -16,6 +16,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "services/base/error.hpp"
@@ -94,11 +95,11 @@ private:
   [[nodiscard]] services::Expected<void> open_reader(const bus::Topic<T>& topic);
   [[nodiscard]] services::Expected<void> read_results_of_bench();
   template <class T>
-  void take(const Channel& channel, const T& message);
+  void take(const Channel& channel, const T& message, std::string_view bytes);
   template <class T>
-  void take_again(const T& message);
+  void take_again(const T& message, std::string_view bytes);
   template <class T>
-  void store(const Channel& channel, const T& message);
+  void store(const Channel& channel, const T& message, std::string_view bytes);
   void look_at(const wire::Measurement& measurement);
   void look_at(const wire::SourceDescription& description);
   void look_at(const wire::ServiceStatus& status);

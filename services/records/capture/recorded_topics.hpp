@@ -50,10 +50,8 @@ void for_each_recorded_topic(Visit visit) {
 // Whole message as bytes; empty if it cannot be encoded.
 template <class T>
 [[nodiscard]] std::string encode(const T& message) {
-  const bus::TypeSupport& type = bus::type_support<T>();
-  std::string bytes(type.serialized_size(&message), '\0');
-  bytes.resize(type.serialize(&message, bytes.data(), bytes.size()));
-  return bytes;
+  const bus::EncodedMessage bytes = bus::encode(message);
+  return bytes ? *bytes : std::string();
 }
 
 // Nothing if the bytes are no such message.

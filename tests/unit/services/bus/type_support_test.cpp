@@ -221,19 +221,6 @@ TYPED_TEST(EveryType, IsNamedAsInTheContract) {
 
 TYPED_TEST(EveryType, HasItsKeyWhereTheLayoutSays) {
   const TypeSupport& type = type_support<TypeParam>();
-  const TypeParam sample;
-  const std::string whole = bytes_of(sample);
-  std::string key_only(max_key_payload_bytes, '\0');
-  key_only.resize(type.serialize_key(&sample, key_only.data(), key_only.size()));
-  ASSERT_GT(key_only.size(), cdr_header_bytes);
-  const auto key = read_key(type.key, whole.data(), whole.size());
-  ASSERT_TRUE(key);
-  EXPECT_EQ(read_key(type.key, key_only.data(), key_only.size()), key);
-  EXPECT_EQ(key_payload(*key, ByteOrder::little).size(), key_only.size());
-}
-
-TYPED_TEST(EveryType, WritesTheKeyThatIsHashedAsItIsReadFromAMessage) {
-  const TypeSupport& type = type_support<TypeParam>();
   Key key;
   for (std::size_t i = 0; i < type.key.string_bounds.size(); ++i) {
     key.strings.emplace_back(1 + 5 * i, static_cast<char>('a' + i)); // every alignment of the next
@@ -243,10 +230,28 @@ TYPED_TEST(EveryType, WritesTheKeyThatIsHashedAsItIsReadFromAMessage) {
   }
   TypeParam sample;
   (void)read(sample, key_payload(key, ByteOrder::little)); // as far as it goes
-  std::string canonical(max_key_payload_bytes, '\xFF');    // padding must be written as zeros
-  canonical.resize(type.canonical_key(&sample, canonical.data(), canonical.size()));
-  EXPECT_EQ(canonical, canonical_key(key));
-  EXPECT_EQ(type.canonical_key(&sample, canonical.data(), canonical.size() - 1), 0U);
+  const std::string whole = bytes_of(sample);
+  EXPECT_EQ(read_key(type.key, whole.data(), whole.size()), key);
+}
+
+TYPED_TEST(EveryType, IsKeptAsItCameOnlyIfItIsWholeAndHasAChecksum) {
+  const TypeSupport& type = type_support<TypeParam>();
+  TypeParam sample;
+  const EncodedMessage whole = encode(sample);
+  ASSERT_TRUE(whole);
+  ASSERT_TRUE(read(sample, *whole));
+  EXPECT_TRUE(is_whole(type, &sample, *whole));
+  EXPECT_EQ(bytes_of(sample), *whole);
+
+  std::string unsealed = *whole;
+  unsealed.replace(unsealed.size() - checksum_bytes, checksum_bytes, checksum_bytes, '\0');
+  ASSERT_TRUE(read(sample, unsealed));
+  EXPECT_FALSE(is_whole(type, &sample, unsealed));
+  EXPECT_FALSE(is_whole(type, &sample, whole->substr(0, whole->size() - checksum_bytes))); // older
+  EXPECT_FALSE(is_whole(type, &sample, *whole + "more"));                                  // newer
+  std::string big_endian = *whole;
+  big_endian[1] = 0;
+  EXPECT_FALSE(is_whole(type, &sample, big_endian));
 }
 
 TYPED_TEST(EveryType, AllowsItsLongestKeyAndHasAlwaysTheHashOfAKeyOver16Bytes) {

@@ -21,10 +21,10 @@ public:
   }
   void after_next_take(std::function<void()> action) { action_ = std::move(action); }
 
-  std::size_t take(const std::string& topic, const std::function<void(const void*)>& consume) {
+  std::size_t take(const std::string& topic, const bus::UntypedReader::Consume& consume) {
     const auto taken = std::exchange(messages_[topic], {});
     for (const auto& message : taken) {
-      consume(message.get());
+      consume(message.get(), {});
     }
     const bool of_analysis =
         topic == bus::topics::service_status.name || topic == bus::topics::calibration_result.name;
@@ -43,9 +43,7 @@ class InboxReader final : public bus::UntypedReader {
 public:
   InboxReader(std::shared_ptr<Inbox> inbox, std::string topic)
       : inbox_(std::move(inbox)), topic_(std::move(topic)) {}
-  std::size_t take(const std::function<void(const void*)>& consume) override {
-    return inbox_->take(topic_, consume);
-  }
+  std::size_t take(const Consume& consume) override { return inbox_->take(topic_, consume); }
   [[nodiscard]] int matched_writers() const override { return 1; }
 
 private:
@@ -55,7 +53,8 @@ private:
 
 class SilentWriter final : public bus::UntypedWriter {
 public:
-  bus::WriteOutcome write(const void* /*sample*/, std::chrono::nanoseconds /*limit*/) override {
+  bus::WriteOutcome write(const bus::EncodedMessage& /*message*/,
+                          std::chrono::nanoseconds /*limit*/) override {
     return bus::WriteOutcome::written;
   }
   [[nodiscard]] int matched_readers() const override { return 0; }

@@ -16,14 +16,6 @@ using testing::IsEmpty;
 constexpr std::uint64_t session = 9;
 const std::string bench = "acc";
 
-template <class Message>
-std::string bytes_of(const Message& message) {
-  const bus::TypeSupport& type = bus::type_support<Message>();
-  std::string payload(type.serialized_size(&message), '\0');
-  payload.resize(type.serialize(&message, payload.data(), payload.size()));
-  return payload;
-}
-
 wire::SampleBlock block_of(std::uint64_t number) {
   wire::SampleBlock block;
   block.bench(bench);
@@ -52,7 +44,7 @@ protected:
       kept_->keep({.session = session,
                    .number = first,
                    .acknowledged_run = first == 0 ? "run-1" : "",
-                   .payload = bytes_of(block_of(first))},
+                   .payload = bus::encode(block_of(first))},
                   clock_.now());
     }
   }
@@ -127,6 +119,40 @@ TEST_F(CatchUpServerTest, GivesWhatIsKeptBehindAMessageAndThenSaysThatThatWasAll
   EXPECT_EQ(end.session(), session);
   EXPECT_EQ(end.block(), 99U);
   EXPECT_FALSE(end.end_of_stream());
+}
+
+TEST_F(CatchUpServerTest, GivesTheVeryBytesThatAreKept) {
+  keep(0, 3);
+  auto reader = answers_of("analysis");
+  std::vector<const char*> sent;
+  network_.lose([&](const bus::MessageInTransit& message) {
+    if (message.topic == bus::topics::catch_up_samples.name) {
+      sent.push_back(message.payload.data());
+    }
+    return false;
+  });
+  ask("analysis/1", 0);
+  EXPECT_THAT(numbers(read(reader)), ElementsAre(1, 2));
+  ASSERT_EQ(sent.size(), 3U); // and the end of the answer
+  EXPECT_EQ(sent[0], kept_->at_or_behind(1)->payload->data());
+  EXPECT_EQ(sent[1], kept_->at_or_behind(2)->payload->data());
+}
+
+// By a bad disk: it would be refused by its reader, who would count it as malformed.
+TEST_F(CatchUpServerTest, LeavesOutWhatWasDamagedWhileItWasKept) {
+  keep(0, 2);
+  std::string damaged = *bus::encode(block_of(2));
+  damaged[200] = static_cast<char>(damaged[200] ^ 1);
+  kept_->keep({.session = session,
+               .number = 2,
+               .acknowledged_run = "",
+               .payload = std::make_shared<const std::string>(std::move(damaged))},
+              clock_.now());
+  keep(3, 4);
+  auto reader = answers_of("analysis");
+  ask("analysis/1", 0);
+  EXPECT_THAT(numbers(read(reader)), ElementsAre(1, 3));
+  EXPECT_EQ(asking_.malformed_messages(), 0U);
 }
 
 TEST_F(CatchUpServerTest, GivesAnEmptyAnswerToWhoHasEverything) {
@@ -285,9 +311,11 @@ TEST_F(CatchUpServerTest, GivesRecordsOfATriggeredSource) {
   record.values().assign(100, 0.25);
   for (std::uint64_t shot = 1; shot <= 3; ++shot) {
     record.shot(shot);
-    kept->keep(
-        {.session = session, .number = shot, .acknowledged_run = "", .payload = bytes_of(record)},
-        clock_.now());
+    kept->keep({.session = session,
+                .number = shot,
+                .acknowledged_run = "",
+                .payload = bus::encode(record)},
+               clock_.now());
   }
   auto reader = asking_.reader(bus::topics::catch_up_records, "analysis", nullptr).value();
   wire::CatchUpRequest message;

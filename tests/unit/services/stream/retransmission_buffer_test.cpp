@@ -37,9 +37,11 @@ protected:
   }
   void keep(RetransmissionBuffer& kept, std::uint64_t number, const std::string& run = "",
             std::uint64_t of = session) {
-    kept.keep(
-        {.session = of, .number = number, .acknowledged_run = run, .payload = payload(number)},
-        now_);
+    kept.keep({.session = of,
+               .number = number,
+               .acknowledged_run = run,
+               .payload = std::make_shared<const std::string>(payload(number))},
+              now_);
   }
   // One each second, from the numbers [first, end), while a run is under way.
   void keep_run(RetransmissionBuffer& kept, std::uint64_t first, std::uint64_t end) {
@@ -54,7 +56,7 @@ protected:
                                             RetransmissionBuffer::Place from = 0) {
     std::vector<std::uint64_t> all;
     while (auto found = kept.at_or_behind(from)) {
-      EXPECT_EQ(found->payload, payload(found->number)) << found->number;
+      EXPECT_EQ(*found->payload, payload(found->number)) << found->number;
       all.push_back(found->number);
       from = found->place + 1;
     }

@@ -19,7 +19,8 @@ class NotedWriter final : public bus::UntypedWriter {
 public:
   NotedWriter(std::shared_ptr<Events> events, std::string topic)
       : events_(std::move(events)), topic_(std::move(topic)) {}
-  bus::WriteOutcome write(const void* /*sample*/, std::chrono::nanoseconds /*limit*/) override {
+  bus::WriteOutcome write(const bus::EncodedMessage& /*message*/,
+                          std::chrono::nanoseconds /*limit*/) override {
     events_->push_back("write " + topic_);
     return bus::WriteOutcome::written;
   }

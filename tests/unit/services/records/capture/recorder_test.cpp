@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "services/bus/memory/memory_network.hpp"
+#include "services/bus/payload_checksum.hpp"
 #include "services/records/capture/recorded_topics.hpp"
 #include "tests/patience.hpp"
 #include "tests/temporary_folder.hpp"
@@ -94,6 +95,19 @@ protected:
     return recorded;
   }
 
+  std::vector<std::string> bytes_of_blocks() const {
+    std::vector<std::string> all;
+    auto reader = RecordingReader::open(folder_.path() / "a.mcap").value();
+    ScanEvents events;
+    events.message = [&](const MessageInFile& one) {
+      if (one.channel.topic == bus::topics::dau_samples.name) {
+        all.emplace_back(one.message.data);
+      }
+    };
+    EXPECT_TRUE(reader.scan(events));
+    return all;
+  }
+
   tests::TemporaryFolder folder_;
   bus::MemoryNetwork network_;
   bus::Participant others_ = network_.join("others");
@@ -123,6 +137,30 @@ TEST_F(RecorderTest, HasEveryMessageOfItsBench) {
   EXPECT_EQ(recorded.losses.at("dau.messages"), "500");
   EXPECT_TRUE(recorded.report.ended_in_order);
   EXPECT_EQ(recorded.report.damage_count, 0U);
+}
+
+TEST_F(RecorderTest, HasTheBytesThatCame) {
+  auto blocks = others_.writer(bus::topics::dau_samples, "acc-1").value();
+  auto recorder = Recorder::start(own_, options()).value();
+  const auto sent = bus::encode(block_of(3));
+  ASSERT_EQ(blocks.write_encoded(sent, std::chrono::seconds(1)), bus::WriteOutcome::written);
+  ASSERT_TRUE(recorder->stop());
+  EXPECT_EQ(bytes_of_blocks(), std::vector<std::string>{*sent});
+}
+
+// A program of another tool gives no checksum, one of an older contract has fewer members.
+TEST_F(RecorderTest, BringsWhatOthersSendIntoTheFormOfItsSchema) {
+  auto recorder = Recorder::start(own_, options()).value();
+  const std::string whole = *bus::encode(block_of(3));
+  std::string unsealed = whole;
+  unsealed.replace(whole.size() - bus::checksum_bytes, bus::checksum_bytes, bus::checksum_bytes,
+                   '\0');
+  network_.inject(bus::topics::dau_samples.name, "acc-1", unsealed);
+  std::string older = *bus::encode(block_of(4));
+  network_.inject(bus::topics::dau_samples.name, "acc-1",
+                  older.substr(0, older.size() - bus::checksum_bytes));
+  ASSERT_TRUE(recorder->stop());
+  EXPECT_EQ(bytes_of_blocks(), (std::vector<std::string>{whole, older}));
 }
 
 TEST_F(RecorderTest, LeavesOutOtherRunsWhenItRecordsOne) {
