@@ -47,13 +47,18 @@ endif()
 file(READ ${from}/dyncal.cxx source)
 rewrite(source "^.*#include \"dyncal.h\"" "${made}#include \"dyncal.h\"")
 rewrite(source "eprosima::fastrtps::fixed_string<" "dyncal::wire::BoundedString<")
-string(REGEX MATCHALL "void dyncal::wire::[A-Za-z]+::(${encoding})\\(\n *${encoder}& [sd]cdr\\)( const)?"
-  functions "${source}")
+# Names of Java objects, other ones every time.
+rewrite(source " *// m_[a-z0-9_]+ com\\.eprosima[^\n]*\n" "")
+set(encoders "void dyncal::wire::[A-Za-z]+::(${encoding})\\(\n *${encoder}& [sd]cdr\\)( const)?")
+string(REGEX MATCHALL "${encoders}" functions "${source}")
 rewrite(source "void (dyncal::wire::[A-Za-z]+::(${encoding}))\\(\n *${encoder}& ([sd]cdr)\\)"
   "template <class Cdr>\nvoid \\1(Cdr& \\3)")
 foreach(function IN LISTS functions)
   string(APPEND source "template ${function};\n")
 endforeach()
 
-file(WRITE ${to}/dyncal.h "${header}")
-file(WRITE ${to}/dyncal.cxx "${source}")
+file(WRITE ${from}/plain/dyncal.h "${header}")
+file(WRITE ${from}/plain/dyncal.cxx "${source}")
+foreach(file dyncal.h dyncal.cxx) # keep their time where nothing has changed
+  file(COPY_FILE ${from}/plain/${file} ${to}/${file} ONLY_IF_DIFFERENT)
+endforeach()
