@@ -2,11 +2,14 @@
 
 #include <array>
 
+#include "analysis/uncertainty/contribution_identifier.hpp"
+
 namespace dyncal::analysis {
 namespace {
 
 struct Row {
   ContributionKind kind;
+  std::string_view identifier;
   std::string_view text;
   bool has_subject;
   Repeats repeats;
@@ -14,31 +17,38 @@ struct Row {
 
 // In the order of the enumeration.
 constexpr std::array rows{
-    Row{ContributionKind::fit_noise, "noise of", true, Repeats::anew},
-    Row{ContributionKind::quantisation, "quantisation of", true, Repeats::common},
-    Row{ContributionKind::rice, "magnitude of noise (Rice)", false, Repeats::common},
-    Row{ContributionKind::structure, "structure in", true, Repeats::anew},
-    Row{ContributionKind::stamp_jitter, "jitter of", true, Repeats::anew},
-    Row{ContributionKind::stamp_tick, "tick of", true, Repeats::anew},
-    Row{ContributionKind::sync_jitter, "jitter of the DAU sync alone", false, Repeats::anew},
-    Row{ContributionKind::adc_phase, "phase of the DAU sync ADC", false, Repeats::common_delay},
-    Row{ContributionKind::channel_delay, "delay between", true, Repeats::common_delay},
-    Row{ContributionKind::reference, "reference", true, Repeats::common},
-    Row{ContributionKind::record_frequency, "frequency between the records", false, Repeats::anew},
-    Row{ContributionKind::clock_offset, "offset between the clocks", false, Repeats::common_delay},
-    Row{ContributionKind::apparent_frequency,
-        "apparent frequency, from the middle of the series to sample 0", false, Repeats::anew},
-    Row{ContributionKind::trigger_delay, "trigger delay of the oscilloscope", false,
-        Repeats::common_delay},
-    Row{ContributionKind::series_start, "start of the series after the trigger", false,
-        Repeats::common_delay},
-    Row{ContributionKind::shots, "shots: noise and scatter of series and trigger", false,
+    Row{ContributionKind::fit_noise, "fit_noise", "noise of", true, Repeats::anew},
+    Row{ContributionKind::quantisation, "quantisation", "quantisation of", true, Repeats::common},
+    Row{ContributionKind::rice, "rice", "magnitude of noise (Rice)", false, Repeats::common},
+    Row{ContributionKind::structure, "structure", "structure in", true, Repeats::anew},
+    Row{ContributionKind::stamp_jitter, "stamp_jitter", "jitter of", true, Repeats::anew},
+    Row{ContributionKind::stamp_tick, "stamp_tick", "tick of", true, Repeats::anew},
+    Row{ContributionKind::sync_jitter, "sync_jitter", "jitter of the DAU sync alone", false,
         Repeats::anew},
-    Row{ContributionKind::trace_clock, "clock of the oscilloscope", false, Repeats::common_delay},
-    Row{ContributionKind::mains_hum, "mains hum in", true, Repeats::anew},
-    Row{ContributionKind::folded_harmonic, "folded harmonics of", true, Repeats::common},
-    Row{ContributionKind::background, "background in", true, Repeats::anew},
-    Row{ContributionKind::other, "other", false, Repeats::common}};
+    Row{ContributionKind::adc_phase, "adc_phase", "phase of the DAU sync ADC", false,
+        Repeats::common_delay},
+    Row{ContributionKind::channel_delay, "channel_delay", "delay between", true,
+        Repeats::common_delay},
+    Row{ContributionKind::reference, "reference", "reference", true, Repeats::common},
+    Row{ContributionKind::record_frequency, "record_frequency", "frequency between the records",
+        false, Repeats::anew},
+    Row{ContributionKind::clock_offset, "clock_offset", "offset between the clocks", false,
+        Repeats::common_delay},
+    Row{ContributionKind::apparent_frequency, "apparent_frequency",
+        "apparent frequency, from the middle of the series to sample 0", false, Repeats::anew},
+    Row{ContributionKind::trigger_delay, "trigger_delay", "trigger delay of the oscilloscope",
+        false, Repeats::common_delay},
+    Row{ContributionKind::series_start, "series_start", "start of the series after the trigger",
+        false, Repeats::common_delay},
+    Row{ContributionKind::shots, "shots", "shots: noise and scatter of series and trigger", false,
+        Repeats::anew},
+    Row{ContributionKind::trace_clock, "trace_clock", "clock of the oscilloscope", false,
+        Repeats::common_delay},
+    Row{ContributionKind::mains_hum, "mains_hum", "mains hum in", true, Repeats::anew},
+    Row{ContributionKind::folded_harmonic, "folded_harmonic", "folded harmonics of", true,
+        Repeats::common},
+    Row{ContributionKind::background, "background", "background in", true, Repeats::anew},
+    Row{ContributionKind::other, "other", "other", false, Repeats::common}};
 
 constexpr bool in_order() {
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -58,6 +68,10 @@ const Row& row_of(ContributionKind kind) {
 
 std::string_view to_string(ContributionKind kind) {
   return row_of(kind).text;
+}
+
+std::string_view identifier_of(ContributionKind kind) {
+  return row_of(kind).identifier;
 }
 
 std::string_view to_string(Repeats repeats) {

@@ -32,7 +32,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/sine/extended_sine_fit.hpp"
-#include "services/base/counted_file.hpp"
+#include "services/base/counted_text.hpp"
 #include "services/programs/command/work_progress.hpp"
 #include "services/records/replay/series_file.hpp"
 
@@ -174,8 +174,10 @@ double read_json(const Files& files, const SharedWorkCount& count) {
     return sum_of(nlohmann::json::parse(file));
   }
   ByteCount bytes(count, "reading", bytes_of_file(files.json()));
-  CountedFile file(files.json(), bytes);
-  return sum_of(nlohmann::json::parse(file.stream()));
+  std::ifstream file(files.json(), std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const CountedText counted(text, bytes);
+  return sum_of(nlohmann::json::parse(counted.begin(), counted.end()));
 }
 
 class Sine {

@@ -2,6 +2,7 @@
 """The progress of commands that take long, on a terminal: the time left is told, and the line is
 gone when the command has ended: with its result, with an error, by Ctrl-C."""
 
+import json
 import math
 import pathlib
 import re
@@ -33,14 +34,32 @@ def write_series(path, megabytes, end=""):
 
 def write_result(path, megabytes):
     """A result of three axes with as much else in it as results of many steps have."""
-    points = ",".join(
-        f'{{"channel": "dau/a_{axis}", "frequency_hz": {hz}, "unit": "\\\\one", "magnitude": 1.0, '
-        '"u_magnitude": 0.001, "phase_rad": 0.1, "u_phase_rad": 0.001}'
+    numbers = dict.fromkeys(
+        ["level_m_s2", "unwrapped_phase_rad", "unwrapped_phase_deg", "scatter_magnitude",
+         "scatter_phase_rad", "phase_deg", "u_phase_deg", "U_phase_deg", "nu_eff_magnitude",
+         "nu_eff_phase", "u_independent_phase_rad"]
+    )  # fmt: skip
+    values = [
+        {**numbers, "channel": f"dau/a_{axis}", "frequency_text_hz": str(hz), "frequency_hz": hz,
+         "unit": "\\one", "magnitude": 1.0, "u_magnitude": 0.001, "k_magnitude": 2.0,
+         "U_magnitude": 0.002, "phase_rad": 0.1, "u_phase_rad": 0.001, "k_phase": 2.0,
+         "U_phase_rad": 0.002, "coverage_probability": 0.95, "repetitions": 1, "flags": [],
+         "flag_names": []}
         for axis in "xyz"
         for hz in range(10, 20)
-    )
-    numbers = "0.123456789," * (megabytes * 1000000 // 12)
-    path.write_text(f'{{"points": [{numbers}0], "transfer_function": [{points}]}}')
+    ]  # fmt: skip
+    result = {
+        **dict.fromkeys(["began_utc", "ended_utc"]),
+        **{name: [] for name in ["flag_legend", "sources", "steps", "channels", "group_delay",
+                                 "sample_clock", "points"]},
+        "schema": {"name": "dyncal-result", "version": 2}, "bench": "b", "run": "r",
+        "method": "analogue", "phase_convention": "", "software": "dyncal",
+        "analysis": {"software": None, "host": None}, "dds": {"analysis": "none"},
+        "planned_steps": 10, "interrupted": False, "problem": "", "recipe_sha256": "",
+        "transfer_function": values,
+    }  # fmt: skip
+    more = "0.123456789," * (megabytes * 1000000 // 12)
+    path.write_text(f'{{"of_a_later_version": [{more}0], {json.dumps(result)[1:]}')
 
 
 def remaining(text):
@@ -107,7 +126,7 @@ def check_reading(folder):
     check_interruption(["triaxial", *results])
     check_refusal(
         ["triaxial", *of_axis("x", "x"), *of_axis("y", "y"), *of_axis("z", "cut")],
-        "cut.json is not a result",
+        "cut.json: not JSON",
     )
 
 

@@ -225,7 +225,7 @@ def variance_of_change(point, whole, quantity, sources):
     estimate too, came out larger of the whole step, by that of the cut one."""
     column = "u_magnitude_rel" if quantity == "magnitude" else "u_phase_rad"
     noise2 = [
-        {row["subject"]: row[column] ** 2 for row in one["budget"] if row["kind"] == "noise of"}
+        {row["subject"]: row[column] ** 2 for row in one["budget"] if row["kind"] == "fit_noise"}
         for one in (point, whole)
     ]
     variance = 0.0

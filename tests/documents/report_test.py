@@ -131,7 +131,7 @@ class Report(unittest.TestCase):
         self.result["run"] = attack
         self.result["problem"] = attack
         self.result["recipe"] = attack
-        self.result["flags"] = [{"name": "other", "sentences": [attack], "meaning": attack}]
+        self.result["flag_legend"] = [{"name": "other", "sentences": [attack], "meaning": attack}]
         for source in self.result["sources"]:
             source["device"] = attack
         laboratory = self.folder / "lab.toml"
@@ -164,7 +164,7 @@ class Report(unittest.TestCase):
     def test_flags_losses_and_missing_values_are_seen(self):
         value = self.result["transfer_function"][3]
         value.update(flags=["dau: samples lost"], flag_names=["samples_lost"])
-        self.result["flags"] = [
+        self.result["flag_legend"] = [
             {"name": "samples_lost", "sentences": ["dau: samples lost"], "meaning": "look there"}
         ]
         point = self.result["points"][0]
@@ -195,7 +195,7 @@ class Report(unittest.TestCase):
             ("missing.json", None, "cannot be read"),
             ("broken.json", '{"schema": ', "not JSON"),
             ("other.json", '{"schema": {"name": "dyncal-model"}}', "dyncal-model"),
-            ("list.json", "[1]", "is not an object"),
+            ("list.json", "[1]", "no 'schema'"),
         ):
             file = self.folder / name
             if text is not None:

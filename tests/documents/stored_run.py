@@ -43,7 +43,7 @@ def clean_run(example_writer, seed=1):
     point_of = example["points"][0]
     value_of = example["transfer_function"][0]
     result = copy.deepcopy(example)
-    result.update(flags=[], points=[], transfer_function=[], channels=[], group_delay=[])
+    result.update(flag_legend=[], points=[], transfer_function=[], channels=[], group_delay=[])
     result["planned_steps"] = len(FREQUENCIES) * REPETITIONS
     for clock in result["sample_clock"]:
         clock.update(flags=[], flag_names=[], lost=0)

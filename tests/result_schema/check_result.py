@@ -24,22 +24,34 @@ def refuse_constant(name):
     raise ValueError(f"{name} is not JSON; a number that is none is null")
 
 
+def strict(schema):
+    """Readers ignore what a later version may have added; what this one writes is all described."""
+    if isinstance(schema, list):
+        return [strict(one) for one in schema]
+    if not isinstance(schema, dict):
+        return schema
+    closed = {name: strict(one) for name, one in schema.items()}
+    if isinstance(schema.get("type"), (str, list)) and "properties" in schema:
+        closed.setdefault("additionalProperties", False)
+    return closed
+
+
 def deviations(schema, text):
     """Sentences on how a result deviates, each with its place."""
     try:
         result = json.loads(text, parse_constant=refuse_constant)
     except ValueError as error:
         return [str(error)]
-    errors = Draft202012Validator(schema).iter_errors(result)
+    errors = Draft202012Validator(strict(schema)).iter_errors(result)
     found = [f"{error.json_path}: {error.message[:300]}" for error in errors]
-    if not found and "flags" in result:
+    if not found and "flag_legend" in result:
         found += undeclared_flags(result)
     return found
 
 
 def undeclared_flags(result):
     """A flag of a value must be explained in the file."""
-    explained = {meaning["name"] for meaning in result["flags"]}
+    explained = {meaning["name"] for meaning in result["flag_legend"]}
     for place in ("points", "transfer_function", "channels", "sample_clock"):
         for i, one in enumerate(result[place]):
             if len(one["flags"]) != len(one["flag_names"]):

@@ -69,7 +69,7 @@ class Schema(unittest.TestCase):
 
     def test_refuses_a_flag_that_is_not_explained(self):
         def forget(result):
-            result["flags"] = []
+            result["flag_legend"] = []
 
         self.assertIn("not explained", deviations(SCHEMA, changed(forget))[0])
 

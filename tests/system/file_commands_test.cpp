@@ -1,11 +1,13 @@
 // The commands that look at one file: dyncal fit and dyncal intervals.
 #include <cmath>
+#include <complex>
 #include <numbers>
 
 #include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/result_text.hpp"
 #include "tests/system/laboratory.hpp"
 
 namespace dyncal::tests {
@@ -157,12 +159,10 @@ TEST_F(FileCommands, IntervalsFindsAGapAndALateEarlyPair) {
 }
 
 std::filesystem::path result_file(const std::filesystem::path& path, double magnitude, double phase,
-                                  const char* unit = "\\\\one") {
-  std::ofstream(path) << fmt::format(
-      R"({{"transfer_function": [{{"channel": "dau/acceleration_z", "frequency_hz": 80, "magnitude": {}, "u_magnitude": 0.003,
-           "phase_rad": {}, "u_phase_rad": 0.004, "unit": "{}"}}]}})",
-      magnitude, phase, unit);
-  return path;
+                                  const char* unit = R"(\one)") {
+  ResultText text("dau/acceleration_z");
+  text.add_value("dau/acceleration_z", "80", std::polar(magnitude, phase), 0.003, 0.004, unit);
+  return text.write(path);
 }
 
 TEST_F(FileCommands, CompareGivesTheNormalisedErrorOfTwoResults) {
@@ -187,7 +187,7 @@ TEST_F(FileCommands, CompareRefusesWhatCannotBeCompared) {
   EXPECT_THAT(error_of({"compare", a, a, "--channel", "acs/none"}),
               HasSubstr("no channel and frequency in common"));
   std::ofstream(folder / "c.json") << "[1, 2";
-  EXPECT_THAT(error_of({"compare", a, folder / "c.json"}), HasSubstr("is not a result of dyncal"));
+  EXPECT_THAT(error_of({"compare", a, folder / "c.json"}), HasSubstr("c.json: not JSON"));
 }
 
 } // namespace

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/result_text.hpp"
 #include "tests/system/laboratory.hpp"
 
 namespace dyncal::tests {
@@ -33,22 +34,16 @@ protected:
   // A result file with one point for each axis but the one that is left out.
   std::filesystem::path file(const std::string& name, const std::string& channels,
                              const std::array<std::complex<double>, 3>& values, int left_out = -1) {
-    nlohmann::json points = nlohmann::json::array();
+    ResultText text(channels + "z");
     for (int i = 0; i < 3; ++i) {
       if (i == left_out) {
         continue;
       }
       const std::complex<double> value = values[static_cast<std::size_t>(i)];
-      points.push_back({{"channel", channels + axes[static_cast<std::size_t>(i)]},
-                        {"frequency_hz", 80},
-                        {"unit", "\\one"},
-                        {"magnitude", std::abs(value)},
-                        {"u_magnitude", u},
-                        {"phase_rad", std::arg(value)},
-                        {"u_phase_rad", u / std::abs(value)}});
+      text.add_value(channels + axes[static_cast<std::size_t>(i)], "80", value, u,
+                     u / std::abs(value));
     }
-    std::ofstream(folder / name) << nlohmann::json{{"transfer_function", points}};
-    return folder / name;
+    return text.write(folder / name);
   }
   static std::array<std::complex<double>, 3> column(const Matrix& matrix, std::size_t j) {
     return {matrix[0][j], matrix[1][j], matrix[2][j]};
@@ -120,7 +115,8 @@ TEST_F(Triaxial, SaysInOneLineWhatIsMissing) {
   EXPECT_THAT(error_of({"--z", file("other.json", "dau/field", column(response, 2))}),
               HasSubstr("name them: --channels X Y Z"));
   std::ofstream(folder / "no.json") << "{}";
-  EXPECT_THAT(error_of({"--z", folder / "no.json"}), HasSubstr("is not a result of dyncal"));
+  EXPECT_THAT(error_of({"--z", folder / "no.json"}),
+              HasSubstr("no.json: there is no 'schema' in it"));
 }
 
 } // namespace

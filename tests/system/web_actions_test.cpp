@@ -117,7 +117,7 @@ TEST_F(WebActions, ConductARun) {
   const json done = bench_until([](const json& bench) { return bench["state"] == "done"; });
   ASSERT_EQ(done["state"], "done") << done;
   const json all = visitor_->ask_until(address + "/run", [](const json& answer) {
-    return answer.contains("transfer") && !answer["transfer"].empty();
+    return answer.contains("transfer_function") && !answer["transfer_function"].empty();
   });
   std::size_t of_first_step = 0;
   for (const json& point : all["points"]) {

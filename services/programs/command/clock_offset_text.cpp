@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include "services/views/report/rounding.hpp"
+#include "services/base/rounding.hpp"
 
 namespace dyncal::services {
 

@@ -18,10 +18,10 @@
 #include "analysis/uncertainty/found_resolution.hpp"
 #include "services/base/json_text.hpp"
 #include "services/base/printable_text.hpp"
+#include "services/base/rounding.hpp"
 #include "services/daemon/program/program.hpp"
 #include "services/programs/command/work_progress.hpp"
 #include "services/records/replay/series_file.hpp"
-#include "services/views/report/rounding.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -4,18 +4,19 @@
 #include <ctime>
 #include <numbers>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "services/base/json_text.hpp"
 #include "services/base/output_file.hpp"
 #include "services/base/printable_text.hpp"
+#include "services/base/rounding.hpp"
 #include "services/contract/unit.hpp"
 #include "services/daemon/program/program.hpp"
 #include "services/programs/command/work_progress.hpp"
 #include "services/records/store/history.hpp"
 #include "services/views/figures/drift.hpp"
-#include "services/views/report/rounding.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -42,20 +43,20 @@ Json number_or_null(std::optional<double> value) {
 }
 
 Json value_json(const HistoryValue& value) {
-  const RecordedPoint& point = value.point;
+  const StoredValue& point = value.point;
   return {{"calibration", value.calibration},
           {"unit", point.unit},
           {"level_m_s2", number_or_null(point.level_m_s2)},
           {"magnitude", point.magnitude},
-          {"U_magnitude", point.expanded_magnitude},
+          {"U_magnitude", point.of_magnitude.expanded},
           {"phase_rad", point.phase_rad},
-          {"U_phase_rad", point.expanded_phase_rad},
+          {"U_phase_rad", point.of_phase.expanded},
           {"deviation_magnitude_rel", value.deviation_magnitude_rel},
           {"deviation_phase_rad", value.deviation_phase_rad},
           {"en_magnitude", number_or_null(value.en_magnitude)},
           {"en_phase", number_or_null(value.en_phase)},
           {"agrees", value.agrees()},
-          {"flags", point.flags}};
+          {"flag_names", point.flag_names}};
 }
 
 void print_json(const History& history) {
@@ -99,16 +100,18 @@ void print_line(const HistoryLine& line, const History& history) {
              "state", "|H|", "U", "d|H| / %", "E_n", "arg H / deg", "U / deg", "d / deg", "E_n");
   for (const HistoryValue& value : line.values) {
     const Calibration& calibration = history.calibrations[value.calibration];
-    const RecordedPoint& point = value.point;
-    const RoundedValue phase = round_phase(point.phase_rad, point.expanded_phase_rad).degrees;
+    const StoredValue& point = value.point;
+    const RoundedValue phase = round_phase(point.phase_rad, point.of_phase.expanded).degrees;
     fmt::print("{:<20} {:<12} {:>13.6g} {:>10.2g} {:>10.3f} {:>7} {:>11} {:>9} {:>9.4f} "
                "{:>7}{}{}\n",
                one_line(day_and_time(calibration)), one_line(calibration.run.state),
-               point.magnitude, point.expanded_magnitude, 100.0 * value.deviation_magnitude_rel,
+               point.magnitude, point.of_magnitude.expanded, 100.0 * value.deviation_magnitude_rel,
                en_text(value.en_magnitude), phase.value, phase.u,
                degrees * value.deviation_phase_rad, en_text(value.en_phase),
                value.agrees() ? "" : "  disagrees with the one before",
-               point.flags.empty() ? "" : "  " + one_line(point.flags));
+               point.flag_names.empty()
+                   ? ""
+                   : "  " + one_line(fmt::format("{}", fmt::join(point.flag_names, ","))));
   }
 }
 
@@ -148,10 +151,10 @@ figures::DriftData drift_of(const std::string& channel, const History& history) 
                               .began_utc = calibration.run.began_utc,
                               .days = days_of(calibration) - first_day,
                               .magnitude = value.point.magnitude,
-                              .expanded_magnitude = value.point.expanded_magnitude,
+                              .expanded_magnitude = value.point.of_magnitude.expanded,
                               .deviation_magnitude_rel = value.deviation_magnitude_rel,
                               .phase_rad = value.point.phase_rad,
-                              .expanded_phase_rad = value.point.expanded_phase_rad,
+                              .expanded_phase_rad = value.point.of_phase.expanded,
                               .deviation_phase_rad = value.deviation_phase_rad});
     }
   }

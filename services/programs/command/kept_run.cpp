@@ -40,21 +40,11 @@ Expected<std::unique_ptr<recording::Recorder>> start_recorder(const RunFolder& f
 
 // As its result file has it; nothing where that cannot be read: then the analysis alone knows.
 std::optional<BegunRun> begun_run(const std::filesystem::path& folder) {
-  const auto result = read_stored_result(folder);
+  const auto result = read_result(folder);
   if (!result) {
     return std::nullopt;
   }
-  BegunRun begun{result->recipe_sha256, {}, !result->points.empty()};
-  const auto text = [](const nlohmann::json& source, const char* key) {
-    return source.contains(key) && source[key].is_string() ? source[key].get<std::string>() : "";
-  };
-  for (const nlohmann::json& source : result->json->value("sources", nlohmann::json::array())) {
-    RunSource one;
-    one.source = text(source, "source");
-    one.description.device = text(source, "device");
-    one.description.serial = text(source, "serial");
-    begun.sources.push_back(std::move(one));
-  }
+  BegunRun begun{result->recipe_sha256, result->sources, !result->points.empty()};
   return begun;
 }
 

@@ -4,10 +4,10 @@
 
 #include <fmt/core.h>
 
+#include "services/base/rounding.hpp"
 #include "services/evaluation/result/result_flag.hpp"
 #include "services/programs/command/clock_offset_text.hpp"
 #include "services/programs/command/harmless_text.hpp"
-#include "services/views/report/rounding.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -8,11 +8,11 @@
 
 #include <fmt/core.h>
 
+#include "services/base/rounding.hpp"
 #include "services/contract/run_identity.hpp"
 #include "services/contract/unit.hpp"
 #include "services/programs/command/clock_offset_text.hpp"
 #include "services/programs/command/harmless_text.hpp"
-#include "services/views/report/rounding.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -28,9 +28,9 @@ std::string addition_text(StoreAddition addition) {
 
 std::string sensors_text(const StoredRun& run) {
   std::string text;
-  for (const RecordedInstrument& source : run.sources) {
+  for (const RunSource& source : run.sources) {
     text += fmt::format("{}{}{}", text.empty() ? "" : ", ", source.source,
-                        source.serial.empty() ? "" : " " + source.serial);
+                        source.description.serial.empty() ? "" : " " + source.description.serial);
   }
   return text;
 }
@@ -54,11 +54,11 @@ Json run_json(const StoredRun& run) {
             {"result_sha256", run.result_sha256},
             {"folder", run.folder},
             {"sources", Json::array()}};
-  for (const RecordedInstrument& source : run.sources) {
+  for (const RunSource& source : run.sources) {
     json["sources"].push_back({{"source", source.source},
-                               {"device", source.device},
-                               {"serial", source.serial},
-                               {"firmware", source.firmware}});
+                               {"device", source.description.device},
+                               {"serial", source.description.serial},
+                               {"firmware", source.description.firmware}});
   }
   return json;
 }

@@ -11,7 +11,8 @@
 #include "services/programs/web/request_router.hpp"
 #include "services/records/store/history.hpp"
 #include "services/records/store/store.hpp"
-#include "services/views/report/json_number.hpp"
+#include "services/views/report/json_members.hpp"
+#include "services/views/report/stored_members.hpp"
 
 namespace dyncal::services::web {
 namespace {
@@ -28,29 +29,16 @@ Json milliseconds(const std::string& utc_text) {
 Json sensors_json(const std::vector<StoredRun>& runs) {
   std::set<std::string> sensors;
   for (const StoredRun& run : runs) {
-    for (const RecordedInstrument& source : run.sources) {
-      if (!source.serial.empty()) {
-        sensors.insert(source.serial);
-      } else if (!source.device.empty()) {
-        sensors.insert(source.device);
+    for (const RunSource& source : run.sources) {
+      const drivers::SourceDescription& description = source.description;
+      const std::string& sensor =
+          description.serial.empty() ? description.device : description.serial;
+      if (!sensor.empty()) {
+        sensors.insert(sensor);
       }
     }
   }
   return sensors;
-}
-
-Json point_json(const RecordedPoint& point) {
-  return {{"frequency_text_hz", point.frequency_text_hz},
-          {"frequency_hz", json_number(point.frequency_hz)},
-          {"level_m_s2", json_number(point.level_m_s2)},
-          {"unit", point.unit},
-          {"magnitude", json_number(point.magnitude)},
-          {"u_magnitude", json_number(point.u_magnitude)},
-          {"U_magnitude", json_number(point.expanded_magnitude)},
-          {"phase_rad", json_number(point.phase_rad)},
-          {"u_phase_rad", json_number(point.u_phase_rad)},
-          {"U_phase_rad", json_number(point.expanded_phase_rad)},
-          {"flags", point.flags}};
 }
 
 // One row a run and channel.
@@ -58,9 +46,9 @@ Json runs_json(const std::vector<Calibration>& calibrations) {
   Json runs = Json::array();
   for (const Calibration& calibration : calibrations) {
     std::map<std::string, Json> channels;
-    for (const RecordedPoint& point : calibration.points) {
+    for (const StoredValue& point : calibration.points) {
       Json& points = channels.try_emplace(point.channel, Json::array()).first->second;
-      points.push_back(point_json(point));
+      points.push_back(JsonWriter::of(point));
     }
     for (auto& [channel, points] : channels) {
       runs.push_back({{"run", calibration.run.run},

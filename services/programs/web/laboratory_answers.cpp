@@ -8,8 +8,7 @@
 
 #include "services/base/json_text.hpp"
 #include "services/programs/web/request_router.hpp"
-#include "services/views/live/run_json.hpp"
-#include "services/views/report/step_json.hpp"
+#include "services/views/report/json_members.hpp"
 
 namespace dyncal::services::web {
 namespace {
@@ -151,7 +150,7 @@ void LaboratoryAnswers::answer_budget(const std::string& name, const httplib::Re
                 {"channel", result.channel},
                 {"step", result.step},
                 {"repetition", result.repetition},
-                {"contributions", budget_json(result)}};
+                {"contributions", JsonWriter::of(result.budget)}};
   });
   answer_text(json ? std::make_shared<const std::string>(json_text(*json)) : nullptr,
               "no such result was heard of", response);

@@ -15,6 +15,7 @@
 #include "services/programs/web/laboratory_answers.hpp"
 #include "services/programs/web/request_router.hpp"
 #include "services/views/report/json_number.hpp"
+#include "services/views/report/rounded_json.hpp"
 #include "services/views/signals/sine_view.hpp"
 #include "services/views/signals/spectrum.hpp"
 #include "services/views/signals/trace.hpp"
@@ -93,12 +94,11 @@ Json fit_json(const std::string& channel, const analysis::Frequency& frequency,
           {"cosine", json_number(view.fit.cosine)},
           {"offset", json_number(view.fit.offset)},
           {"amplitude", json_number(view.fit.amplitude())},
+          {"u_amplitude", json_number(view.fit.u_amplitude())},
           {"phase_rad", json_number(view.fit.phase_rad())},
-          {"u_sine", json_number(std::sqrt(view.fit.covariance[0]))},
-          {"u_cosine", json_number(std::sqrt(view.fit.covariance[3]))},
-          {"u_offset", json_number(std::sqrt(view.fit.covariance[5]))},
           {"residual_rms", json_number(view.residual_rms)},
-          {"sample_count", view.fit.samples}};
+          {"sample_count", view.fit.samples},
+          {"text", {{"amplitude", rounded_json(view.fit.amplitude(), view.fit.u_amplitude())}}}};
 }
 
 } // namespace

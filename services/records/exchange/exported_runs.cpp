@@ -11,6 +11,7 @@
 #include "services/base/version.hpp"
 #include "services/contract/topics.hpp"
 #include "services/records/capture/recorded_topics.hpp"
+#include "services/views/report/json_number.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -85,7 +86,8 @@ Json json_of(const wire::Excitation& excitation) {
   return {{"step", excitation.step()},
           {"repetition", excitation.repetition()},
           {"attempt", excitation.attempt()},
-          {"frequency_hz", excitation.frequency_text_hz()},
+          {"frequency_text_hz", excitation.frequency_text_hz()},
+          {"frequency_hz", json_number(frequency_of(excitation))},
           {"level_m_s2", excitation.level_m_s2()},
           {"state", text_of(excitation.state())},
           {"window_begin_utc_ns", excitation.window_begin_utc_ns()},

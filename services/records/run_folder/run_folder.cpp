@@ -16,12 +16,12 @@
 
 #include <fmt/core.h>
 
+#include "services/base/whole_file.hpp"
 #include "services/bench/file/named_files.hpp"
 #include "services/contract/run_identity.hpp"
 #include "services/contract/time_name.hpp"
 #include "services/records/run_folder/folder_copy.hpp"
 #include "services/views/report/run_figures.hpp"
-#include "services/views/report/stored_result.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -5,29 +5,23 @@
 #include <numbers>
 #include <utility>
 
-#include "analysis/response/comparison.hpp"
+#include "services/views/report/result_file.hpp"
 
 namespace dyncal::services {
 namespace {
 
-bool is_usable(const RecordedPoint& point) {
+bool is_usable(const StoredValue& point) {
   return std::isfinite(point.magnitude) && point.magnitude > 0.0 &&
-         std::isfinite(point.phase_rad) && point.expanded_magnitude > 0.0 &&
-         point.expanded_phase_rad > 0.0;
+         std::isfinite(point.phase_rad) && point.of_magnitude.expanded > 0.0 &&
+         point.of_phase.expanded > 0.0;
 }
 
-bool is_wanted(const RecordedPoint& point, const std::string& channel,
+bool is_wanted(const StoredValue& point, const std::string& channel,
                std::optional<double> frequency_hz) {
   constexpr double same_frequency_rel = 1e-6;
   return (channel.empty() || point.channel == channel) &&
          (!frequency_hz ||
           std::abs(point.frequency_hz - *frequency_hz) <= same_frequency_rel * *frequency_hz);
-}
-
-// So that its factor 2 gives the U that was stated.
-analysis::ComparedResult compared(const RecordedPoint& point) {
-  return {point.magnitude, 0.5 * point.expanded_magnitude, point.phase_rad,
-          0.5 * point.expanded_phase_rad};
 }
 
 bool are_comparable(const HistoryValue& before, const HistoryValue& value,
@@ -43,7 +37,7 @@ bool are_comparable(const HistoryValue& before, const HistoryValue& value,
 
 void compare(const HistoryLine& line, const std::vector<Calibration>& calibrations,
              HistoryValue& value) {
-  const RecordedPoint& first = line.values.front().point;
+  const StoredValue& first = line.values.front().point;
   value.deviation_magnitude_rel = value.point.magnitude / first.magnitude - 1.0;
   value.deviation_phase_rad =
       std::remainder(value.point.phase_rad - first.phase_rad, 2.0 * std::numbers::pi);
@@ -51,7 +45,8 @@ void compare(const HistoryLine& line, const std::vector<Calibration>& calibratio
   if (!are_comparable(before, value, calibrations)) {
     return;
   }
-  const auto comparison = analysis::compare_transfer(compared(value.point), compared(before.point));
+  const auto comparison =
+      analysis::compare_transfer(comparable(value.point), comparable(before.point));
   if (comparison) {
     value.en_magnitude = comparison->en_magnitude;
     value.en_phase = comparison->en_phase;
@@ -68,7 +63,7 @@ History history_of(std::string sensor, std::vector<Calibration> calibrations,
                    const std::string& channel, std::optional<double> frequency_hz) {
   std::map<std::pair<std::string, double>, HistoryLine> lines;
   for (std::size_t i = 0; i < calibrations.size(); ++i) {
-    for (const RecordedPoint& point : calibrations[i].points) {
+    for (const StoredValue& point : calibrations[i].points) {
       if (!is_usable(point) || !is_wanted(point, channel, frequency_hz)) {
         continue;
       }

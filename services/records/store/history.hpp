@@ -21,7 +21,7 @@ namespace dyncal::services {
 
 struct HistoryValue {
   std::size_t calibration = 0; // index into History::calibrations
-  RecordedPoint point;
+  StoredValue point;
   double deviation_magnitude_rel = 0.0;
   double deviation_phase_rad = 0.0;
   std::optional<double> en_magnitude{};

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <ctime>
+#include <sstream>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "services/records/store/migrations.hpp"
 
@@ -50,8 +52,9 @@ constexpr const char* select_runs =
     "result_sha256, planned_steps, measured_steps, problem, folder FROM results "
     "ORDER BY began_utc, added_utc, result_sha256";
 
-bool is_sensor(const RecordedInstrument& source, const std::string& sensor) {
-  return source.serial == sensor || source.device == sensor || source.source == sensor;
+bool is_sensor(const RunSource& source, const std::string& sensor) {
+  return source.description.serial == sensor || source.description.device == sensor ||
+         source.source == sensor;
 }
 
 // Of texts "2026-11-22T10:15:30.125Z", compared as far as the filter goes.
@@ -63,12 +66,25 @@ bool is_within(const std::string& began_utc, const RunFilter& filter) {
 bool passes(const StoredRun& run, const RunFilter& filter) {
   const bool has_sensor =
       filter.sensor.empty() ||
-      std::any_of(run.sources.begin(), run.sources.end(), [&](const RecordedInstrument& source) {
-        return is_sensor(source, filter.sensor);
-      });
+      std::any_of(run.sources.begin(), run.sources.end(),
+                  [&](const RunSource& source) { return is_sensor(source, filter.sensor); });
   return has_sensor && is_within(run.began_utc, filter) &&
          (filter.bench.empty() || run.bench == filter.bench) &&
          (filter.state.empty() || run.state == filter.state);
+}
+
+std::string source_of(const std::string& channel) {
+  return channel.substr(0, channel.find('/'));
+}
+
+// Of "samples_lost,over_range".
+std::vector<std::string> names_in(const std::string& text) {
+  std::vector<std::string> names;
+  std::istringstream stream(text);
+  for (std::string name; std::getline(stream, name, ',');) {
+    names.push_back(std::move(name));
+  }
+  return names;
 }
 
 Error other_result(const ResultRecord& record, const DatabaseRow& known) {
@@ -77,8 +93,9 @@ Error other_result(const ResultRecord& record, const DatabaseRow& known) {
       fmt::format("{}: the store has another result of run '{}' of bench '{}' by the same "
                   "recipe: {} from {}, this one is {}; a result is not replaced: find out which "
                   "is right",
-                  record.folder, record.run, record.bench, text_of(known[0]).substr(0, 12),
-                  text_of(known[4]), record.result_sha256.substr(0, 12))};
+                  record.folder, record.result.run, record.result.bench,
+                  text_of(known[0]).substr(0, 12), text_of(known[4]),
+                  record.result.sha256.substr(0, 12))};
 }
 
 } // namespace
@@ -122,19 +139,20 @@ Expected<StoreAddition> Store::add(const std::filesystem::path& path) {
 
 // What becomes of the record, beside those of its run that are there.
 Expected<StoreAddition> Store::make_way(const ResultRecord& record) {
+  const StoredResult& result = record.result;
   DYNCAL_TRY(const auto rows,
              database_->execute(
                  "SELECT result_sha256, content_sha256, recipe_sha256, state, folder, began_utc "
                  "FROM results WHERE bench = $1 AND run = $2",
-                 {record.bench, record.run}));
+                 {result.bench, result.run}));
   for (const DatabaseRow& row : rows) {
-    if (text_of(row[0]) == record.result_sha256 || text_of(row[1]) == record.content_sha256) {
+    if (text_of(row[0]) == result.sha256 || text_of(row[1]) == result.content_sha256) {
       return StoreAddition::already_there;
     }
   }
   for (const DatabaseRow& row : rows) {
-    const bool other_files = record.run == run_of_files && text_of(row[5]) != record.began_utc;
-    if (text_of(row[2]) != record.recipe_sha256 || other_files) {
+    const bool other_files = result.run == run_of_files && text_of(row[5]) != result.began_utc;
+    if (text_of(row[2]) != result.recipe_sha256 || other_files) {
       continue;
     }
     if (text_of(row[3]) != to_string(RunCompletion::unfinished)) {
@@ -147,46 +165,52 @@ Expected<StoreAddition> Store::make_way(const ResultRecord& record) {
 }
 
 Expected<void> Store::insert(const ResultRecord& record) {
+  const StoredResult& result = record.result;
   const auto done = database_->execute(
       "INSERT INTO results (result_sha256, content_sha256, recipe_sha256, bench, run, state, "
       "method, began_utc, ended_utc, software, planned_steps, measured_steps, problem, recipe, "
       "folder, added_utc, document) "
       "VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16, $17)",
-      {record.result_sha256, record.content_sha256, record.recipe_sha256, record.bench, record.run,
-       to_string(record.state), record.method, record.began_utc, record.ended_utc, record.software,
-       record.planned_steps, record.measured_steps, record.problem, record.recipe, record.folder,
-       now_utc(), record.document});
+      {result.sha256, result.content_sha256, result.recipe_sha256, result.bench, result.run,
+       to_string(record.state), result.method, result.began_utc, result.ended_utc, result.software,
+       std::int64_t{result.planned_steps}, record.measured_steps, result.problem, result.recipe,
+       record.folder, now_utc(), record.document});
   DYNCAL_TRY(done);
-  for (const RecordedInstrument& source : record.sources) {
+  for (const RunSource& source : result.sources) {
     const auto inserted = database_->execute(
         "INSERT INTO sources (result_sha256, source, device, serial, firmware, software) "
         "VALUES ($1, $2, $3, $4, $5, $6)",
-        {record.result_sha256, source.source, source.device, source.serial, source.firmware,
-         source.software});
+        {result.sha256, source.source, source.description.device, source.description.serial,
+         source.description.firmware, source.software});
     DYNCAL_TRY(inserted);
   }
-  return insert_values(record);
+  return insert_values(result);
 }
 
-Expected<void> Store::insert_values(const ResultRecord& record) {
-  for (const RecordedPoint& point : record.points) {
+Expected<void> Store::insert_values(const StoredResult& result) {
+  for (const StoredValue& point : result.values) {
     const auto inserted = database_->execute(
         "INSERT INTO points (result_sha256, source, channel, frequency_text_hz, frequency_hz, "
         "level_m_s2, unit, magnitude, u_magnitude, k_magnitude, expanded_magnitude, phase_rad, "
         "u_phase_rad, k_phase, expanded_phase_rad, flags) "
         "VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16)",
-        {record.result_sha256, point.source, point.channel, point.frequency_text_hz,
+        {result.sha256, source_of(point.channel), point.channel, point.frequency_text_hz,
          point.frequency_hz, value(point.level_m_s2), point.unit, value(point.magnitude),
-         value(point.u_magnitude), value(point.k_magnitude), value(point.expanded_magnitude),
-         value(point.phase_rad), value(point.u_phase_rad), value(point.k_phase),
-         value(point.expanded_phase_rad), point.flags});
+         value(point.of_magnitude.u), value(point.of_magnitude.k),
+         value(point.of_magnitude.expanded), value(point.phase_rad), value(point.of_phase.u),
+         value(point.of_phase.k), value(point.of_phase.expanded),
+         fmt::format("{}", fmt::join(point.flag_names, ","))});
     DYNCAL_TRY(inserted);
   }
-  for (const RecordedSamples& samples : record.samples) {
+  for (const StoredPoint& point : result.points) {
+    if (point.data_sha256.empty()) {
+      continue;
+    }
     const auto inserted = database_->execute(
         "INSERT INTO samples (result_sha256, channel, step, repetition, data_sha256) "
         "VALUES ($1, $2, $3, $4, $5)",
-        {record.result_sha256, samples.channel, samples.step, samples.repetition, samples.sha256});
+        {result.sha256, point.channel, std::int64_t{point.step}, std::int64_t{point.repetition},
+         point.data_sha256});
     DYNCAL_TRY(inserted);
   }
   return {};
@@ -217,23 +241,26 @@ Expected<std::vector<StoredRun>> Store::runs(const RunFilter& filter,
   return found;
 }
 
-Expected<std::vector<RecordedInstrument>> Store::sources_of(const std::string& result_sha256) {
+Expected<std::vector<RunSource>> Store::sources_of(const std::string& result_sha256) {
   DYNCAL_TRY(
       const auto rows,
       database_->execute(
           "SELECT source, device, serial, firmware, software FROM sources WHERE result_sha256 = $1 "
           "ORDER BY source",
           {result_sha256}));
-  std::vector<RecordedInstrument> sources;
+  std::vector<RunSource> sources;
   for (const DatabaseRow& row : rows) {
-    sources.push_back(
-        {text_of(row[0]), text_of(row[1]), text_of(row[2]), text_of(row[3]), text_of(row[4])});
+    RunSource source{.source = text_of(row[0]), .software = text_of(row[4]), .description = {}};
+    source.description.device = text_of(row[1]);
+    source.description.serial = text_of(row[2]);
+    source.description.firmware = text_of(row[3]);
+    sources.push_back(std::move(source));
   }
   return sources;
 }
 
-Expected<std::vector<RecordedPoint>> Store::points_of(const std::string& result_sha256,
-                                                      const std::string& source) {
+Expected<std::vector<StoredValue>> Store::points_of(const std::string& result_sha256,
+                                                    const std::string& source) {
   DYNCAL_TRY(
       const auto rows,
       database_->execute(
@@ -243,23 +270,22 @@ Expected<std::vector<RecordedPoint>> Store::points_of(const std::string& result_
           "flags "
           "FROM points WHERE result_sha256 = $1 AND source = $2 ORDER BY channel, frequency_hz",
           {result_sha256, source}));
-  std::vector<RecordedPoint> points;
+  std::vector<StoredValue> points;
   for (const DatabaseRow& row : rows) {
-    points.push_back({.source = source,
-                      .channel = text_of(row[0]),
-                      .frequency_text_hz = text_of(row[1]),
-                      .frequency_hz = number_of(row[2]),
-                      .level_m_s2 = number_of(row[3]),
-                      .unit = text_of(row[4]),
-                      .magnitude = number_of(row[5]),
-                      .u_magnitude = number_of(row[6]),
-                      .k_magnitude = number_of(row[7]),
-                      .expanded_magnitude = number_of(row[8]),
-                      .phase_rad = number_of(row[9]),
-                      .u_phase_rad = number_of(row[10]),
-                      .k_phase = number_of(row[11]),
-                      .expanded_phase_rad = number_of(row[12]),
-                      .flags = text_of(row[13])});
+    StoredValue point;
+    point.channel = text_of(row[0]);
+    point.frequency_text_hz = text_of(row[1]);
+    point.frequency_hz = number_of(row[2]);
+    point.level_m_s2 = number_of(row[3]);
+    point.unit = text_of(row[4]);
+    point.magnitude = number_of(row[5]);
+    point.phase_rad = number_of(row[9]);
+    point.of_magnitude = {
+        .u = number_of(row[6]), .k = number_of(row[7]), .expanded = number_of(row[8])};
+    point.of_phase = {
+        .u = number_of(row[10]), .k = number_of(row[11]), .expanded = number_of(row[12])};
+    point.flag_names = names_in(text_of(row[13]));
+    points.push_back(std::move(point));
   }
   return points;
 }
@@ -270,10 +296,10 @@ Expected<std::vector<Calibration>> Store::calibrations(const std::string& sensor
   begin_work(count, "reading", "calibrations", runs_with_sensor.size());
   std::vector<Calibration> calibrations;
   for (const StoredRun& run : runs_with_sensor) {
-    for (const RecordedInstrument& source : run.sources) {
+    for (const RunSource& source : run.sources) {
       DYNCAL_TRY(auto points, is_sensor(source, sensor)
                                   ? points_of(run.result_sha256, source.source)
-                                  : Expected<std::vector<RecordedPoint>>{});
+                                  : Expected<std::vector<StoredValue>>{});
       if (!points.empty()) {
         calibrations.push_back({run, source.source, std::move(points)});
       }

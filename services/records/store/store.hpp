@@ -43,7 +43,7 @@ struct StoredRun {
   std::int64_t measured_steps = 0;
   std::string problem;
   std::string folder;
-  std::vector<RecordedInstrument> sources;
+  std::vector<RunSource> sources;
 };
 
 struct RunFilter { // empty: any
@@ -58,7 +58,7 @@ struct RunFilter { // empty: any
 struct Calibration {
   StoredRun run;
   std::string source; // the sensor's, in the run
-  std::vector<RecordedPoint> points;
+  std::vector<StoredValue> points;
 };
 
 class Store {
@@ -81,11 +81,11 @@ private:
   explicit Store(std::unique_ptr<Database> database) : database_(std::move(database)) {}
   Expected<StoreAddition> make_way(const ResultRecord& record);
   Expected<void> insert(const ResultRecord& record);
-  Expected<void> insert_values(const ResultRecord& record);
+  Expected<void> insert_values(const StoredResult& result);
   Expected<void> remove(const std::string& result_sha256);
-  Expected<std::vector<RecordedInstrument>> sources_of(const std::string& result_sha256);
-  Expected<std::vector<RecordedPoint>> points_of(const std::string& result_sha256,
-                                                 const std::string& source);
+  Expected<std::vector<RunSource>> sources_of(const std::string& result_sha256);
+  Expected<std::vector<StoredValue>> points_of(const std::string& result_sha256,
+                                               const std::string& source);
 
   std::unique_ptr<Database> database_;
 };

@@ -49,12 +49,12 @@ std::string today() {
 SensorFile described_sensor(const StoredResult& result, const std::string& channel) {
   SensorFile sensor;
   const std::string name = channel.substr(0, channel.find('/'));
-  for (const CheckedJson& source : result.root().nodes("sources")) {
-    if (source.text("source") == name) {
+  for (const RunSource& source : result.sources) {
+    if (source.source == name) {
       sensor.name = "Digital sensor";
-      sensor.model = source.text_or("device", "");
-      sensor.serial = source.text_or("serial", "");
-      sensor.firmware = source.text_or("firmware", "");
+      sensor.model = source.description.device;
+      sensor.serial = source.description.serial;
+      sensor.firmware = source.description.firmware;
     }
   }
   return sensor;
@@ -172,7 +172,7 @@ Expected<void> gather_values(const CertificateRequest& request, CertificateConte
   contents.flags = stated_flags(contents.result, names);
   contents.has_monte_carlo = std::all_of(
       contents.result.points.begin(), contents.result.points.end(), [&](const StoredPoint& point) {
-        return !point.valid || point.has_monte_carlo ||
+        return !point.valid || point.monte_carlo ||
                std::find(names.begin(), names.end(), point.channel) == names.end();
       });
   return {};
@@ -195,24 +195,6 @@ Expected<void> refuse_unless_forced(const CertificateRequest& request,
               fmt::format("{}: no certificate: {}{}. Measure again, leave channels out with "
                           "--channel, or --force a certificate that says all this",
                           contents.result.file.string(), fmt::join(first, "; "), others));
-}
-
-Expected<CertificateContents> gather(const CertificateRequest& request) {
-  CertificateContents contents;
-  DYNCAL_TRY(contents.result, read_stored_result(request.run));
-  using Step = Expected<void> (*)(const CertificateRequest&, CertificateContents&);
-  for (const Step step :
-       {Step{gather_values}, Step{gather_laboratory}, Step{gather_sensor}, Step{gather_dates}}) {
-    DYNCAL_TRY(step(request, contents));
-  }
-  for (auto done : {gather_customer(contents), refuse_unless_forced(request, contents),
-                    hash_recording(request.run, contents)}) {
-    DYNCAL_TRY(done);
-  }
-  contents.number = request.number.empty() ? contents.sensor.certificate_number : request.number;
-  contents.identifier = new_uuid();
-  contents.software = software_version();
-  return contents;
 }
 
 } // namespace
@@ -247,12 +229,21 @@ certified_channels(const StoredResult& result, const std::vector<std::string>& c
 }
 
 Expected<CertificateContents> gather_certificate(const CertificateRequest& request) {
-  try {
-    return gather(request);
-  } catch (const BadKey& bad) {
-    return fail(ErrorCode::bad_file,
-                fmt::format("{}: {}", result_file_of(request.run).string(), bad.sentence));
+  CertificateContents contents;
+  DYNCAL_TRY(contents.result, read_values(request.run));
+  using Step = Expected<void> (*)(const CertificateRequest&, CertificateContents&);
+  for (const Step step :
+       {Step{gather_values}, Step{gather_laboratory}, Step{gather_sensor}, Step{gather_dates}}) {
+    DYNCAL_TRY(step(request, contents));
   }
+  for (auto done : {gather_customer(contents), refuse_unless_forced(request, contents),
+                    hash_recording(request.run, contents)}) {
+    DYNCAL_TRY(done);
+  }
+  contents.number = request.number.empty() ? contents.sensor.certificate_number : request.number;
+  contents.identifier = new_uuid();
+  contents.software = software_version();
+  return contents;
 }
 
 } // namespace dyncal::services

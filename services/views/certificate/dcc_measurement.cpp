@@ -5,9 +5,9 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include "services/base/rounding.hpp"
 #include "services/views/certificate/dcc.hpp"
 #include "services/views/lab_file/embedded_picture.hpp"
-#include "services/views/report/rounding.hpp"
 #include "services/views/report/stated_value.hpp"
 
 namespace dyncal::services {
@@ -58,9 +58,8 @@ void add_methods(XmlElement parent, const CertificateContents& contents) {
 void add_used_software(XmlElement parent, const StoredResult& result) {
   XmlElement list = parent.add("dcc:usedSoftware");
   std::vector<std::pair<std::string, std::string>> programs{{result.software, "conducted the run"}};
-  const std::string analysis = result.root().node("analysis").text_or("software", "");
-  if (!analysis.empty()) {
-    programs.emplace_back(analysis, "evaluated the run");
+  if (!result.analysis_software.empty()) {
+    programs.emplace_back(result.analysis_software, "evaluated the run");
   }
   for (const auto& [text, task] : programs) {
     const std::string line = single_line(text);
@@ -107,14 +106,13 @@ void add_equipments(XmlElement parent, const CertificateContents& contents) {
     add_equipment(list, equipment, "");
   }
   const std::string sensor = contents.channels.front().channel;
-  for (const CheckedJson& source : contents.result.root().nodes("sources")) {
-    const std::string name = source.text("source");
-    const std::string device = source.text_or("device", "");
-    if (sensor.starts_with(name + "/") || device.empty()) {
+  for (const RunSource& source : contents.result.sources) {
+    const std::string& device = source.description.device;
+    if (sensor.starts_with(source.source + "/") || device.empty()) {
       continue; // the item itself
     }
-    add_equipment(list, {device, "", "", source.text_or("serial", "")},
-                  fmt::format("Source '{}' of the run", name));
+    add_equipment(list, {device, "", "", source.description.serial},
+                  fmt::format("Source '{}' of the run", source.source));
   }
 }
 
@@ -154,22 +152,6 @@ void add_stated_conditions(XmlElement list, const Conditions& conditions) {
   }
 }
 
-// "27.3 to 28.9"; empty without a finite value.
-std::string range_of(const CertificateContents& contents, double StoredPoint::*member,
-                     int decimals) {
-  double low = std::numeric_limits<double>::infinity();
-  double high = -low;
-  for (const CertifiedChannel& channel : contents.channels) {
-    for (const StoredPoint& point : contents.result.points_of(channel.channel)) {
-      if (std::isfinite(point.*member)) {
-        low = std::min(low, point.*member);
-        high = std::max(high, point.*member);
-      }
-    }
-  }
-  return low > high ? "" : fmt::format("{:.{}f} to {:.{}f}", low, decimals, high, decimals);
-}
-
 void add_conditions(XmlElement parent, const CertificateContents& contents) {
   XmlElement list = parent.add("dcc:influenceConditions");
   add_stated_conditions(list, contents.conditions);
@@ -180,12 +162,17 @@ void add_conditions(XmlElement parent, const CertificateContents& contents) {
   };
   add_said("Mounting", contents.conditions.mounting);
   add_said("Orientation", contents.conditions.orientation);
-  const std::string temperature = range_of(contents, &StoredPoint::temperature_degc, 1);
+  std::vector<std::string> channels;
+  for (const CertifiedChannel& channel : contents.channels) {
+    channels.push_back(channel.channel);
+  }
+  const std::vector<StoredPoint> points = contents.result.points_of(channels);
+  const std::string temperature = temperature_range(points);
   add_said("Temperature of the sensor",
            temperature.empty() ? ""
                                : temperature + " degrees Celsius, measured by the sensor itself, "
                                                "for information");
-  const std::string level = range_of(contents, &StoredPoint::measured_level_m_s2, 3);
+  const std::string level = level_range(points);
   add_said("Level of the excitation",
            level.empty()
                ? "sinusoidal, amplitude as planned"
@@ -205,11 +192,11 @@ void add_said(XmlElement list, std::string_view type, std::string_view name,
   }
 }
 
-std::string clock_text(const CheckedJson& clock) {
-  const double rate_hz = clock.number("mean_rate_hz");
-  const double interval_s = clock.number("mean_interval_s");
-  const double u_interval_s = clock.number("u_mean_interval_s");
-  const std::string head = fmt::format("Source '{}': ", clock.text("source"));
+std::string clock_text(const ClockReport& report) {
+  const double rate_hz = report.clock.mean_rate_hz;
+  const double interval_s = report.clock.mean_interval_s;
+  const double u_interval_s = report.clock.u_mean_interval_s;
+  const std::string head = fmt::format("Source '{}': ", report.source);
   if (std::isfinite(u_interval_s) && u_interval_s > 0.0 && interval_s > 0.0) {
     const RoundedValue rounded =
         round_by_uncertainty(rate_hz, 2.0 * rate_hz * u_interval_s / interval_s);
@@ -222,21 +209,20 @@ std::string clock_text(const CheckedJson& clock) {
 }
 
 void add_clock(XmlElement list, const StoredResult& result) {
-  for (const CheckedJson& clock : result.root().nodes("sample_clock")) {
+  for (const ClockReport& clock : result.clocks) {
     add_said(list, "dyncal_sampleClock", "Sample clock", clock_text(clock));
   }
 }
 
 void add_recipe(XmlElement list, const StoredResult& result) {
-  const std::string recipe = result.root().text_or("recipe", "");
-  if (recipe.empty()) {
+  if (result.recipe.empty()) {
     return;
   }
   XmlElement data = add_meta_data(list, "dyncal_recipe", "Recipe: the bench file of the run");
   XmlElement file = data.add("dcc:data").add("dcc:byteData");
   file.add("dcc:fileName", "bench.toml");
   file.add("dcc:mimeType", "application/toml");
-  file.add("dcc:dataBase64", base64(recipe));
+  file.add("dcc:dataBase64", base64(result.recipe));
 }
 
 void add_all_meta_data(XmlElement parent, const CertificateContents& contents) {

@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include "services/base/whole_file.hpp"
 #include "services/views/certificate/certificate_contents.hpp"
 #include "services/views/certificate/dcc.hpp"
 #include "services/views/certificate/schema.hpp"
@@ -162,7 +163,7 @@ Expected<std::vector<Finding>> verify(const VerificationRequest& request) {
   findings.push_back(check_schema(request, *document));
   add_signature(request, *document, findings);
   if (!request.run.empty()) {
-    DYNCAL_TRY(const auto run, read_stored_result(request.run));
+    DYNCAL_TRY(const auto run, read_values(request.run));
     findings.push_back(check_numbers(*document, run));
   }
   for (const XmlElement& statement : document->root().descendants("statement", dcc_namespace)) {

@@ -6,7 +6,7 @@
 #include <openssl/err.h>
 #include <openssl/pem.h>
 
-#include "services/views/report/stored_result.hpp"
+#include "services/base/whole_file.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -11,8 +11,8 @@
 #include <fmt/core.h>
 
 #include "services/base/output_file.hpp"
+#include "services/base/whole_file.hpp"
 #include "services/daemon/program/child_process.hpp"
-#include "services/views/report/stored_result.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -125,7 +125,7 @@ std::string body_of(const ReportContents& contents) {
 
 Expected<ReportContents> gather_report(const ReportRequest& request) {
   ReportContents contents;
-  DYNCAL_TRY(contents.result, read_stored_result(request.run));
+  DYNCAL_TRY(contents.result, read_values(request.run));
   DYNCAL_TRY(contents.channels, chosen_channels(contents.result, request.channels));
   DYNCAL_TRY(add_laboratory(request, contents));
   add_pictures(request.run, contents);
@@ -134,14 +134,7 @@ Expected<ReportContents> gather_report(const ReportRequest& request) {
   return contents;
 }
 
-Expected<std::string> report_html(const ReportContents& contents) {
-  std::string body;
-  try {
-    body = body_of(contents);
-  } catch (const BadKey& bad) {
-    return fail(ErrorCode::bad_file,
-                fmt::format("{}: {}", contents.result.file.string(), bad.sentence));
-  }
+std::string report_html(const ReportContents& contents) {
   // The policy forbids a browser to fetch or run anything, whatever a text might hold.
   return fmt::format("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
                      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
@@ -152,7 +145,7 @@ Expected<std::string> report_html(const ReportContents& contents) {
                      "<body>\n<main>\n{}</main>\n</body>\n</html>\n",
                      escaped(issuer_of(contents)), escaped(contents.software),
                      escaped(title_of(contents) + ", run " + contents.result.run), report_style(),
-                     body);
+                     body_of(contents));
 }
 
 } // namespace dyncal::services

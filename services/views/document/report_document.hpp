@@ -30,6 +30,6 @@ struct ReportRequest {
 // Reads all files that a report is made of.
 [[nodiscard]] Expected<ReportContents> gather_report(const ReportRequest& request);
 
-[[nodiscard]] Expected<std::string> report_html(const ReportContents& contents);
+[[nodiscard]] std::string report_html(const ReportContents& contents);
 
 } // namespace dyncal::services

@@ -46,10 +46,10 @@ std::string joined_texts(const std::vector<std::string>& texts) {
 std::string described_sensor(const ReportContents& contents) {
   const std::string& channel = contents.channels.front();
   const std::string name = channel.substr(0, channel.find('/'));
-  for (const CheckedJson& source : contents.result.root().nodes("sources")) {
-    if (source.text("source") == name) {
-      const std::string serial = source.text_or("serial", "");
-      return joined_texts({source.text_or("device", ""), serial.empty() ? "" : "serial " + serial});
+  for (const RunSource& source : contents.result.sources) {
+    if (source.source == name) {
+      const std::string& serial = source.description.serial;
+      return joined_texts({source.description.device, serial.empty() ? "" : "serial " + serial});
     }
   }
   return "";

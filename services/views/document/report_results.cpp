@@ -7,10 +7,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "services/base/rounding.hpp"
 #include "services/contract/unit.hpp"
 #include "services/views/document/html.hpp"
 #include "services/views/figures/deviation.hpp"
-#include "services/views/report/rounding.hpp"
 #include "services/views/report/stated_value.hpp"
 
 namespace dyncal::services {
@@ -66,22 +66,6 @@ std::string joined(const std::vector<std::string>& names) {
   return fmt::format("{}", fmt::join(names, " "));
 }
 
-std::optional<analysis::GroupDelay> group_delay_of(const StoredResult& result,
-                                                   const std::string& channel) {
-  for (const CheckedJson& delay : result.root().nodes("group_delay")) {
-    if (delay.text("channel") == channel) {
-      analysis::GroupDelay found;
-      found.delay_s = delay.number("value_s");
-      found.u_delay_s = delay.number("u_s");
-      found.intercept_rad = delay.number("intercept_rad");
-      found.u_intercept_rad = delay.number("u_intercept_rad");
-      found.cov_delay_intercept = delay.number("cov_delay_intercept_rad_s");
-      return found;
-    }
-  }
-  return std::nullopt;
-}
-
 // Ids of several figures would meet in one document.
 std::string with_own_ids(std::string svg, std::size_t figure) {
   for (const std::string& opening : {std::string("id=\"clip"), std::string("url(#clip")}) {
@@ -110,7 +94,7 @@ figures::TransferFunctionData transfer_data(const StoredResult& result, const st
             point.level_m_s2,
             {point.magnitude, point.u_magnitude, point.phase_rad, point.u_phase_rad},
             joined(point.flag_names)},
-           point.residual_rel});
+           point.residual_rel()});
     }
   }
   for (const StoredValue& value : values) {
@@ -120,9 +104,12 @@ figures::TransferFunctionData transfer_data(const StoredResult& result, const st
          {value.magnitude, value.of_magnitude.u, value.unwrapped_phase_rad, value.of_phase.u},
          joined(value.flag_names),
          value.of_magnitude.expanded,
-         value.of_phase.expanded});
+         value.of_phase.expanded,
+         value.phase_rad});
   }
-  data.group_delay = group_delay_of(result, channel);
+  if (const analysis::GroupDelay* delay = result.group_delay_of(channel)) {
+    data.group_delay = *delay;
+  }
   return data;
 }
 
@@ -143,8 +130,8 @@ std::string channel_figures(const figures::TransferFunctionData& data, std::size
 }
 
 std::string delay_sentence(const StoredResult& result, const std::string& channel) {
-  const auto delay = group_delay_of(result, channel);
-  if (!delay) {
+  const analysis::GroupDelay* delay = result.group_delay_of(channel);
+  if (delay == nullptr) {
     return "";
   }
   const RoundedValue rounded =
@@ -168,12 +155,13 @@ std::vector<StoredPoint> budget_points(const StoredResult& result, const std::st
   return chosen;
 }
 
-std::vector<StoredContribution> contributions_of(const std::vector<StoredPoint>& points) {
-  std::vector<StoredContribution> rows;
+std::vector<analysis::Contribution> contributions_of(const std::vector<StoredPoint>& points) {
+  std::vector<analysis::Contribution> rows;
   for (const StoredPoint& point : points) {
-    for (const StoredContribution& row : point.budget) {
-      if (std::none_of(rows.begin(), rows.end(),
-                       [&](const StoredContribution& other) { return other.name == row.name; })) {
+    for (const analysis::Contribution& row : point.budget) {
+      if (std::none_of(rows.begin(), rows.end(), [&](const analysis::Contribution& other) {
+            return other.name() == row.name();
+          })) {
         rows.push_back(row);
       }
     }
@@ -191,7 +179,7 @@ std::string small_number(double value) {
 
 // Columns are contributions C1, C2, ...; in per cent and degrees.
 std::string budget_table(const std::vector<StoredPoint>& points,
-                         const std::vector<StoredContribution>& rows, bool of_magnitude) {
+                         const std::vector<analysis::Contribution>& rows, bool of_magnitude) {
   std::vector<std::string> head{"<i>f</i> / Hz"};
   for (std::size_t i = 0; i < rows.size(); ++i) {
     head.push_back(fmt::format("C{}", i + 1));
@@ -201,10 +189,10 @@ std::string budget_table(const std::vector<StoredPoint>& points,
   for (const StoredPoint& point : points) {
     std::vector<std::string> cells{point.frequency_text_hz};
     double squares = 0.0;
-    for (const StoredContribution& column : rows) {
-      const auto found =
-          std::find_if(point.budget.begin(), point.budget.end(),
-                       [&](const StoredContribution& row) { return row.name == column.name; });
+    for (const analysis::Contribution& column : rows) {
+      const auto found = std::find_if(
+          point.budget.begin(), point.budget.end(),
+          [&](const analysis::Contribution& row) { return row.name() == column.name(); });
       if (found == point.budget.end()) {
         cells.emplace_back("");
         continue;
@@ -222,7 +210,7 @@ std::string budget_table(const std::vector<StoredPoint>& points,
 
 std::string budget_section(const StoredResult& result, const std::string& channel) {
   const std::vector<StoredPoint> points = budget_points(result, channel);
-  const std::vector<StoredContribution> rows = contributions_of(points);
+  const std::vector<analysis::Contribution> rows = contributions_of(points);
   if (rows.empty()) {
     return "";
   }
@@ -234,8 +222,9 @@ std::string budget_section(const StoredResult& result, const std::string& channe
   HtmlTable legend(
       "legend", {"", "contribution", "distribution", "in every repetition", "degrees of freedom"});
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const StoredContribution& row = rows[i];
-    legend.row({fmt::format("C{}", i + 1), row.name, row.distribution, row.repeats,
+    const analysis::Contribution& row = rows[i];
+    legend.row({fmt::format("C{}", i + 1), row.name(), std::string(to_string(row.distribution)),
+                std::string(to_string(row.repeats)),
                 std::isfinite(row.degrees_of_freedom)
                     ? fmt::format("{:.0f}", row.degrees_of_freedom)
                     : "infinite"});
@@ -342,9 +331,9 @@ std::string single_results(const ReportContents& contents) {
       table.row({point.frequency_text_hz, std::to_string(point.repetition),
                  point.valid ? magnitude.value : "no value", point.valid ? magnitude.u : "",
                  point.valid ? phase.value : "", point.valid ? phase.u : "",
-                 shown(point.measured_level_m_s2, 3), shown(point.temperature_degc, 1),
-                 std::to_string(point.lost), point.data_sha256.substr(0, 12),
-                 flag_marks(contents.result, point.flag_names)});
+                 shown(point.measured_level_m_s2, 3),
+                 shown(point.temperature_degc.value_or(NAN), 1), std::to_string(point.lost),
+                 point.data_sha256.substr(0, 12), flag_marks(contents.result, point.flag_names)});
     }
     html += fmt::format("<h3>{}</h3>\n", escaped(channel)) + table.finish();
   }

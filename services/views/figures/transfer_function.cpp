@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "services/base/rounding.hpp"
+
 namespace dyncal::services::figures {
 namespace {
 
@@ -144,15 +146,25 @@ std::string csv_of(const TransferFunctionData& data) {
   for (const std::string& line : data.legend) {
     csv += csv_comment("flag " + line);
   }
+  csv += csv_comment("_text: as page, report and certificate show it: of repetitions rounded by u, "
+                     "of means by U and in (-pi, pi]");
   csv += "repetition,frequency_hz,magnitude,u_magnitude,phase_rad,u_phase_rad,flags,U_magnitude,"
-         "U_phase_rad\n";
+         "U_phase_rad,magnitude_text,uncertainty_magnitude_text,phase_rad_text,"
+         "uncertainty_phase_rad_text\n";
   const auto add = [&](const std::string& repetition, const ValueOverFrequency& p) {
-    fmt::format_to(std::back_inserter(csv), "{},{},{},{},{},{},{},{},{}\n", repetition,
+    const bool is_mean = repetition == "mean";
+    const RoundedValue magnitude = round_by_uncertainty(
+        p.value.magnitude, is_mean ? p.expanded_magnitude : p.value.u_magnitude);
+    const RoundedValue phase = is_mean
+                                   ? round_phase(p.stated_phase_rad, p.expanded_phase_rad).radians
+                                   : round_phase(p.value.phase_rad, p.value.u_phase_rad).radians;
+    fmt::format_to(std::back_inserter(csv), "{},{},{},{},{},{},{},{},{},{},{},{},{}\n", repetition,
                    csv_number(p.frequency_hz), csv_number(p.value.magnitude),
                    csv_number(p.value.u_magnitude), csv_number(p.value.phase_rad),
                    csv_number(p.value.u_phase_rad), p.flags,
-                   repetition == "mean" ? csv_number(p.expanded_magnitude) : "",
-                   repetition == "mean" ? csv_number(p.expanded_phase_rad) : "");
+                   is_mean ? csv_number(p.expanded_magnitude) : "",
+                   is_mean ? csv_number(p.expanded_phase_rad) : "", magnitude.value, magnitude.u,
+                   phase.value, phase.u);
   };
   for (const RepetitionPoint& one : data.repetitions) {
     add(std::to_string(one.repetition), one.point);

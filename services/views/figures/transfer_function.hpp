@@ -38,6 +38,7 @@ struct ValueOverFrequency {
   // U: of means; of repetitions only while there are plain means.
   double expanded_magnitude = 0.0;
   double expanded_phase_rad = 0.0;
+  double stated_phase_rad = 0.0; // of means: in (-pi, pi], where the value's is continuous
 };
 
 struct RepetitionPoint {

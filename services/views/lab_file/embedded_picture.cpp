@@ -8,7 +8,7 @@
 #include <fmt/core.h>
 #include <openssl/evp.h>
 
-#include "services/views/report/stored_result.hpp"
+#include "services/base/whole_file.hpp"
 
 namespace dyncal::services {
 namespace {

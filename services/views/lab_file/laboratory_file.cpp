@@ -3,8 +3,8 @@
 #include <fmt/core.h>
 #include <toml++/toml.h>
 
+#include "services/base/whole_file.hpp"
 #include "services/bench/file/toml_text.hpp"
-#include "services/views/report/stored_result.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "services/base/printable_text.hpp"
 #include "services/base/version.hpp"
-#include "services/views/live/run_json.hpp"
 #include "services/views/report/json_number.hpp"
+#include "services/views/report/rounded_json.hpp"
 
 namespace dyncal::services::live {
 namespace {
@@ -51,7 +51,9 @@ Json last_result_json(const Run& run) {
           {"u_phase_rad", json_number(result.u_phase_rad)},
           {"unit", result.unit},
           {"valid", result.valid},
-          {"flags", flags_json(result.flags)}};
+          {"flag_names", names_of(result.flags)},
+          {"text", rounded_json(result.magnitude, result.u_magnitude, result.phase_rad,
+                                result.u_phase_rad)}};
 }
 
 Json recording_json(const Bench& bench, Instant now) {

@@ -1,7 +1,11 @@
-// The results of a run as JSON, with the members and every digit of result files
-// (services/views/report/result_json.hpp) as far as the bus carries them. Plain functions; the
-// thread of the laboratory.
+// The results of a run as the page gets them: as its result file has them
+// (services/views/report/result_json.hpp) as far as the bus carries them, and beside the numbers
+// the texts that the page shows. Plain functions; the thread of the laboratory.
+//
+// Without what the page asks for by itself or does not show: budgets, fits, samples by source.
 #pragma once
+
+#include <string>
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -9,9 +13,6 @@
 
 namespace dyncal::services::live {
 
-// Points, transfer functions and sample clocks.
-[[nodiscard]] nlohmann::ordered_json run_json(const Run& run);
-[[nodiscard]] nlohmann::ordered_json point_json(const StepResult& result);
-[[nodiscard]] nlohmann::ordered_json flags_json(const std::vector<Flag>& flags);
+[[nodiscard]] nlohmann::ordered_json run_json(const std::string& bench, const Run& run);
 
 } // namespace dyncal::services::live

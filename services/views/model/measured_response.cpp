@@ -14,7 +14,7 @@
 
 #include "services/base/byte_count.hpp"
 #include "services/evaluation/shared_phase_uncertainty.hpp"
-#include "services/views/model/result_reader.hpp"
+#include "services/views/report/stored_result.hpp"
 
 namespace dyncal::services {
 namespace {
@@ -25,18 +25,18 @@ constexpr double max_u_magnitude_rel = 0.3;
 // All that is known of one value of the transfer function before what is common is told apart.
 struct RawValue {
   MeasuredValue value;
-  const TransferValue* transfer = nullptr;
-  std::vector<const SinglePoint*> repetitions;
+  const StoredValue* transfer = nullptr;
+  std::vector<const StoredPoint*> repetitions;
 };
 
-std::optional<std::string> reason_to_leave_out(const TransferValue& value,
+std::optional<std::string> reason_to_leave_out(const StoredValue& value,
                                                const ResponseSelection& selection) {
   if (!std::isfinite(value.magnitude) || !std::isfinite(value.phase_rad) ||
       !(value.magnitude > 0.0)) {
     return "it has no value";
   }
-  if (value.expanded_phase_rad > 2.0 * max_u_phase_rad ||
-      value.expanded_magnitude > 2.0 * max_u_magnitude_rel * value.magnitude) {
+  if (value.of_phase.expanded > 2.0 * max_u_phase_rad ||
+      value.of_magnitude.expanded > 2.0 * max_u_magnitude_rel * value.magnitude) {
     return "its u is too large to be of use";
   }
   if (!selection.include_flagged) {
@@ -49,19 +49,19 @@ std::optional<std::string> reason_to_leave_out(const TransferValue& value,
   return std::nullopt;
 }
 
-Expected<void> check_uncertainty(const ResultContents& contents, const TransferValue& value) {
+Expected<void> check_uncertainty(const StoredResult& contents, const StoredValue& value) {
   const auto wrong = [&](const char* key, double u) {
     return fail(ErrorCode::bad_file,
                 fmt::format("{}: {} at {} Hz has {} = {}; a fit weighs with it, so it must be "
                             "above 0: state the uncertainties in the bench file and evaluate again",
-                            contents.file, value.channel, value.frequency_text_hz, key,
+                            contents.file.string(), value.channel, value.frequency_text_hz, key,
                             std::isfinite(u) ? fmt::format("{:g}", u) : "null"));
   };
-  if (!(value.expanded_magnitude > 0.0)) {
-    return wrong("U_magnitude", value.expanded_magnitude);
+  if (!(value.of_magnitude.expanded > 0.0)) {
+    return wrong("U_magnitude", value.of_magnitude.expanded);
   }
-  if (!(value.expanded_phase_rad > 0.0)) {
-    return wrong("U_phase_rad", value.expanded_phase_rad);
+  if (!(value.of_phase.expanded > 0.0)) {
+    return wrong("U_phase_rad", value.of_phase.expanded);
   }
   if (!(value.frequency_hz > 0.0)) {
     return wrong("frequency_hz", value.frequency_hz);
@@ -69,19 +69,20 @@ Expected<void> check_uncertainty(const ResultContents& contents, const TransferV
   return {};
 }
 
-RawValue raw_value(const ResultContents& contents, const TransferValue& transfer) {
+RawValue raw_value(const StoredResult& contents, const StoredValue& transfer) {
   RawValue raw;
   raw.transfer = &transfer;
-  raw.value.file = contents.file;
+  raw.value.file = contents.file.string();
   raw.value.frequency_text_hz = transfer.frequency_text_hz;
   raw.value.point.frequency_hz = transfer.frequency_hz;
   raw.value.point.h = std::polar(transfer.magnitude, transfer.phase_rad);
-  raw.value.u_magnitude_rel = 0.5 * transfer.expanded_magnitude / transfer.magnitude;
-  raw.value.u_phase_rad = 0.5 * transfer.expanded_phase_rad;
+  raw.value.u_magnitude_rel = 0.5 * transfer.of_magnitude.expanded / transfer.magnitude;
+  raw.value.u_phase_rad = 0.5 * transfer.of_phase.expanded;
   raw.value.flag_names = transfer.flag_names;
-  for (const SinglePoint& point : contents.points) {
-    if (point.channel == transfer.channel && point.frequency_hz == transfer.frequency_hz &&
-        point.level_m_s2 == transfer.level_m_s2 && !point.budget.empty()) {
+  for (const StoredPoint& point : contents.points) {
+    if (point.valid && point.channel == transfer.channel &&
+        point.frequency_hz == transfer.frequency_hz && point.level_m_s2 == transfer.level_m_s2 &&
+        !point.budget.empty()) {
       raw.repetitions.push_back(&point);
     }
   }
@@ -93,7 +94,7 @@ std::vector<double> drawn_anew_magnitude_rel(const std::vector<RawValue>& raw) {
   std::vector<analysis::RepeatedFrequency> repeated;
   for (const RawValue& one : raw) {
     repeated.push_back({one.value.point.frequency_hz, {}});
-    for (const SinglePoint* point : one.repetitions) {
+    for (const StoredPoint* point : one.repetitions) {
       analysis::Repetition repetition =
           analysis::make_repetition(std::polar(point->magnitude, point->phase_rad), point->budget);
       repetition.u_common_magnitude_rel = repetition.u_common_phase_rad = 0.0;
@@ -181,7 +182,7 @@ void divide_uncertainties(std::vector<RawValue>& raw, MeasuredResponse& response
 }
 
 Expected<void> check_units(const MeasuredResponse& response, const std::string& first_file,
-                           const ResultContents& contents, const TransferValue& value) {
+                           const StoredResult& contents, const StoredValue& value) {
   if (value.unit == response.unit) {
     return {};
   }
@@ -189,18 +190,18 @@ Expected<void> check_units(const MeasuredResponse& response, const std::string& 
       ErrorCode::bad_file,
       fmt::format("{}: {} is in '{}' but in '{}' in {}; values in different units cannot "
                   "be fitted together: state the units in the bench file and evaluate again",
-                  contents.file, value.channel, value.unit, response.unit, first_file));
+                  contents.file.string(), value.channel, value.unit, response.unit, first_file));
 }
 
-Expected<MeasuredResponse> read_channel(const std::vector<ResultContents>& files,
+Expected<MeasuredResponse> read_channel(const std::vector<StoredResult>& files,
                                         const std::string& channel,
                                         const ResponseSelection& selection) {
   MeasuredResponse response;
   response.channel = channel;
   std::vector<RawValue> raw;
-  const ResultContents* first = nullptr;
-  for (const ResultContents& contents : files) {
-    for (const TransferValue& value : contents.values) {
+  const StoredResult* first = nullptr;
+  for (const StoredResult& contents : files) {
+    for (const StoredValue& value : contents.values) {
       if (value.channel != channel) {
         continue;
       }
@@ -208,16 +209,18 @@ Expected<MeasuredResponse> read_channel(const std::vector<ResultContents>& files
         first = &contents;
         response.unit = value.unit;
       }
-      DYNCAL_TRY(check_units(response, first->file, contents, value));
+      DYNCAL_TRY(check_units(response, first->file.string(), contents, value));
       if (const auto reason = reason_to_leave_out(value, selection)) {
-        response.left_out.push_back({contents.file, value.frequency_text_hz, *reason});
+        response.left_out.push_back({contents.file.string(), value.frequency_text_hz, *reason});
         continue;
       }
       DYNCAL_TRY(check_uncertainty(contents, value));
       raw.push_back(raw_value(contents, value));
     }
-    for (const auto& [source, rate_hz] : contents.source_rates_hz) {
-      if (channel.starts_with(source + "/") && rate_hz > 0.0 && response.sample_rate_hz == 0.0) {
+    for (const ClockReport& report : contents.clocks) {
+      const double rate_hz = report.clock.mean_rate_hz;
+      if (channel.starts_with(report.source + "/") && rate_hz > 0.0 &&
+          response.sample_rate_hz == 0.0) {
         response.sample_rate_hz = rate_hz;
       }
     }
@@ -227,30 +230,31 @@ Expected<MeasuredResponse> read_channel(const std::vector<ResultContents>& files
 }
 
 // In the order of the files.
-std::vector<std::string> channels_of(const std::vector<ResultContents>& files) {
+std::vector<std::string> channels_of(const std::vector<StoredResult>& files) {
   std::vector<std::string> channels;
-  for (const ResultContents& contents : files) {
-    for (const std::string& channel : contents.channels_that_respond) {
-      if (std::find(channels.begin(), channels.end(), channel) == channels.end()) {
-        channels.push_back(channel);
+  for (const StoredResult& contents : files) {
+    for (const StoredChannel& one : contents.channels) {
+      if (one.responds &&
+          std::find(channels.begin(), channels.end(), one.channel) == channels.end()) {
+        channels.push_back(one.channel);
       }
     }
   }
   return channels;
 }
 
-std::string file_names(const std::vector<ResultContents>& files) {
+std::string file_names(const std::vector<StoredResult>& files) {
   std::vector<std::string> names;
   std::transform(files.begin(), files.end(), std::back_inserter(names),
-                 [](const ResultContents& contents) { return contents.file; });
+                 [](const StoredResult& contents) { return contents.file.string(); });
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-Expected<void> check_channels(const std::vector<ResultContents>& files,
+Expected<void> check_channels(const std::vector<StoredResult>& files,
                               const std::vector<std::string>& asked) {
   std::vector<std::string> known;
-  for (const ResultContents& contents : files) {
-    for (const TransferValue& value : contents.values) {
+  for (const StoredResult& contents : files) {
+    for (const StoredValue& value : contents.values) {
       if (std::find(known.begin(), known.end(), value.channel) == known.end()) {
         known.push_back(value.channel);
       }
@@ -309,7 +313,7 @@ Expected<std::vector<MeasuredResponse>>
 read_responses(const std::vector<std::filesystem::path>& files, const ResponseSelection& selection,
                const SharedWorkCount& count) {
   ByteCount bytes(count, "reading", bytes_of_files(files));
-  std::vector<ResultContents> contents;
+  std::vector<StoredResult> contents;
   std::set<std::filesystem::path> read;
   for (const std::filesystem::path& file : files) {
     std::error_code ignored;
@@ -318,7 +322,7 @@ read_responses(const std::vector<std::filesystem::path>& files, const ResponseSe
           ErrorCode::bad_argument,
           fmt::format("{}: this result is given twice, and would count twice", file.string()));
     }
-    DYNCAL_TRY(auto one, read_result(file, bytes));
+    DYNCAL_TRY(auto one, read_values(file, bytes));
     contents.push_back(std::move(one));
   }
   DYNCAL_TRY(check_channels(contents, selection.channels));

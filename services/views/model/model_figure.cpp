@@ -4,8 +4,8 @@
 
 #include <fmt/core.h>
 
+#include "services/base/rounding.hpp"
 #include "services/views/figures/model_residuals.hpp"
-#include "services/views/report/rounding.hpp"
 
 namespace dyncal::services {
 

@@ -10,8 +10,8 @@
 #include <fmt/ranges.h>
 
 #include "services/base/printable_text.hpp"
+#include "services/base/rounding.hpp"
 #include "services/contract/unit.hpp"
-#include "services/views/report/rounding.hpp"
 
 namespace dyncal::services {
 namespace {

@@ -1,50 +1,23 @@
 #include "services/views/report/result_file.hpp"
 
-#include <fmt/core.h>
-#include <nlohmann/json.hpp>
+#include <cmath>
 
-#include "services/base/counted_file.hpp"
+#include "services/views/report/stored_result.hpp"
 
 namespace dyncal::services {
-namespace {
 
-// So that a factor of 2 gives U. Files of versions before the schema have u alone, which was that.
-double half_of_expanded(const nlohmann::json& point, const char* expanded, const char* standard) {
-  const auto found = point.find(expanded);
-  return found != point.end() && found->is_number() ? 0.5 * found->get<double>()
-                                                    : point.at(standard).get<double>();
-}
-
-} // namespace
-
-Expected<ResultPoints> read_result_file(const std::filesystem::path& path) {
-  ByteCount no_progress;
-  return read_result_file(path, no_progress);
+analysis::ComparedResult comparable(const StoredValue& value) {
+  return {value.magnitude, 0.5 * value.of_magnitude.expanded, value.phase_rad,
+          0.5 * value.of_phase.expanded};
 }
 
 Expected<ResultPoints> read_result_file(const std::filesystem::path& path, ByteCount& bytes) {
-  CountedFile file(path, bytes);
-  if (!file.stream()) {
-    return fail(ErrorCode::bad_file, fmt::format("{} cannot be read", path.string()));
-  }
-  const auto json = nlohmann::json::parse(file.stream(), nullptr, false);
+  DYNCAL_TRY(const auto result, read_values(path, bytes));
   ResultPoints points;
-  try {
-    for (const auto& point : json.at("transfer_function")) {
-      if (point.at("magnitude").is_null() || point.at("phase_rad").is_null()) {
-        continue;
-      }
-      points[{point.at("channel"), point.at("frequency_hz")}] = {
-          point.value("unit", ""),
-          {point.at("magnitude"), half_of_expanded(point, "U_magnitude", "u_magnitude"),
-           point.at("phase_rad"), half_of_expanded(point, "U_phase_rad", "u_phase_rad")}};
+  for (const StoredValue& value : result.values) {
+    if (!std::isnan(value.magnitude) && !std::isnan(value.phase_rad)) {
+      points[{value.channel, value.frequency_hz}] = {value.unit, comparable(value)};
     }
-  } catch (const nlohmann::json::exception&) {
-    return fail(ErrorCode::bad_file,
-                fmt::format("{} is not a result of dyncal: it has no "
-                            "'transfer_function' with magnitude and phase, each "
-                            "with its uncertainty",
-                            path.string()));
   }
   return points;
 }

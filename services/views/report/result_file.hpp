@@ -1,8 +1,7 @@
 // The transfer function in a result file of dyncal (the means over repetitions), for commands that
 // go on from results.
 //
-// Points without a value are left out. Fails (bad_file) when the file cannot be read or is not a
-// result. Any thread.
+// Points without a value are left out. Fails (bad_file) as read_values() does. Any thread.
 #pragma once
 
 #include <filesystem>
@@ -13,6 +12,7 @@
 #include "analysis/response/comparison.hpp"
 #include "services/base/byte_count.hpp"
 #include "services/base/error.hpp"
+#include "services/views/report/stored_result.hpp"
 
 namespace dyncal::services {
 
@@ -24,8 +24,9 @@ struct ResultPoint {
 // By channel and frequency in Hz.
 using ResultPoints = std::map<std::pair<std::string, double>, ResultPoint>;
 
-[[nodiscard]] Expected<ResultPoints> read_result_file(const std::filesystem::path& path);
-// Counts what it reads.
+// So that its factor 2 gives the U that was stated.
+[[nodiscard]] analysis::ComparedResult comparable(const StoredValue& value);
+
 [[nodiscard]] Expected<ResultPoints> read_result_file(const std::filesystem::path& path,
                                                       ByteCount& bytes);
 

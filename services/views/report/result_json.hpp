@@ -12,12 +12,14 @@
 
 #include "services/base/error.hpp"
 #include "services/evaluation/result/run_outcome.hpp"
+#include "services/views/report/stored_result.hpp"
 
 namespace dyncal::services {
 
-// Raised with every change of the schema; keys are added, never renamed.
-inline constexpr int result_schema_version = 1;
+// As its file has it.
+[[nodiscard]] StoredResult stored_result_of(const RunOutcome& outcome);
 
+[[nodiscard]] nlohmann::ordered_json result_json(const StoredResult& result);
 [[nodiscard]] nlohmann::ordered_json result_json(const RunOutcome& outcome);
 
 // Fails (bad_file) when the file cannot be written.

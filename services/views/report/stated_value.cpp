@@ -2,17 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/core.h>
 
+#include "services/base/rounding.hpp"
 #include "services/contract/evaluation_method.hpp"
-#include "services/views/report/expanded_uncertainty.hpp"
-#include "services/views/report/rounding.hpp"
 
 namespace dyncal::services {
 namespace {
 
-StatedValue stated(const RoundedValue& rounded, const StoredUncertainty& uncertainty) {
+StatedValue stated(const RoundedValue& rounded, const ExpandedUncertainty& uncertainty) {
   return {rounded.value, rounded.u, fmt::format("{:.2f}", uncertainty.k)};
 }
 
@@ -20,7 +20,20 @@ RoundedPhase rounded_phase(const StoredValue& value) {
   return round_phase(value.phase_rad, value.of_phase.expanded);
 }
 
-bool is_usable(double value, const StoredUncertainty& uncertainty) {
+template <class ValueOf>
+std::string range_of(const std::vector<StoredPoint>& points, int decimals, ValueOf value_of) {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  for (const StoredPoint& point : points) {
+    if (const double value = value_of(point); std::isfinite(value)) {
+      low = std::min(low, value);
+      high = std::max(high, value);
+    }
+  }
+  return low > high ? "" : fmt::format("{:.{}f} to {:.{}f}", low, decimals, high, decimals);
+}
+
+bool is_usable(double value, const ExpandedUncertainty& uncertainty) {
   return std::isfinite(value) && std::isfinite(uncertainty.expanded) &&
          uncertainty.expanded > 0.0 && std::isfinite(uncertainty.k) && uncertainty.k >= 1.0;
 }
@@ -52,6 +65,16 @@ std::string advice_on_repetitions(const std::vector<StoredValue>& values) {
     largest_k = std::max({largest_k, value.of_magnitude.k, value.of_phase.k});
   }
   return advice_on_repetitions(largest_k);
+}
+
+std::string temperature_range(const std::vector<StoredPoint>& points) {
+  return range_of(points, 1, [](const StoredPoint& point) {
+    return point.temperature_degc.value_or(StoredPoint::nan_value);
+  });
+}
+
+std::string level_range(const std::vector<StoredPoint>& points) {
+  return range_of(points, 3, [](const StoredPoint& point) { return point.measured_level_m_s2; });
 }
 
 std::string coverage_percent(double probability) {

@@ -30,6 +30,11 @@ struct StatedValue {
 // That of expanded_uncertainty.hpp, for the largest k of the values; empty where none is large.
 [[nodiscard]] std::string advice_on_repetitions(const std::vector<StoredValue>& values);
 
+// What the sensor measured of its own temperature, in degrees Celsius, and the reference of the
+// excitation, in m/s^2: "27.3 to 28.9"; empty where nothing is known.
+[[nodiscard]] std::string temperature_range(const std::vector<StoredPoint>& points);
+[[nodiscard]] std::string level_range(const std::vector<StoredPoint>& points);
+
 // "95.45 %"
 [[nodiscard]] std::string coverage_percent(double probability);
 

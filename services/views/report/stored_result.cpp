@@ -1,159 +1,125 @@
 #include "services/views/report/stored_result.hpp"
 
 #include <algorithm>
-#include <cerrno>
-#include <cmath>
-#include <cstring>
-#include <fstream>
+#include <array>
 #include <iterator>
-#include <limits>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
+#include "services/base/counted_text.hpp"
+#include "services/base/json_text.hpp"
+#include "services/base/whole_file.hpp"
+#include "services/bench/file/named_files.hpp"
 #include "services/contract/digest.hpp"
+#include "services/views/report/json_members.hpp"
+#include "services/views/report/json_schema.hpp"
+#include "services/views/report/result_schema.hpp"
+#include "services/views/report/stored_members.hpp"
 
 namespace dyncal::services {
 namespace {
 
-constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
+using Json = nlohmann::json;
+
 constexpr std::uintmax_t max_result_bytes = 1U << 30U;
-constexpr double max_count = 9007199254740992.0; // 2^53
 
-double count_of(const CheckedJson& node, const char* key) {
-  const double count = node.number(key);
-  if (!(count >= 0.0 && count <= max_count)) {
-    throw BadKey{fmt::format("{} is not a count", key)};
+// Which may differ between two evaluations of the same samples by the same recipe.
+constexpr std::array volatile_members{"began_utc", "ended_utc", "software", "analysis", "dds"};
+
+tl::unexpected<Error> refuse(const std::filesystem::path& file, const std::string& why) {
+  return fail(ErrorCode::bad_file, fmt::format("{}: {}", file.string(), why));
+}
+
+// Before all else, so that a file of another kind is not called a damaged result.
+std::optional<std::string> other_schema(const Json& json) {
+  const auto schema = json.is_object() ? json.find("schema") : json.end();
+  if (!json.is_object() || schema == json.end() || !schema->is_object()) {
+    return "there is no 'schema' in it, so it is not a result that dyncal 0.2 or later wrote; "
+           "evaluate the run again";
   }
-  return count;
+  const Json name = schema->value("name", Json());
+  const Json version = schema->value("version", Json());
+  if (name != "dyncal-result") {
+    return fmt::format("its schema is {}, not \"dyncal-result\", which dyncal run and dyncal "
+                       "analyse write",
+                       json_text(name).substr(0, 60));
+  }
+  if (version != result_schema_version && version != 1) {
+    return fmt::format("it has version {} of the schema, and this dyncal reads versions 1 to {}; "
+                       "use the dyncal that wrote it, or a newer one",
+                       json_text(version).substr(0, 60), result_schema_version);
+  }
+  return std::nullopt;
 }
 
-unsigned number_of(const CheckedJson& node, const char* key) {
-  return static_cast<unsigned>(
-      std::min(count_of(node, key), double{std::numeric_limits<unsigned>::max()}));
+void rename(Json& object, const char* from, const char* to) {
+  if (object.is_object() && object.contains(from)) {
+    object[to] = std::move(object[from]);
+    object.erase(from);
+  }
 }
 
-std::uint64_t samples_of(const CheckedJson& node, const char* key) {
-  return static_cast<std::uint64_t>(count_of(node, key));
-}
-
-StoredValue value_of(const CheckedJson& node) {
-  return {
-      .channel = node.text("channel"),
-      .frequency_text_hz = node.text("frequency_text_hz"),
-      .frequency_hz = node.number("frequency_hz"),
-      .level_m_s2 = node.number("level_m_s2"),
-      .magnitude = node.number("magnitude"),
-      .of_magnitude = {node.number("u_magnitude"), node.number("k_magnitude"),
-                       node.number("U_magnitude")},
-      .phase_rad = node.number("phase_rad"),
-      .unwrapped_phase_rad = node.number("unwrapped_phase_rad"),
-      .of_phase = {node.number("u_phase_rad"), node.number("k_phase"), node.number("U_phase_rad")},
-      .coverage_probability = node.number("coverage_probability"),
-      .unit = node.text("unit"),
-      .repetitions = number_of(node, "repetitions"),
-      .flags = node.texts("flags"),
-      .flag_names = node.texts("flag_names")};
-}
-
-StoredContribution contribution_of(const CheckedJson& node) {
-  return {.name = node.text("name"),
-          .distribution = node.text("distribution"),
-          .repeats = node.text("repeats"),
-          .degrees_of_freedom = node.number("degrees_of_freedom"),
-          .u_magnitude_rel = node.number("u_magnitude_rel"),
-          .u_phase_rad = node.number("u_phase_rad")};
-}
-
-// Of the channel itself; results of older versions have none.
-double residual_of(const CheckedJson& point) {
-  if (point.has("signals")) {
-    for (const CheckedJson& signal : point.nodes("signals")) {
-      if (signal.text("channel") == point.text("channel")) {
-        return signal.number("residual_rel");
-      }
+// "noise of" of version 1 is "fit_noise"; what is not known is left, for the schema to refuse.
+void name_kind(Json& row) {
+  if (!row.is_object() || !row.contains("kind")) {
+    return;
+  }
+  for (int i = 0; i <= static_cast<int>(analysis::ContributionKind::other); ++i) {
+    const auto kind = static_cast<analysis::ContributionKind>(i);
+    if (row["kind"] == std::string(to_string(kind))) {
+      row["kind"] = std::string(identifier_of(kind));
+      return;
     }
   }
-  return not_known;
 }
 
-StoredPoint point_of(const CheckedJson& node) {
-  StoredPoint point{.channel = node.text("channel"),
-                    .frequency_text_hz = node.text("frequency_text_hz"),
-                    .frequency_hz = node.number("frequency_hz"),
-                    .level_m_s2 = node.number("level_m_s2"),
-                    .step = number_of(node, "step"),
-                    .repetition = number_of(node, "repetition"),
-                    .valid = node.boolean("valid"),
-                    .problem = node.text_or("problem", ""),
-                    .magnitude = node.number("magnitude"),
-                    .u_magnitude = node.number("u_magnitude"),
-                    .phase_rad = node.number("phase_rad"),
-                    .u_phase_rad = node.number("u_phase_rad"),
-                    .measured_frequency_hz = node.number_or("measured_frequency_hz", not_known),
-                    .measured_level_m_s2 = node.number_or("measured_level_m_s2", not_known),
-                    .temperature_degc = node.number_or("temperature_degc", not_known),
-                    .residual_rel = residual_of(node),
-                    .has_monte_carlo = node.has("monte_carlo"),
-                    .lost = samples_of(node, "lost"),
-                    .data_sha256 = node.text("data_sha256"),
-                    .budget = {},
-                    .flag_names = node.texts("flag_names")};
-  for (const CheckedJson& row : node.nodes("budget")) {
-    point.budget.push_back(contribution_of(row));
-  }
-  return point;
-}
-
-void check_schema(const CheckedJson& root) {
-  if (!root.has("schema")) {
-    throw BadKey{"there is no key 'schema', so it is not a result that dyncal 0.2 or later wrote; "
-                 "evaluate the run again"};
-  }
-  const std::string name = root.node("schema").text("name");
-  if (name != "dyncal-result") {
-    throw BadKey{fmt::format("the schema is '{}', but documents are made of a 'dyncal-result', "
-                             "which dyncal run and dyncal analyse write",
-                             name)};
+// What is no list is left, for the schema to refuse.
+template <class Change>
+void for_each_in(Json& json, const char* name, Change change) {
+  if (json.is_object() && json.contains(name) && json[name].is_array()) {
+    std::for_each(json[name].begin(), json[name].end(), change);
   }
 }
 
-void read_head(const CheckedJson& root, StoredResult& result) {
-  result.bench = root.text("bench");
-  result.run = root.text("run");
-  result.method = root.text("method");
-  result.began_utc = root.text_or("began_utc", "");
-  result.ended_utc = root.text_or("ended_utc", "");
-  result.software = root.text("software");
-  result.problem = root.text("problem");
-  result.interrupted = root.boolean("interrupted");
-  result.planned_steps = number_of(root, "planned_steps");
-  result.recipe_sha256 = root.text("recipe_sha256");
+// Names that meant two things have one meaning since version 2.
+void upgrade(Json& json) {
+  if (json["schema"]["version"] != 1) {
+    return;
+  }
+  json["schema"]["version"] = result_schema_version;
+  rename(json, "flags", "flag_legend");
+  for_each_in(json, "sample_clock", [](Json& clock) {
+    rename(clock, "events", "event_count");
+    rename(clock, "event_list", "events");
+  });
+  for_each_in(json, "points", [](Json& point) { for_each_in(point, "budget", name_kind); });
 }
 
-void read_contents(StoredResult& result) {
-  const CheckedJson root = result.root();
-  check_schema(root);
-  read_head(root, result);
-  for (const CheckedJson& flag : root.nodes("flags")) {
-    result.flags.push_back({flag.text("name"), flag.texts("sentences"), flag.text("meaning")});
+// The schema cannot say this.
+std::optional<std::string> contradiction(const StoredResult& result) {
+  const auto valid = std::count_if(result.points.begin(), result.points.end(),
+                                   [](const StoredPoint& point) { return point.valid; });
+  if (valid > 0 && result.values.empty()) {
+    return fmt::format("transfer_function is empty, but {} single results have a value: the file "
+                       "was changed",
+                       valid);
   }
-  for (const CheckedJson& channel : root.nodes("channels")) {
-    result.channels.push_back({.channel = channel.text("channel"),
-                               .unit = channel.text("unit"),
-                               .responds = channel.boolean("responds"),
-                               .lost = samples_of(channel, "lost"),
-                               .flag_names = channel.texts("flag_names")});
+  return std::nullopt;
+}
+
+std::string content_sha256(Json json) {
+  for (const char* member : volatile_members) {
+    json.erase(member);
   }
-  for (const CheckedJson& value : root.nodes("transfer_function")) {
-    result.values.push_back(value_of(value));
+  return sha256_hex(json_text(json));
+}
+
+Expected<StoredResult> with_values(Expected<StoredResult> result) {
+  if (result && result->values.empty()) {
+    return refuse(result->file, "the run has no value (transfer_function is empty)");
   }
-  for (const CheckedJson& point : root.nodes("points")) {
-    result.points.push_back(point_of(point));
-  }
-  if (result.values.empty()) {
-    throw BadKey{"the run has no value (transfer_function is empty), so there is nothing to make a "
-                 "document of"};
-  }
+  return result;
 }
 
 template <class Item>
@@ -166,6 +132,13 @@ std::vector<Item> those_of(const std::vector<Item>& all, const std::string& chan
 
 } // namespace
 
+double StoredPoint::residual_rel() const {
+  const auto own = std::find_if(signals.begin(), signals.end(), [&](const ChannelSignal& signal) {
+    return signal.channel == channel;
+  });
+  return own == signals.end() ? nan_value : own->residual;
+}
+
 std::vector<StoredValue> StoredResult::values_of(const std::string& channel) const {
   return those_of(values, channel);
 }
@@ -174,62 +147,83 @@ std::vector<StoredPoint> StoredResult::points_of(const std::string& channel) con
   return those_of(points, channel);
 }
 
-std::filesystem::path result_file_of(const std::filesystem::path& run) {
-  std::error_code unknown;
-  return std::filesystem::is_directory(run, unknown) ? run / "result.json" : run;
-}
-
-Expected<std::string> read_whole_file(const std::filesystem::path& path, std::uintmax_t max_bytes) {
-  std::error_code unknown;
-  if (std::filesystem::is_directory(path, unknown)) {
-    return fail(ErrorCode::bad_file,
-                fmt::format("{}: is a folder; name a file in it", path.string()));
-  }
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) {
-    return fail(ErrorCode::bad_file,
-                fmt::format("{}: cannot be read ({})", path.string(), std::strerror(errno)));
-  }
-  std::string text;
-  std::string part(1U << 16U, '\0');
-  while (stream.read(part.data(), static_cast<std::streamsize>(part.size())) ||
-         stream.gcount() > 0) {
-    text.append(part, 0, static_cast<std::size_t>(stream.gcount()));
-    if (text.size() > max_bytes) {
-      return fail(ErrorCode::bad_file, fmt::format("{}: is larger than {} bytes, which no such "
-                                                   "file needs; is it the right one?",
-                                                   path.string(), max_bytes));
+std::vector<StoredPoint> StoredResult::points_of(const std::vector<std::string>& names) const {
+  std::vector<StoredPoint> chosen;
+  for (const std::string& channel : names) {
+    for (StoredPoint& point : points_of(channel)) {
+      chosen.push_back(std::move(point));
     }
   }
-  if (stream.bad()) {
-    return fail(ErrorCode::bad_file, fmt::format("{}: cannot be read whole", path.string()));
-  }
-  return text;
+  return chosen;
 }
 
-Expected<StoredResult> read_stored_result(const std::filesystem::path& run) {
+const analysis::GroupDelay* StoredResult::group_delay_of(const std::string& channel) const {
+  const auto found = std::find_if(group_delays.begin(), group_delays.end(),
+                                  [&](const StoredDelay& one) { return one.channel == channel; });
+  return found == group_delays.end() ? nullptr : &found->delay;
+}
+
+std::filesystem::path result_file_of(const std::filesystem::path& run) {
+  std::error_code unknown;
+  return std::filesystem::is_directory(run, unknown) ? run / result_file_name : run;
+}
+
+Expected<StoredResult> result_of_text(const std::string& text, const std::filesystem::path& file,
+                                      ByteCount& count) {
+  static const Json schema = Json::parse(result_schema_text());
+  const std::uint64_t done = count.done();
+  const CountedText counted(text, count);
+  Json json = Json::parse(counted.begin(), counted.end(), nullptr, false);
+  count.set_done(done + text.size());
+  if (json.is_discarded()) {
+    return refuse(file, "not JSON, or not all of it; give a file that dyncal run or dyncal analyse "
+                        "wrote");
+  }
+  if (const auto other = other_schema(json)) {
+    return refuse(file, *other);
+  }
+  upgrade(json);
+  if (const auto deviation = deviation_from(schema, json)) {
+    return refuse(file, *deviation);
+  }
   StoredResult result;
-  result.file = result_file_of(run);
-  const auto text = read_whole_file(result.file, max_result_bytes);
+  JsonReader reader(json);
+  members(reader, result);
+  if (const auto wrong = contradiction(result)) {
+    return refuse(file, *wrong);
+  }
+  result.file = file;
+  result.sha256 = sha256_hex(text);
+  result.content_sha256 = content_sha256(json);
+  return result;
+}
+
+Expected<std::string> read_result_text(const std::filesystem::path& run) {
+  auto text = read_whole_file(result_file_of(run), max_result_bytes);
   if (!text) {
     return fail(ErrorCode::bad_file, text.error().message +
                                          "; give a run folder, or a result file that dyncal run or "
                                          "dyncal analyse wrote");
   }
-  result.sha256 = sha256_hex(*text);
-  result.json =
-      std::make_shared<const nlohmann::json>(nlohmann::json::parse(*text, nullptr, false));
-  if (result.json->is_discarded()) {
-    return fail(ErrorCode::bad_file, fmt::format("{}: not JSON, or not all of it; give a file that "
-                                                 "dyncal run or dyncal analyse wrote",
-                                                 result.file.string()));
-  }
-  try {
-    read_contents(result);
-  } catch (const BadKey& bad) {
-    return fail(ErrorCode::bad_file, fmt::format("{}: {}", result.file.string(), bad.sentence));
-  }
-  return result;
+  return text;
+}
+
+Expected<StoredResult> read_result(const std::filesystem::path& run, ByteCount& count) {
+  const auto text = read_result_text(run);
+  return text ? result_of_text(*text, result_file_of(run), count) : fail(text.error());
+}
+
+Expected<StoredResult> read_result(const std::filesystem::path& run) {
+  ByteCount no_progress;
+  return read_result(run, no_progress);
+}
+
+Expected<StoredResult> read_values(const std::filesystem::path& run, ByteCount& count) {
+  return with_values(read_result(run, count));
+}
+
+Expected<StoredResult> read_values(const std::filesystem::path& run) {
+  return with_values(read_result(run));
 }
 
 } // namespace dyncal::services

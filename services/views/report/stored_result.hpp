@@ -1,81 +1,71 @@
-// A result file (result.schema.json) read back whole, for documents that are made of it: values
-// with U and k, single results with their budgets, losses and flags, and the SHA-256 of the file.
+// A result file (result.schema.json) read back whole: values with U and k, single results with
+// their budgets, losses and flags, what was measured with, and the SHA-256 of the file.
 //
-// What documents state as numbers is checked key by key here; what they only describe (devices,
-// corrections, sample clock) is read from `json` where it is shown, by CheckedJson. Phase is lead
-// in rad; NaN: null in the file.
+// read_result() is the only reader of result files. It holds them against the schema that is
+// installed, so that all commands refuse the same file with the same sentence, which names file and
+// key. Members that it does not know are ignored: later versions add some. Phase is lead in rad;
+// NaN: null in the file.
 //
-// Fails (bad_file) when the file does not exist, is not JSON, has another schema, lacks a key, or
-// states no value; the sentence names file and key. Any thread.
+// Fails (bad_file) when the file does not exist, is not JSON, has another schema or version,
+// deviates from it, or has single results but no transfer function of them; read_values() also when
+// the run has no value at all, as one has that was ended early. Any thread.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
+#include "services/base/byte_count.hpp"
 #include "services/base/error.hpp"
-#include "services/views/report/checked_json.hpp"
+#include "services/evaluation/result/run_outcome.hpp"
+#include "services/views/report/expanded_uncertainty.hpp"
 
 namespace dyncal::services {
 
-struct StoredUncertainty {
-  double u = 0.0; // k = 1
-  double k = 2.0;
-  double expanded = 0.0; // U
-};
+// Raised with every change of the schema beyond new keys, which readers ignore.
+inline constexpr int result_schema_version = 2;
 
 struct StoredValue { // a mean over repetitions
   std::string channel;
+  std::string unit;
   std::string frequency_text_hz;
   double frequency_hz = 0.0;
   double level_m_s2 = 0.0; // as planned
   double magnitude = 0.0;
-  StoredUncertainty of_magnitude;
-  double phase_rad = 0.0; // within (-pi, pi]
+  ExpandedUncertainty of_magnitude;
+  double phase_rad = 0.0;       // within (-pi, pi]
+  ExpandedUncertainty of_phase; // rad
   double unwrapped_phase_rad = 0.0;
-  StoredUncertainty of_phase; // rad
-  double coverage_probability = 0.0;
-  std::string unit;
+  double scatter_magnitude = 0.0; // standard deviation of one repetition
+  double scatter_phase_rad = 0.0;
   unsigned repetitions = 0;
-  std::vector<std::string> flags; // sentences
+  double coverage_probability = 0.0;
+  double u_independent_phase_rad = 0.0; // U / 2 without what repeats
+  std::vector<std::string> flags;       // sentences
   std::vector<std::string> flag_names;
 };
 
-struct StoredContribution {
-  std::string name;
-  std::string distribution;
-  std::string repeats;
-  double degrees_of_freedom = 0.0; // NaN: infinite
-  double u_magnitude_rel = 0.0;
-  double u_phase_rad = 0.0;
+struct StoredFit {
+  analysis::ChannelFit fit;
+  std::string role; // of the channel; empty: not known
 };
 
-struct StoredPoint { // one repetition
-  std::string channel;
-  std::string frequency_text_hz;
-  double frequency_hz = 0.0;
-  double level_m_s2 = 0.0;
-  unsigned step = 0;
-  unsigned repetition = 0;
-  bool valid = false;
-  std::string problem; // why it is not valid
-  double magnitude = 0.0;
-  double u_magnitude = 0.0;
-  double phase_rad = 0.0;
-  double u_phase_rad = 0.0;
-  double measured_frequency_hz = 0.0; // NaN: not known, like those below
-  double measured_level_m_s2 = 0.0;
-  double temperature_degc = 0.0;
-  double residual_rel = 0.0; // of the fit of the channel, over its amplitude
-  bool has_monte_carlo = false;
-  std::uint64_t lost = 0;
-  std::string data_sha256;
-  std::vector<StoredContribution> budget;
+// One repetition. Read back, it has no fits, and of the Monte Carlo check what was stated.
+struct StoredPoint : StepResult {
+  std::vector<std::string> sentences; // of its flags
   std::vector<std::string> flag_names;
+  ExpandedUncertainty of_magnitude;
+  ExpandedUncertainty of_phase;
+  double measured_frequency_hz = nan_value; // NaN: not known, as those below
+  double u_measured_frequency_hz = nan_value;
+  double measured_level_m_s2 = nan_value;
+  double u_measured_level_m_s2 = nan_value;
+  std::optional<StoredFit> own_fit;
+
+  // Of the fit of the channel, over its amplitude; NaN: not known.
+  [[nodiscard]] double residual_rel() const;
 };
 
 struct StoredChannel {
@@ -83,7 +73,14 @@ struct StoredChannel {
   std::string unit;
   bool responds = false;
   std::uint64_t lost = 0;
+  std::vector<std::string> flags; // sentences
   std::vector<std::string> flag_names;
+  std::optional<std::string> group_delay_problem;
+};
+
+struct StoredDelay {
+  std::string channel;
+  analysis::GroupDelay delay;
 };
 
 struct StoredFlag {
@@ -92,37 +89,94 @@ struct StoredFlag {
   std::string meaning;
 };
 
+struct StoredRoles { // "source/channel"; empty: none
+  std::string reference;
+  std::string excitation;
+  std::string sync_acs;
+  std::string sync_dau;
+  std::string sync_dso;
+  std::vector<std::string> dut;
+  std::string temperature;
+};
+
+struct StoredCorrection { // what one correction does to H at one frequency
+  std::string name;
+  double phase_rad = 0.0;
+  double u_phase_rad = 0.0;
+  std::optional<double> magnitude_factor;
+  std::optional<double> u_magnitude_rel;
+};
+
+struct StoredStep { // as planned, and what reference and sync show of it
+  unsigned step = 0;
+  unsigned repetition = 0;
+  std::string frequency_text_hz;
+  double frequency_hz = 0.0;
+  double level_m_s2 = 0.0;
+  double settling_s = 0.0;
+  double duration_s = 0.0;
+  std::vector<StoredCorrection> corrections;
+  std::vector<StoredFit> fits; // not read back
+};
+
+struct StoredCorrections { // as the recipe has them for all steps
+  double reference_delay_s = 0.0;
+  std::optional<std::vector<analysis::AdcCalibrationPoint>> adc_calibration;
+  std::optional<AdcFile> adc_file; // of adc_calibration
+  std::optional<double> dso_delay_s;
+  double u_dso_delay_s = 0.0;
+  bool trigger_phase_correction = false;
+};
+
 struct StoredResult {
   std::filesystem::path file;
   std::string sha256; // of the file
   std::string bench;
   std::string run;
   std::string method;
-  std::string began_utc; // empty: not known
-  std::string ended_utc;
   std::string software;
-  std::string problem;
-  bool interrupted = false;
+  std::string analysis_software; // empty: not known
+  std::string analysis_host;
+  std::string analysis_dds; // "none": without a network
+  std::string began_utc;    // empty: not known
+  std::string ended_utc;
   unsigned planned_steps = 0;
+  bool interrupted = false;
+  std::string problem;
   std::string recipe_sha256;
   std::vector<StoredFlag> flags;
+  std::vector<RunSource> sources;
+  std::vector<RunPause> pauses;
+  std::optional<StoredRoles> roles;
+  std::optional<StoredCorrections> corrections;
+  std::vector<StoredStep> steps; // as planned
   std::vector<StoredChannel> channels;
   std::vector<StoredValue> values;
+  std::vector<StoredDelay> group_delays;
+  std::vector<ClockReport> clocks;
   std::vector<StoredPoint> points;
-  std::shared_ptr<const nlohmann::json> json; // the whole file
+  std::string recipe;         // text of the bench file
+  std::string content_sha256; // without what another evaluation of the same samples may change
 
-  [[nodiscard]] CheckedJson root() const { return {*json, ""}; }
   [[nodiscard]] std::vector<StoredValue> values_of(const std::string& channel) const;
   [[nodiscard]] std::vector<StoredPoint> points_of(const std::string& channel) const;
+  [[nodiscard]] std::vector<StoredPoint> points_of(const std::vector<std::string>& names) const;
+  // Null: the channel has none.
+  [[nodiscard]] const analysis::GroupDelay* group_delay_of(const std::string& channel) const;
 };
 
 // The result file of a run: result.json in a run folder; a file is that file itself.
 [[nodiscard]] std::filesystem::path result_file_of(const std::filesystem::path& run);
 
-[[nodiscard]] Expected<StoredResult> read_stored_result(const std::filesystem::path& run);
-
-// A whole file; fails (bad_file) with its name and the reason, and for more than `max_bytes`.
-[[nodiscard]] Expected<std::string> read_whole_file(const std::filesystem::path& path,
-                                                    std::uintmax_t max_bytes);
+[[nodiscard]] Expected<StoredResult> read_result(const std::filesystem::path& run);
+[[nodiscard]] Expected<StoredResult> read_result(const std::filesystem::path& run,
+                                                 ByteCount& count);
+[[nodiscard]] Expected<StoredResult> read_values(const std::filesystem::path& run);
+[[nodiscard]] Expected<StoredResult> read_values(const std::filesystem::path& run,
+                                                 ByteCount& count);
+// The text of that file, and what the text of a file of this name holds.
+[[nodiscard]] Expected<std::string> read_result_text(const std::filesystem::path& run);
+[[nodiscard]] Expected<StoredResult>
+result_of_text(const std::string& text, const std::filesystem::path& file, ByteCount& count);
 
 } // namespace dyncal::services

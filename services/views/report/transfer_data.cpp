@@ -10,6 +10,7 @@
 
 #include <fmt/core.h>
 
+#include "analysis/base/phasor.hpp"
 #include "services/contract/run_identity.hpp"
 #include "services/contract/unit.hpp"
 #include "services/views/report/expanded_uncertainty.hpp"
@@ -98,7 +99,8 @@ figures::TransferFunctionData transfer_data(const RunOutcome& outcome,
                          {point.mean.magnitude, magnitude.u, point.unwrapped_phase_rad, phase.u},
                          flag_names(flags_of(outcome, function.channel, point)),
                          magnitude.expanded,
-                         phase.expanded});
+                         phase.expanded,
+                         point.mean.phase_rad});
   }
   data.group_delay = function.group_delay;
   return data;
@@ -124,6 +126,7 @@ figures::TransferFunctionData transfer_data_so_far(const RunOutcome& outcome,
     if (!data.mean.empty()) {
       mean.value.phase_rad = in_turn_of(mean.value.phase_rad, data.mean.back().value.phase_rad);
     }
+    mean.stated_phase_rad = analysis::wrap_phase(mean.value.phase_rad);
     data.mean.push_back(std::move(mean));
   }
   return data;

@@ -53,7 +53,9 @@ class HostileText(PageCase):
                               "message": IMAGE}
         result = {**played_state.point(1), "channel": f"dau/{IMAGE}", "unit": IMAGE,
                   "frequency_text_hz": IMAGE,
-                  "flags": [{"name": t, "text": t, "meaning": t} for t in HOSTILE]}
+                  "flags": HOSTILE, "flag_names": HOSTILE}
+        self.laboratory.flag_legend = [
+            {"name": t, "sentences": [t], "meaning": t} for t in HOSTILE]
         self.laboratory.measure(IMAGE, 1, result)
         self.laboratory.measure(IMAGE, 2, {**result, "step": 2, "valid": False, "problem": IMAGE})
         figure = {**played_figures.panel(IMAGE, IMAGE), "band_label": IMAGE, "dots_label": IMAGE,

@@ -47,6 +47,7 @@ class Laboratory:
         self.signal_changes = {}
         self.stream_gap_s = 0.25
         self.files = {}
+        self.flag_legend = [state.FLAG]
         self.figure_changes = {}  # of every picture
         self.figures_wait = None  # an event: no figures before it is set
 
@@ -77,7 +78,8 @@ class Laboratory:
         result = result or state.point(step)
         self.points[name] = [p for p in self.points[name] if p["step"] != step] + [result]
         shown = {k: result[k] for k in ("channel", "frequency_text_hz", "magnitude", "u_magnitude",
-                                        "phase_rad", "u_phase_rad", "unit", "valid", "flags")}
+                                        "phase_rad", "u_phase_rad", "unit", "valid", "flag_names",
+                                        "text")}
         points = self.points[name]
         self.benches[name].update(
             step=step, repetition=result["repetition"], level_m_s2=result["level_m_s2"],
@@ -141,8 +143,9 @@ class Laboratory:
         return self.stamped({
             "bench": name, "run": run or self.benches[name]["run"],
             "state": self.benches[name]["state"], "message": "", "points": self.points[name],
-            "transfer": [state.transfer(self.points[name])] if is_over else [],
-            "clock": [state.clock_report()] if is_over else [], "runs": self.runs[name],
+            "transfer_function": state.transfer(self.points[name]) if is_over else [],
+            "channels": [state.channel()] if is_over else [], "flag_legend": self.flag_legend,
+            "sample_clock": [state.clock_report()] if is_over else [], "runs": self.runs[name],
             "files": [{"name": n, "bytes": len(t), "href": f"/files/{name}/run-1/{n}"}
                       for n, t in self.files.items()]})
 
@@ -153,7 +156,7 @@ class Laboratory:
         is_over = self.is_over[name]
         line = f"bench {name}, run {run}"
         pictures = played_figures.of_channel(
-            channel, line, points, state.transfer(points)["points"], is_over, bars)
+            channel, line, points, state.transfer(points), is_over, bars)
         if is_over:
             pictures += played_figures.of_clock(state.clock_report(), line)
         return {"number": self.number, "bench": name, "run": run, "channel": channel,

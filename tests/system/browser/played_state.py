@@ -27,9 +27,23 @@ def level(frequency_hz):
     return 2.5 if frequency_hz < 16 else 10.0
 
 
-FLAG = {"name": "samples_lost", "text": "dau: samples lost",
+FLAG = {"name": "samples_lost", "sentences": ["dau: samples lost"],
         "meaning": "samples of this source are missing within the step and the fit uses the "
                    "others; check its network, its buffers and the load of its computer"}
+
+
+def rounded(value, u):
+    """A value and its u as the daemon rounds them, by arithmetic of its own."""
+    if value is None:
+        return {"value": None, "u": None}
+    places = max(0, 1 - math.floor(math.log10(u)))
+    return {"value": f"{value:.{places}f}", "u": f"{u:.{places}f}"}
+
+
+def rounded_texts(magnitude, u_magnitude, phase, u_phase):
+    degrees = None if phase is None else math.degrees(phase)
+    return {"magnitude": rounded(magnitude, u_magnitude), "phase_rad": rounded(phase, u_phase),
+            "phase_deg": rounded(degrees, u_phase and math.degrees(u_phase))}
 
 
 def point(step, seed=0):
@@ -49,14 +63,18 @@ def point(step, seed=0):
         "phase_rad": math.remainder(phase, 2 * math.pi), "u_phase_rad": u_phase,
         "U_magnitude": 2 * magnitude * u_rel, "k_magnitude": 2.0, "U_phase_rad": 2 * u_phase,
         "k_phase": 2.0, "unit": "\\one", "lost": 12 if step == 9 else 0,
-        "flags": [FLAG] if step == 9 else [], "provisional": False,
+        "flags": [FLAG["sentences"][0]] if step == 9 else [],
+        "flag_names": [FLAG["name"]] if step == 9 else [], "provisional": False,
+        "text": rounded_texts(magnitude, magnitude * u_rel, math.remainder(phase, 2 * math.pi),
+                              u_phase),
         "sample_rate_hz": 1000.0, "u_sample_rate_hz": 1e-4,
     }
 
 
 def invalid_point(step):
     return {**point(step), "valid": False, "problem": "no samples of dau/x_acceleration",
-            "magnitude": None, "u_magnitude": None, "phase_rad": None, "u_phase_rad": None}
+            "magnitude": None, "u_magnitude": None, "phase_rad": None, "u_phase_rad": None,
+            "text": rounded_texts(None, None, None, None)}
 
 
 def transfer(points):
@@ -74,32 +92,42 @@ def transfer(points):
         before = phase + 2 * math.pi * round((before - phase) / (2 * math.pi))
         u = max(p["u_magnitude"] for p in group) / math.sqrt(n)
         u_phase = max(p["u_phase_rad"] for p in group) / math.sqrt(n)
+        wrapped = math.remainder(phase, 2 * math.pi)
         means.append({
-            "frequency_text_hz": text, "frequency_hz": float(text),
+            "channel": CHANNEL, "unit": "\\one", "frequency_text_hz": text,
+            "frequency_hz": float(text),
             "level_m_s2": group[0]["level_m_s2"], "magnitude": magnitude, "u_magnitude": u,
             "U_magnitude": 2.1 * u, "k_magnitude": 2.1,
-            "phase_rad": math.remainder(phase, 2 * math.pi), "u_phase_rad": u_phase,
+            "phase_rad": wrapped, "u_phase_rad": u_phase,
             "U_phase_rad": 2.05 * u_phase, "k_phase": 2.05, "unwrapped_phase_rad": before,
             "scatter_magnitude": u, "scatter_phase_rad": u_phase, "repetitions": n,
             "flags": [flag for p in group for flag in p["flags"]],
+            "flag_names": [name for p in group for name in p["flag_names"]],
+            "text": rounded_texts(magnitude, 2.1 * u, wrapped, 2.05 * u_phase),
         })
-    return {"channel": CHANNEL, "unit": "\\one", "points": means, "group_delay_s": 1.7003e-3,
-            "u_group_delay_s": 1.2e-6, "group_delay_problem": "", "flags": [],
-            "advice": "Repeat more often."}
+    return means
+
+
+def channel():
+    return {"channel": CHANNEL, "unit": "\\one", "responds": True, "lost": 12, "flags": [],
+            "flag_names": [], "advice": "Repeat more often.",
+            "text": {"group_delay_ms": {"value": "1.7003", "u": "0.0012"}}}
 
 
 def clock_report():
+    """As the page gets it; with what its figures are made of."""
     histogram = [{"interval_ns": 999000 + 16.7 * i,
                   "interval_count": int(30000 * math.exp(-((i - 60) / 14) ** 2)) + 1}
                  for i in range(120)]
     course = [{"time_s": t, "min_interval_ns": 999100 + 50 * math.sin(t / 90),
                "max_interval_ns": 1000900 + 50 * math.sin(t / 90),
                "mean_interval_ns": 1000000 + 40 * math.sin(t / 90)} for t in range(0, 600, 2)]
-    return {"source": "dau", "interval_count": 612345, "mean_interval_s": 1.00000312e-3,
-            "u_mean_interval_s": 2.1e-10, "sd_interval_s": 2.3e-7, "min_interval_s": 9.99e-4,
-            "max_interval_s": 1.001e-3, "mean_rate_hz": 999.99688, "nominal_rate_hz": 1000.0,
-            "tick_s": 1.67e-8, "event_count": 3, "lost": 12, "flags": [], "histogram": histogram,
-            "over_time": course}
+    return {"source": "dau", "count": 612345, "mean_interval_s": 1.00000312e-3,
+            "u_mean_interval_s": 2.1e-10, "sd_s": 2.3e-7, "min_s": 9.99e-4, "max_s": 1.001e-3,
+            "mean_rate_hz": 999.99688, "nominal_rate_hz": 1000.0, "tick_s": 1.67e-8,
+            "event_count": 3,
+            "lost": 12, "flags": [], "flag_names": [], "histogram": histogram, "over_time": course,
+            "text": {"mean_interval_us": {"value": "1000.00312", "u": "0.00021"}}}
 
 
 def sources(last_message_ms):
@@ -164,9 +192,10 @@ def fit():
         left = [0.004 * amplitude * math.sin(2 * math.pi * 48 * t + 1) for t in ts]
         return {"channel": channel, "unit": unit,
                 "fit": {"frequency_hz": 16.00031, "u_frequency_hz": 2.2e-5, "sine": amplitude,
-                        "cosine": 0.0, "offset": 0.0, "u_sine": 1e-4 * amplitude,
-                        "u_cosine": 1e-4 * amplitude, "residual_rms": 0.003 * amplitude,
-                        "sample_count": 10000},
+                        "cosine": 0.0, "offset": 0.0, "amplitude": amplitude,
+                        "u_amplitude": 1e-4 * amplitude, "residual_rms": 0.003 * amplitude,
+                        "sample_count": 10000,
+                        "text": {"amplitude": rounded(amplitude, 1e-4 * amplitude)}},
                 "columns": [[t, y + r, y + r] for t, y, r in zip(ts, wave, left)],
                 "model": [[t, y] for t, y in zip(ts, wave)],
                 "residual_columns": [[t, r, r] for t, r in zip(ts, left)]}
@@ -184,7 +213,7 @@ def budget(channel, step, repetition):
             ("mains_hum", channel, 4e-5, 4e-5)]
     p = point(int(step))
     return {**{k: p[k] for k in ("frequency_text_hz", "magnitude", "u_magnitude", "phase_rad",
-                                 "u_phase_rad", "unit")},
+                                 "u_phase_rad", "unit", "text")},
             "channel": channel, "step": int(step), "repetition": int(repetition),
             "contributions": [
                 {"kind": kind, "subject": subject, "name": kind.replace("_", " "),
@@ -197,7 +226,8 @@ def history(sensor):
     for i, name in enumerate(("run-38", "run-39", "run-40")):
         points = [point(step, seed=i + 1) for step in range(1, 3 * len(FREQUENCIES) + 1)]
         runs.append({"run": name, "bench": "acc-1", "utc_ms": BEGIN_UTC_MS + 86400000 * (i - 3),
-                     **{k: v for k, v in transfer(points).items() if k != "flags"}})
+                     "state": "done", "channel": CHANNEL, "unit": "\\one",
+                     "points": transfer(points)})
     errors = []
     for a, b in ((0, 1), (0, 2), (1, 2)):
         for p, q in zip(runs[a]["points"], runs[b]["points"]):

@@ -5,7 +5,7 @@
 
 import { element, name_element, set_attribute, set_name, set_shown, set_text } from "./element.js";
 import {
-  count_text, duration_text, full, is_number, rounded_by_uncertainty, rounded_phase, short_time,
+  count_text, duration_text, full, is_number, rounded_text, short_time,
   with_unit,
 } from "./number_text.js";
 import { href_of } from "./route.js";
@@ -118,9 +118,9 @@ function result_text(result) {
     return [`${result.frequency_text_hz} Hz: not valid`, result.channel];
   }
   const unit = unit_text(result.unit);
-  const size = rounded_by_uncertainty(result.magnitude, result.u_magnitude);
-  const phase = rounded_phase(result.phase_rad, result.u_phase_rad).degrees;
-  const flags = result.flags?.length ? `, ${result.flags.length} flagged` : "";
+  const size = rounded_text(result.text?.magnitude);
+  const phase = rounded_text(result.text?.phase_deg);
+  const flags = result.flag_names?.length ? `, ${result.flag_names.length} flagged` : "";
   return [
     `${result.frequency_text_hz} Hz: ${size.value}${unit ? ` ${unit}` : ""}, ${phase.value}°${flags}`,
     `${result.channel}: magnitude ${full(result.magnitude, unit)}, u ${full(result.u_magnitude)}; ` +

@@ -5,9 +5,7 @@
 
 import { bench_path, get } from "./api.js";
 import { element, name_element, set_shown, set_text, table_in_scroll } from "./element.js";
-import {
-  full, is_number, rounded_by_uncertainty, rounded_phase, significant, UNKNOWN,
-} from "./number_text.js";
+import { full, is_number, rounded_text, significant, UNKNOWN } from "./number_text.js";
 import { unit_text } from "./unit_text.js";
 
 const HEADINGS = ["Contribution", "Of", { text: "u(|H|) / |H|", number: true }, "",
@@ -44,10 +42,9 @@ export class BudgetPanel {
     }
   }
 
-  show({ channel, step, repetition, frequency_text_hz, magnitude, u_magnitude, phase_rad,
-         u_phase_rad, unit, contributions }) {
-    const size = rounded_by_uncertainty(magnitude, u_magnitude);
-    const phase = rounded_phase(phase_rad, u_phase_rad).radians;
+  show({ channel, step, repetition, frequency_text_hz, magnitude, text, unit, contributions }) {
+    const size = rounded_text(text?.magnitude);
+    const phase = rounded_text(text?.phase_rad);
     const short = unit_text(unit);
     const values = is_number(magnitude)
       ? `: ${size.value}${short ? ` ${short}` : ""}, u ${size.u}; ${phase.value} rad, u ${phase.u} rad`
@@ -67,7 +64,7 @@ function rows_of(contributions) {
                                  (c.u_phase_rad ?? 0) / all_phase);
   return [...contributions].sort((a, b) => weight(b) - weight(a)).map((c) =>
     element("tr", {},
-            element("th", { scope: "row" }, name_element(name_of(c), 60)),
+            element("th", { scope: "row" }, name_element(c.name ?? "", 60)),
             element("td", {}, name_element(c.subject ?? "", 40)),
             element("td", { class: "number", title: full(c.u_magnitude_rel) },
                     significant(c.u_magnitude_rel, 2)),
@@ -78,10 +75,6 @@ function rows_of(contributions) {
             element("td", {}, c.distribution ?? ""), element("td", {}, c.repeats ?? ""),
             element("td", { class: "number" },
                     is_number(c.degrees_of_freedom) ? significant(c.degrees_of_freedom, 3) : "∞")));
-}
-
-function name_of({ name, kind }) {
-  return name || String(kind ?? "").replace(/_/g, " ");
 }
 
 function bar_cell(part) {

@@ -4,7 +4,7 @@
 
 import { element, set_name, set_shown } from "./element.js";
 import {
-  count_text, full, is_number, rounded_by_uncertainty, short_time, with_unit,
+  count_text, full, is_number, rounded_text, short_time, with_unit,
 } from "./number_text.js";
 
 export class ClockPanel {
@@ -25,14 +25,13 @@ export class ClockPanel {
       return;
     }
     const u_s = report.u_mean_interval_s;
-    const mean = rounded_by_uncertainty(1e6 * report.mean_interval_s,
-                                        is_number(u_s) ? 1e6 * u_s : null);
+    const mean = rounded_text(report.text?.mean_interval_us);
     const u_text = is_number(u_s) ? `u ${mean.u} µs` : "u not known";
     set_name(this.text, `${report.source}: mean interval ${mean.value} µs (${u_text}), ` +
       `rate ${with_unit(report.mean_rate_hz, "Hz", 7)}` +
       `${report.nominal_rate_hz > 0 ? ` of ${with_unit(report.nominal_rate_hz, "Hz")} nominal` : ""}` +
-      `, sd ${short_time(report.sd_interval_s)}, tick ${short_time(report.tick_s)}, ` +
-      `${count_text(report.interval_count)} intervals, ${count_text(report.event_count)} events, ` +
+      `, sd ${short_time(report.sd_s)}, tick ${short_time(report.tick_s)}, ` +
+      `${count_text(report.count)} intervals, ${count_text(report.event_count)} events, ` +
       `${count_text(report.lost)} samples lost`, 400);
     this.text.title = `mean interval ${full(report.mean_interval_s, "s")}, u ` +
       full(report.u_mean_interval_s, "s");

@@ -1,24 +1,14 @@
 /**
  * Numbers as people read them: a value and its uncertainty with the digits that mean something, as
- * services/views/report/rounding.hpp has them on the terminal, and plain ones with a unit.
+ * services/base/rounding.hpp has them on the terminal, and plain ones with a unit.
  *
  * What is not known (null) is an en dash.
  */
 
 export const UNKNOWN = "–";
 
-const MIN_WITHOUT_EXPONENT = 1e-3; // of the larger of value and u
-const MAX_WITHOUT_EXPONENT = 1e7;
-const DEGREES = 180 / Math.PI;
-
 export function is_number(value) {
   return typeof value === "number" && Number.isFinite(value);
-}
-
-// Of the leading digit once it is rounded to `digits` digits: 0.0996 is 0.10.
-function exponent_of(value, digits) {
-  const text = value.toExponential(digits - 1);
-  return Number(text.slice(text.indexOf("e") + 1));
 }
 
 // Two digits at least in the exponent, as on the terminal: 8.1e-06.
@@ -26,54 +16,13 @@ function exponential(value, digits) {
   return value.toExponential(digits - 1).replace(/e([+-])(\d)$/, "e$10$2");
 }
 
-function round_to_place(value, place) {
-  const unit = 10 ** place;
-  const rounded = place > 0 ? Math.round(value / unit) * unit : value;
-  const text = rounded.toFixed(Math.max(-place, 0));
-  return /[1-9]/.test(text) ? text : text.replace("-", ""); // "-0.00" is 0
-}
-
-function with_exponent(value, place) {
-  if (Math.abs(value) < 0.5 * 10 ** place) {
-    return "0";
-  }
-  const digits_of = (x) => Math.min(Math.max(exponent_of(x, 17) - place + 1, 1), 17);
-  const rounded = Number(value.toExponential(digits_of(value) - 1));
-  return exponential(rounded, digits_of(rounded));
-}
-
 /**
- * u with two significant digits, the value to the same place.
+ * Of a value and its uncertainty, which the daemon rounds (services/base/rounding.hpp): {value, u},
+ * null where one is not known.
  * @returns {{value: string, u: string}}
  */
-export function rounded_by_uncertainty(value, u) {
-  if (!is_number(value) || !is_number(u) || u <= 0) {
-    return { value: significant(value, 6), u: is_number(u) ? significant(u, 2) : UNKNOWN };
-  }
-  const place = exponent_of(u, 2) - 1;
-  const size = Math.max(Math.abs(value), u);
-  if (size < MIN_WITHOUT_EXPONENT || size >= MAX_WITHOUT_EXPONENT) {
-    return { value: with_exponent(value, place), u: exponential(u, 2) };
-  }
-  return {
-    value: round_to_place(value, Math.max(place, -17)),
-    u: u < 1e-9 ? exponential(u, 2) : round_to_place(u, place),
-  };
-}
-
-/**
- * In both units, each rounded by its own u, and of one turn: what rounds to -180 degrees is stated as
- * +180 degrees (round_phase() of the same header).
- * @returns {{radians: {value: string, u: string}, degrees: {value: string, u: string}}}
- */
-export function rounded_phase(phase_rad, u_rad) {
-  const rounded = (phase) => ({
-    radians: rounded_by_uncertainty(phase, u_rad),
-    degrees: rounded_by_uncertainty(is_number(phase) ? phase * DEGREES : phase,
-                                    is_number(u_rad) ? u_rad * DEGREES : u_rad),
-  });
-  const result = rounded(phase_rad);
-  return Number(result.degrees.value) === -180 ? rounded(phase_rad + 2 * Math.PI) : result;
+export function rounded_text(text) {
+  return { value: text?.value ?? UNKNOWN, u: text?.u ?? UNKNOWN };
 }
 
 /** So many significant digits, without trailing zeros. */

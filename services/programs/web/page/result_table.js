@@ -5,9 +5,7 @@
 
 import { element, name_element, set_name, set_shown, set_text, table_in_scroll } from "./element.js";
 import { KeyedList } from "./keyed_list.js";
-import {
-  count_text, full, is_number, rounded_by_uncertainty, rounded_phase, significant, UNKNOWN,
-} from "./number_text.js";
+import { count_text, full, is_number, rounded_text, significant, UNKNOWN } from "./number_text.js";
 import { unit_text } from "./unit_text.js";
 
 const number = (text, title = null) => ({ text, title, number: true });
@@ -64,18 +62,17 @@ function number_cell() {
   return element("td", { class: "number" });
 }
 
-// A value and its u in two cells, to the digits of u.
-function show_pair([value_cell, u_cell], value, u, unit, is_shown = true) {
-  const { value: text, u: u_text } = unit === "rad"
-    ? rounded_phase(value, u).radians : rounded_by_uncertainty(value, u);
-  set_text(value_cell, is_shown ? text : UNKNOWN);
+// A value and its u in two cells, to the digits of u; every digit in their titles.
+function show_pair([value_cell, u_cell], text, value, u, unit, is_shown = true) {
+  const { value: value_text, u: u_text } = rounded_text(text);
+  set_text(value_cell, is_shown ? value_text : UNKNOWN);
   set_text(u_cell, is_shown ? u_text : UNKNOWN);
   value_cell.title = full(value, unit);
   u_cell.title = full(u, unit);
 }
 
-function show_flags(node, flags) {
-  const names = [...new Set((flags ?? []).map(({ name }) => name))];
+function show_flags(node, flag_names) {
+  const names = [...new Set(flag_names ?? [])];
   set_name(node, names.length ? `▲ ${names.join(", ")}` : "none", 80);
   node.classList.toggle("flagged", names.length > 0);
 }
@@ -92,12 +89,12 @@ class MeanRow {
     const [level, magnitude, u_magnitude, phase, u_phase, k, n] = this.cells;
     set_text(this.frequency, p.frequency_text_hz);
     set_text(level, significant(p.level_m_s2));
-    show_pair([magnitude, u_magnitude], p.magnitude, p.U_magnitude, p.unit);
-    show_pair([phase, u_phase], p.phase_rad, p.U_phase_rad, "rad");
+    show_pair([magnitude, u_magnitude], p.text?.magnitude, p.magnitude, p.U_magnitude, p.unit);
+    show_pair([phase, u_phase], p.text?.phase_rad, p.phase_rad, p.U_phase_rad, "rad");
     set_text(k, significant(p.k_magnitude, 3));
     k.title = `|H|: ${full(p.k_magnitude)}, arg H: ${full(p.k_phase)}`;
     set_text(n, count_text(p.repetitions));
-    show_flags(this.flags, p.flags);
+    show_flags(this.flags, p.flag_names);
     this.root.dataset.frequency = p.frequency_text_hz;
   }
 }
@@ -123,10 +120,11 @@ class PointRow {
     set_text(level, significant(p.level_m_s2));
     set_text(repetition, p.repetition);
     set_name(this.valid, valid_text(p), 60);
-    show_pair([magnitude, u_magnitude], p.magnitude, p.u_magnitude, p.unit, p.valid);
-    show_pair([phase, u_phase], p.phase_rad, p.u_phase_rad, "rad", p.valid);
+    show_pair([magnitude, u_magnitude], p.text?.magnitude, p.magnitude, p.u_magnitude, p.unit,
+              p.valid);
+    show_pair([phase, u_phase], p.text?.phase_rad, p.phase_rad, p.u_phase_rad, "rad", p.valid);
     set_text(lost, count_text(p.lost));
-    show_flags(this.flags, p.flags);
+    show_flags(this.flags, p.flag_names);
     this.button.disabled = !p.valid;
     this.button.setAttribute("aria-label", `Budget of step ${p.step}, repetition ${p.repetition}`);
     this.root.dataset.step = String(p.step);
@@ -141,7 +139,13 @@ function valid_text({ valid, problem, provisional }) {
   return provisional ? "◔ provisional" : "✓";
 }
 
-/** The whole table as CSV, every digit. */
+const TEXTS = ["magnitude_text", "u_magnitude_text", "phase_rad_text", "u_phase_rad_text"];
+
+function text_of({ text }) {
+  return [text?.magnitude?.value, text?.magnitude?.u, text?.phase_rad?.value, text?.phase_rad?.u];
+}
+
+/** The whole table as CSV: every digit, and the texts that the table shows in columns of their own. */
 export function table_csv(points, unit) {
   const keys = ["channel", "step", "attempt", "repetition", "frequency_text_hz", "level_m_s2",
                 "valid", "magnitude", "u_magnitude", "U_magnitude", "phase_rad", "u_phase_rad",
@@ -149,8 +153,9 @@ export function table_csv(points, unit) {
   const cell = (value) => (is_number(value) || typeof value === "boolean" ? String(value)
     : `"${String(value ?? "").replace(/"/g, '""')}"`);
   const lines = points.map((p) => [...keys.map((key) => cell(p[key])),
-                                   cell((p.flags ?? []).map(({ name }) => name).join(" "))]);
+                                   cell((p.flag_names ?? []).join(" ")),
+                                   ...text_of(p).map(cell)]);
   return `# magnitude in ${String(unit || "a unit that is not known").replace(/\s/g, " ")}; phase: ` +
-    "lead, rad; u: standard uncertainty; U: expanded, 95.45 %\n" +
-    [[...keys, "flags"], ...lines].map((line) => line.join(",")).join("\n") + "\n";
+    "lead, rad; u: standard uncertainty; U: expanded, 95.45 %; _text: rounded by u, as shown\n" +
+    [[...keys, "flags", ...TEXTS], ...lines].map((line) => line.join(",")).join("\n") + "\n";
 }

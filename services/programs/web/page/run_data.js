@@ -13,7 +13,7 @@ export const BARS = [
 
 /** Channels with results, by name; and the one with the best known values, to be shown first. */
 export function channels_of(run) {
-  const transfer = (run.transfer ?? []).map((one) => one.channel);
+  const transfer = (run.transfer_function ?? []).map((one) => one.channel);
   const points = (run.points ?? []).map((one) => one.channel);
   const names = [...new Set([...transfer, ...points])].sort();
   const clearness = new Map(names.map((name) => [name, clearness_of(run, name)]));
@@ -29,7 +29,7 @@ function clearness_of(run, channel) {
 }
 
 export function points_of(run, channel) {
-  return (run.points ?? []).filter((point) => point.channel === channel);
+  return of_channel(run.points, channel);
 }
 
 function valid_points(run, channel) {
@@ -40,29 +40,34 @@ function by_frequency(a, b) {
   return a.frequency_hz - b.frequency_hz || a.level_m_s2 - b.level_m_s2;
 }
 
+function of_channel(list, channel) {
+  return (list ?? []).filter((one) => one.channel === channel);
+}
+
 /** The run's means of a channel with what belongs to them; null while the run lasts. */
 export function transfer_of(run, channel) {
-  const transfer = (run.transfer ?? []).find((one) => one.channel === channel);
-  return transfer?.points?.length
-    ? { ...transfer, points: [...transfer.points].sort(by_frequency) } : null;
+  const points = of_channel(run.transfer_function, channel).sort(by_frequency);
+  return points.length ? { ...of_channel(run.channels, channel)[0], points } : null;
 }
 
 /** The report of the sample clock of the channel's source; null: there is none yet. */
 export function clock_of(run, channel) {
-  return (run.clock ?? []).find(({ source }) => channel.startsWith(`${source}/`)) ?? null;
+  return (run.sample_clock ?? []).find(({ source }) => channel.startsWith(`${source}/`)) ?? null;
 }
 
 /** Every flag of the channel once, with what it says and what it means. */
 export function flags_of(run, channel) {
-  const transfer = (run.transfer ?? []).filter((one) => one.channel === channel);
   const clock = clock_of(run, channel);
-  const carriers = [...points_of(run, channel), ...transfer,
-                    ...transfer.flatMap((one) => one.points ?? []), ...(clock ? [clock] : [])];
+  const carriers = [...of_channel(run.points, channel), ...of_channel(run.channels, channel),
+                    ...of_channel(run.transfer_function, channel), ...(clock ? [clock] : [])];
+  const meanings = new Map((run.flag_legend ?? []).map(({ name, meaning }) => [name, meaning]));
   const by_name = new Map();
-  for (const { name, text, meaning } of carriers.flatMap((one) => one.flags ?? [])) {
-    const entry = by_name.get(name) ?? { name, meaning, texts: new Set() };
-    entry.texts.add(text);
-    by_name.set(name, entry);
+  for (const { flags, flag_names } of carriers) {
+    (flag_names ?? []).forEach((name, i) => {
+      const entry = by_name.get(name) ?? { name, meaning: meanings.get(name), texts: new Set() };
+      entry.texts.add(flags[i]);
+      by_name.set(name, entry);
+    });
   }
   return [...by_name.values()];
 }

@@ -8,7 +8,7 @@ import { ClockPanel } from "./clock_panel.js";
 import { DownloadPanel } from "./download_panel.js";
 import { Choice, element, name_element, set_attribute, set_name, set_text } from "./element.js";
 import { FlagPanel } from "./flag_panel.js";
-import { duration_text, rounded_by_uncertainty, utc_text } from "./number_text.js";
+import { duration_text, rounded_text, utc_text } from "./number_text.js";
 import { ResultTable, table_csv } from "./result_table.js";
 import { href_of } from "./route.js";
 import { BARS, channels_of, clock_of, flags_of, points_of, transfer_of } from "./run_data.js";
@@ -179,13 +179,12 @@ export class RunView {
   }
 
   show_delay(transfer) {
-    if (!transfer || typeof transfer.group_delay_s !== "number") {
+    if (!transfer?.text?.group_delay_ms) {
       set_text(this.delay, transfer?.group_delay_problem
         ? `No group delay: ${transfer.group_delay_problem}` : "");
       return;
     }
-    const { value, u } = rounded_by_uncertainty(1e3 * transfer.group_delay_s,
-                                                1e3 * transfer.u_group_delay_s);
+    const { value, u } = rounded_text(transfer.text.group_delay_ms);
     set_text(this.delay, `Group delay ${value} ms (u ${u} ms)`);
   }
 

@@ -4,7 +4,7 @@
  */
 
 import { element, name_element, set_name, set_shown, set_text } from "./element.js";
-import { count_text, full, rounded_by_uncertainty, significant, with_unit } from "./number_text.js";
+import { count_text, full, rounded_text, significant, with_unit } from "./number_text.js";
 import { StateBadge } from "./state_badge.js";
 import { TraceChart } from "./trace_chart.js";
 import { quantity_in, unit_text } from "./unit_text.js";
@@ -108,13 +108,9 @@ class FitBlock {
   }
 
   show_numbers(fit, unit) {
-    const amplitude = Math.hypot(fit.sine, fit.cosine);
-    const u_amplitude =
-      Math.hypot(fit.sine * fit.u_sine, fit.cosine * fit.u_cosine) / amplitude;
-    const size = rounded_by_uncertainty(amplitude, u_amplitude);
-    const frequency = rounded_by_uncertainty(fit.frequency_hz, fit.u_frequency_hz);
-    const u_frequency = fit.u_frequency_hz > 0 ? `u ${frequency.u} Hz` : "taken as known";
-    set_text(this.text, `Frequency ${frequency.value} Hz (${u_frequency}), amplitude ` +
+    const { amplitude } = fit;
+    const size = rounded_text(fit.text?.amplitude);
+    set_text(this.text, `Frequency ${with_unit(fit.frequency_hz, "Hz", 6)} (taken as known), amplitude ` +
       `${size.value}${unit ? ` ${unit}` : ""} (u ${size.u}), phase ` +
       `${with_unit(Math.atan2(fit.cosine, fit.sine), "rad", 5)}, residual ` +
       `${with_unit(fit.residual_rms, unit, 3)} rms (` +

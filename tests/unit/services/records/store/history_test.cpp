@@ -8,22 +8,21 @@
 namespace dyncal::services {
 namespace {
 
-RecordedPoint point(double frequency_hz, double magnitude, double phase_rad) {
-  RecordedPoint point;
+StoredValue point(double frequency_hz, double magnitude, double phase_rad) {
+  StoredValue point;
   point.channel = "dau/z";
-  point.source = "dau";
   point.frequency_text_hz = std::to_string(static_cast<int>(frequency_hz));
   point.frequency_hz = frequency_hz;
   point.level_m_s2 = 10.0;
   point.unit = R"(\one)";
   point.magnitude = magnitude;
-  point.expanded_magnitude = 0.003;
+  point.of_magnitude.expanded = 0.003;
   point.phase_rad = phase_rad;
-  point.expanded_phase_rad = 0.004;
+  point.of_phase.expanded = 0.004;
   return point;
 }
 
-Calibration calibration(const std::string& run, std::vector<RecordedPoint> points) {
+Calibration calibration(const std::string& run, std::vector<StoredValue> points) {
   Calibration one;
   one.run.bench = "b";
   one.run.run = run;
@@ -60,9 +59,9 @@ TEST(History, TakesThePhaseModuloOneTurn) {
 }
 
 TEST(History, DoesNotCompareWhatCannotBe) {
-  RecordedPoint other_unit = point(10, 2.0, 0.0);
+  StoredValue other_unit = point(10, 2.0, 0.0);
   other_unit.unit = R"(\volt)";
-  RecordedPoint other_level = other_unit;
+  StoredValue other_level = other_unit;
   other_level.level_m_s2 = 100.0;
   const History history =
       history_of("s", {calibration("r1", {point(10, 1.0, 0.0)}), calibration("r2", {other_unit}),
@@ -75,14 +74,14 @@ TEST(History, DoesNotCompareWhatCannotBe) {
 }
 
 TEST(History, LeavesOutWhatIsNotKnown) {
-  RecordedPoint unknown = point(10, std::nan(""), 0.0);
-  RecordedPoint without_u = point(10, 1.0, 0.0);
-  without_u.expanded_phase_rad = std::nan("");
+  StoredValue unknown = point(10, std::nan(""), 0.0);
+  StoredValue without_u = point(10, 1.0, 0.0);
+  without_u.of_phase.expanded = std::nan("");
   EXPECT_TRUE(history_of("s", {calibration("r1", {unknown, without_u})}).lines.empty());
 }
 
 TEST(History, ShowsOneChannelAndFrequencyIfAsked) {
-  RecordedPoint y = point(10, 1.0, 0.0);
+  StoredValue y = point(10, 1.0, 0.0);
   y.channel = "dau/y";
   const std::vector<Calibration> all{
       calibration("r1", {point(20, 1.0, 0.0), point(10, 1.0, 0.0), y})};

@@ -17,8 +17,8 @@ StoredValue value_at(const std::string& frequency) {
   value.channel = channel;
   value.frequency_text_hz = frequency;
   value.magnitude = 1.0;
-  value.of_magnitude = {0.001, 2.0, 0.002};
-  value.of_phase = {0.001, 2.0, 0.002};
+  value.of_magnitude = {.u = 0.001, .k = 2.0, .expanded = 0.002};
+  value.of_phase = {.u = 0.001, .k = 2.0, .expanded = 0.002};
   value.coverage_probability = 0.9545;
   value.unit = R"(\one)";
   return value;
@@ -37,7 +37,7 @@ StoredPoint point_at(const std::string& frequency, unsigned step) {
 StoredResult whole_run() {
   StoredResult result;
   result.planned_steps = 2;
-  result.channels.push_back({channel, R"(\one)", true, 0, {}});
+  result.channels.push_back({channel, R"(\one)", true, 0, {}, {}, {}});
   result.values = {value_at("10"), value_at("20")};
   result.points = {point_at("10", 1), point_at("20", 2)};
   return result;

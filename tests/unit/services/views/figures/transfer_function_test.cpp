@@ -141,8 +141,10 @@ TEST(TransferFunctionCsv, SaysUnitsAndPhaseConvention) {
   const auto csv = transfer_function_figure(data, "tf").csv;
   EXPECT_THAT(csv, HasSubstr("phase: lead, rad"));
   EXPECT_THAT(
-      csv, HasSubstr("\nrepetition,frequency_hz,magnitude,u_magnitude,phase_rad,u_phase_rad,flags,"
-                     "U_magnitude,U_phase_rad\n"));
+      csv,
+      HasSubstr("\nrepetition,frequency_hz,magnitude,u_magnitude,phase_rad,u_phase_rad,flags,"
+                "U_magnitude,U_phase_rad,magnitude_text,uncertainty_magnitude_text,phase_rad_text,"
+                "uncertainty_phase_rad_text\n"));
   EXPECT_THAT(csv, HasSubstr("intercept 0.25 rad"));
   EXPECT_THAT(csv, HasSubstr("\nmean,10,"));
   EXPECT_EQ(lines_without_comments(csv), 1U + 2 * 3 + 2);

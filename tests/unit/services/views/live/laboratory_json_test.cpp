@@ -109,12 +109,14 @@ TEST(RunJson, CarriesEveryDigitAndNullForWhatIsNotANumber) {
   invalid.flags().emplace_back("dau: samples lost");
   invalid.flag_names().emplace_back("samples_lost");
   laboratory.take(invalid);
-  const Json json = Json::parse(json_text(run_json(laboratory.bench("acc-1")->runs.at("r1"))));
+  const Json json =
+      Json::parse(json_text(run_json("acc-1", laboratory.bench("acc-1")->runs.at("r1"))));
   ASSERT_EQ(json["points"].size(), 2U);
   EXPECT_EQ(json["points"][0]["magnitude"].get<double>(), magnitude);
   EXPECT_TRUE(json["points"][1]["magnitude"].is_null());
-  EXPECT_EQ(json["points"][1]["flags"][0]["name"], "samples_lost");
-  EXPECT_NE(json["points"][1]["flags"][0]["meaning"], "");
+  EXPECT_EQ(json["points"][1]["flag_names"][0], "samples_lost");
+  EXPECT_EQ(json["flag_legend"][0]["name"], "samples_lost");
+  EXPECT_NE(json["flag_legend"][0]["meaning"], "");
 }
 
 } // namespace

@@ -77,9 +77,9 @@ TEST(ResultJson, HasCorrectionsAndTheExcitationThatWasMeasured) {
 
 TEST(ResultJson, EventsHaveTheirPlace) {
   const auto clock = result_json(example_outcome())["sample_clock"][0];
-  EXPECT_EQ(clock["events"], 1);
-  EXPECT_EQ(clock["event_list"][0]["sample"], 300);
-  EXPECT_DOUBLE_EQ(clock["event_list"][0]["time_s"], 0.299);
+  EXPECT_EQ(clock["event_count"], 1);
+  EXPECT_EQ(clock["events"][0]["sample"], 300);
+  EXPECT_DOUBLE_EQ(clock["events"][0]["time_s"], 0.299);
 }
 
 TEST(ResultJson, ExplainsEveryFlag) {
@@ -92,10 +92,10 @@ TEST(ResultJson, ExplainsEveryFlag) {
             nlohmann::ordered_json({"polarity_inverted"}));
   EXPECT_TRUE(json["transfer_function"][2]["flags"].empty()); // of the other channel
   EXPECT_EQ(json["channels"][0]["flag_names"][0], "polarity_inverted");
-  ASSERT_EQ(json["flags"].size(), 2U);
-  EXPECT_EQ(json["flags"][0]["name"], "samples_lost");
-  EXPECT_EQ(json["flags"][0]["sentences"][0], "dau: samples lost");
-  EXPECT_THAT(json["flags"][1]["meaning"].get<std::string>(), HasSubstr("phase tends to pi"));
+  ASSERT_EQ(json["flag_legend"].size(), 2U);
+  EXPECT_EQ(json["flag_legend"][0]["name"], "samples_lost");
+  EXPECT_EQ(json["flag_legend"][0]["sentences"][0], "dau: samples lost");
+  EXPECT_THAT(json["flag_legend"][1]["meaning"].get<std::string>(), HasSubstr("phase tends to pi"));
 }
 
 // JSON cannot represent infinity, and 0 would say the contrary.

@@ -16,9 +16,9 @@ StoredValue value_of(double magnitude, double expanded, double phase_rad, double
   value.frequency_text_hz = "10";
   value.frequency_hz = 10.0;
   value.magnitude = magnitude;
-  value.of_magnitude = {expanded / 2.0, 2.0, expanded};
+  value.of_magnitude = {.u = expanded / 2.0, .k = 2.0, .expanded = expanded};
   value.phase_rad = phase_rad;
-  value.of_phase = {expanded_rad / 2.03, 2.03, expanded_rad};
+  value.of_phase = {.u = expanded_rad / 2.03, .k = 2.03, .expanded = expanded_rad};
   value.coverage_probability = 0.9544997361036416;
   return value;
 }

@@ -1,4 +1,4 @@
-#include "services/views/report/rounding.hpp"
+#include "services/base/rounding.hpp"
 
 #include <cmath>
 #include <limits>

@@ -1,0 +1,171 @@
+#include "services/views/report/stored_setup.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/instrument/adc_calibration.hpp"
+#include "services/evaluation/recipe/reference_correction.hpp"
+
+namespace dyncal::services {
+namespace {
+
+std::string role_of(const Recipe& recipe, const std::string& channel) {
+  const RoleNames names = role_names(recipe);
+  if (channel == names.reference.text()) {
+    return "reference";
+  }
+  if (channel == names.sync_acs.text()) {
+    return is_without_sync(names.method) ? "excitation" : "sync_acs";
+  }
+  if (!names.sync_sensor.source.empty() && channel == names.sync_sensor.text()) {
+    return names.method == EvaluationMethod::series_timestamping ? "sync_dso" : "sync_dau";
+  }
+  return "dut";
+}
+
+bool is_in_m_s2(const RunOutcome& outcome, const ChannelName& name) {
+  for (const RunSource& source : outcome.sources) {
+    for (const drivers::ChannelDescription& channel : source.description.channels) {
+      if (source.source == name.source && channel.name == name.channel) {
+        return channel.unit == R"(\metre\second\tothe{-2})";
+      }
+    }
+  }
+  return false;
+}
+
+// The first valid result of a step: what its reference and sync show is common to all channels.
+const StepResult* result_of(const RunOutcome& outcome, const RecipeStep& step) {
+  const auto found =
+      std::find_if(outcome.results.begin(), outcome.results.end(), [&](const StepResult& one) {
+        return one.valid && one.step == step.step && one.repetition == step.repetition;
+      });
+  return found == outcome.results.end() ? nullptr : &*found;
+}
+
+// What the response of the reference does to H, which is multiplied by it.
+StoredCorrection reference_correction(const analysis::ReferenceResponse& response) {
+  double magnitude2 = 0.0;
+  double phase2 = 0.0;
+  for (const analysis::ReferenceContribution& one : response.contributions) {
+    magnitude2 += one.u_magnitude_rel * one.u_magnitude_rel;
+    phase2 += one.u_phase_rad * one.u_phase_rad;
+  }
+  return {"reference_response", response.phase_rad, std::sqrt(phase2), response.magnitude,
+          std::sqrt(magnitude2)};
+}
+
+} // namespace
+
+StoredRoles stored_roles(const Recipe& recipe) {
+  const RoleNames names = role_names(recipe);
+  StoredRoles roles;
+  roles.reference = names.reference.text();
+  if (!names.sync_acs.source.empty()) {
+    (is_without_sync(names.method) ? roles.excitation : roles.sync_acs) = names.sync_acs.text();
+  }
+  if (!names.sync_sensor.source.empty()) {
+    const std::string sync = names.sync_sensor.text();
+    (role_of(recipe, sync) == "sync_dso" ? roles.sync_dso : roles.sync_dau) = sync;
+  }
+  for (const ChannelName& channel : names.dut) {
+    roles.dut.push_back(channel.text());
+  }
+  if (recipe.temperature) {
+    roles.temperature = recipe.temperature->text();
+  }
+  return roles;
+}
+
+StoredCorrections stored_corrections(const Recipe& recipe, const std::optional<AdcFile>& adc_file) {
+  StoredCorrections corrections;
+  corrections.reference_delay_s = recipe.reference_delay_s;
+  if (const auto* stamped = std::get_if<SampleStampingRoles>(&recipe.roles)) {
+    corrections.adc_calibration = stamped->adc_calibration;
+    corrections.adc_file = adc_file;
+  }
+  if (const auto* series = std::get_if<SeriesRoles>(&recipe.roles)) {
+    corrections.dso_delay_s = series->dso_delay_s;
+    corrections.u_dso_delay_s = series->u_dso_delay_s;
+    corrections.trigger_phase_correction = series->trigger_phase_correction;
+  }
+  return corrections;
+}
+
+std::vector<StoredCorrection> applied_corrections(const Recipe& recipe, const RecipeStep& step) {
+  const double w = step.frequency.angular();
+  std::vector<StoredCorrection> applied;
+  if (!recipe.reference_calibration.empty()) {
+    if (const auto response = reference_response(recipe, step)) {
+      applied.push_back(reference_correction(*response));
+    }
+  }
+  if (recipe.reference_delay_s != 0.0) {
+    applied.push_back({"reference_delay",
+                       -w * recipe.reference_delay_s,
+                       w * recipe.systematic.acs_delay_s,
+                       {},
+                       {}});
+  }
+  if (const auto* stamped = std::get_if<SampleStampingRoles>(&recipe.roles);
+      stamped != nullptr && !stamped->adc_calibration.empty()) {
+    if (const auto adc = analysis::adc_response_at(stamped->adc_calibration, step.frequency.hz())) {
+      applied.push_back({"adc_phase_lag", -adc->phase_lag_rad, adc->u_phase_lag_rad, {}, {}});
+    }
+  }
+  if (const auto* series = std::get_if<SeriesRoles>(&recipe.roles);
+      series != nullptr && series->dso_delay_s != 0.0) {
+    applied.push_back({"dso_delay", -w * series->dso_delay_s, w * series->u_dso_delay_s, {}, {}});
+  }
+  return applied;
+}
+
+StoredFit stored_fit(const RunOutcome& outcome, const analysis::ChannelFit& fit) {
+  return {fit, outcome.recipe ? role_of(*outcome.recipe, fit.channel) : std::string()};
+}
+
+std::vector<StoredStep> stored_steps(const RunOutcome& outcome) {
+  std::vector<StoredStep> steps;
+  for (const RecipeStep& step :
+       outcome.recipe ? outcome.recipe->steps : std::vector<RecipeStep>()) {
+    steps.push_back({step.step,
+                     step.repetition,
+                     step.frequency_text_hz,
+                     step.frequency.hz(),
+                     step.level_m_s2,
+                     step.settling_s,
+                     step.duration_s,
+                     applied_corrections(*outcome.recipe, step),
+                     {}});
+    if (const StepResult* result = result_of(outcome, step)) {
+      for (const analysis::ChannelFit& fit : result->fits) {
+        if (fit.channel != result->channel) {
+          steps.back().fits.push_back(stored_fit(outcome, fit));
+        }
+      }
+    }
+  }
+  return steps;
+}
+
+void add_measured_excitation(const RunOutcome& outcome, StoredPoint& point) {
+  if (!outcome.recipe) {
+    return;
+  }
+  const ChannelName& reference = outcome.recipe->reference();
+  const auto fit =
+      std::find_if(point.fits.begin(), point.fits.end(), [&](const analysis::ChannelFit& one) {
+        return one.channel == reference.text();
+      });
+  if (fit == point.fits.end()) {
+    return;
+  }
+  point.measured_frequency_hz = fit->frequency.hz();
+  point.u_measured_frequency_hz = fit->u_frequency_hz;
+  if (is_in_m_s2(outcome, reference)) {
+    point.measured_level_m_s2 = fit->fit.amplitude();
+    point.u_measured_level_m_s2 = fit->fit.u_amplitude();
+  }
+}
+
+} // namespace dyncal::services
