@@ -54,6 +54,27 @@ TEST_P(BusExchange, PassesOverMessagesThatNameAnotherBench) {
   EXPECT_EQ(benches, std::vector<std::string>{bench_});
 }
 
+// Of any length: one vendor reads four bytes at a time.
+TEST_P(BusExchange, CarriesTheBytesThatWereEncodedAndNoOthers) {
+  auto writer = this->writer<wire::SampleBlock>(topics::dau_samples, Profile::samples);
+  auto reader = this->reader<wire::SampleBlock>(topics::dau_samples, Profile::samples);
+  std::vector<std::string> sent;
+  for (std::size_t values = 0; values < 1000; values = 3 * values + 1) {
+    const EncodedMessage message = encode(block(sent.size(), "dau", values));
+    ASSERT_EQ(writer.write_encoded(message, std::chrono::seconds(10)), WriteOutcome::written);
+    sent.push_back(*message);
+  }
+  std::vector<std::string> came;
+  ASSERT_TRUE(wait_for([&] {
+    reader.take_with_bytes([&](const wire::SampleBlock& block, std::string_view bytes) {
+      EXPECT_TRUE(is_whole(type_support<wire::SampleBlock>(), &block, bytes));
+      came.emplace_back(bytes);
+    });
+    return came.size() >= sent.size();
+  }));
+  EXPECT_EQ(came, sent);
+}
+
 TEST_P(BusExchange, CarriesEveryBlockWholeAndInOrder) {
   auto writer = this->writer<wire::SampleBlock>(topics::dau_samples, Profile::samples);
   auto reader = this->reader<wire::SampleBlock>(topics::dau_samples, Profile::samples);
