@@ -112,7 +112,7 @@ def of_clock(report, subtitle):
         picture("interval-histogram", f"Sample intervals of {source}", [
             panel(interval, "count per bin", bars=bins, y_scale="logarithmic",
                   y_range=[0.6, 1.7 * max(b[2] for b in bins)])], 330,
-            f"{report['interval_count']} intervals"),
+            f"{report['count']} intervals"),
         picture("interval-over-time", f"Sample interval of {source} over time", [
             panel("time in s", interval, [one_series(
                 "mean", [[c["time_s"], 1e-3 * c["mean_interval_ns"], 0, 0] for c in course],

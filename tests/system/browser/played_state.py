@@ -125,8 +125,8 @@ def clock_report():
     return {"source": "dau", "count": 612345, "mean_interval_s": 1.00000312e-3,
             "u_mean_interval_s": 2.1e-10, "sd_s": 2.3e-7, "min_s": 9.99e-4, "max_s": 1.001e-3,
             "mean_rate_hz": 999.99688, "nominal_rate_hz": 1000.0, "tick_s": 1.67e-8,
-            "event_count": 3,
-            "lost": 12, "flags": [], "flag_names": [], "histogram": histogram, "over_time": course,
+            "event_count": 3, "lost": 12, "flags": [], "flag_names": [], "histogram": histogram,
+            "over_time": course,
             "text": {"mean_interval_us": {"value": "1000.00312", "u": "0.00021"}}}
 
 

@@ -259,7 +259,7 @@ class Views(PageCase):
         self.assertRegex(self.field(page, "acc-1", "last_result"), "Hz: M, 180.0°")
         page = self.open("run/acc-2")
         row = f"[data-step='{point['step']}']"
-        page.wait_for(f"document.querySelector({json.dumps(row)})")
+        page.wait_for(f"document.querySelector({json.dumps(row)}) !== null")
         cells = page.value(f"[...document.querySelector({json.dumps(row)}).cells]"
                            ".slice(5, 9).map(c => c.textContent)")
         self.assertEqual(cells, ["-30", "150", "0.12", "–"])
