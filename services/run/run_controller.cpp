@@ -130,6 +130,15 @@ Expected<RunOutcome> RunController::collect_of_ended_run(const std::stop_token& 
   if (watch_->has_other_recipe()) {
     return fail(other_bench_file(name()));
   }
+  if (!keeping_.begun) {
+    // What describes itself now may have been mounted since.
+    outcome_.sources.clear();
+    watch_->notice(
+        fmt::format("run '{}' has no folder here: with which instruments it was measured "
+                    "is not known, and the result names none; look into its folder on "
+                    "the host of its conductor",
+                    name()));
+  }
   if (collected) {
     leave_out_foreign_means();
   }

@@ -2,6 +2,8 @@
 // results counts: no other instrument, no other recipe, no attempt that nobody made.
 #include "services/run/begun_run.hpp"
 
+#include <algorithm>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -168,6 +170,32 @@ protected:
     commands_.write(command);
   }
 };
+
+// The sensor may have been changed since.
+TEST_F(ElsewhereBegunRun, NamesNoInstrumentForWhatAnEndedRunHasMeasured) {
+  finished_ = true;
+  play_analysis();
+  describe_both("2");
+  analysis_.publish(result(1, 1, 1.0));
+  const auto outcome = resume(std::nullopt);
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  EXPECT_EQ(outcome->results.size(), 1U);
+  EXPECT_TRUE(outcome->sources.empty());
+  EXPECT_THAT(notices_, testing::Contains(HasSubstr("is not known, and the result names none")));
+}
+
+TEST_F(BegunRunTest, NamesTheInstrumentsOfItsFolderForWhatAnEndedRunHasMeasured) {
+  finished_ = true;
+  play_analysis();
+  describe_both("2");
+  analysis_.publish(result(1, 1, 1.0));
+  const auto outcome = resume(begun("1"));
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  const auto dau = std::find_if(outcome->sources.begin(), outcome->sources.end(),
+                                [](const RunSource& one) { return one.source == "dau"; });
+  ASSERT_NE(dau, outcome->sources.end());
+  EXPECT_EQ(dau->description.serial, "1");
+}
 
 TEST_F(ElsewhereBegunRun, IsRefusedWithinThreeSecondsWithAnotherInstrument) {
   clock_.every(500ms, [this] {

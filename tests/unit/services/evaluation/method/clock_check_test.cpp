@@ -24,7 +24,7 @@ SelectedChannels channels_with_step(std::int64_t size_ns) {
   for (int i = 0; i < samples; ++i) {
     const std::int64_t noise_ns = 13 * (i * 7919 % 5) - 26;
     stamps.push_back(std::llround(996'939.0 * i) + noise_ns + (i < 600 ? 0 : size_ns));
-    flags.push_back(i > 0 && stamps.back() <= stamps[599] && i >= 600 ? 1 : 0);
+    flags.push_back(i >= 600 && stamps.back() <= stamps[599] ? 1 : 0);
     values.push_back(std::sin(2.0 * std::numbers::pi * frequency_hz * 996.939e-6 * i));
   }
   SourceBlock block;

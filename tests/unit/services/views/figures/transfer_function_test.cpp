@@ -165,7 +165,7 @@ TEST(TransferFunctionFigure, RingsMeansWithAFlagAndExplainsThemBelowThePanels) {
   // Two panels, and the sample in the legend.
   EXPECT_EQ(count_elements(figure.svg(), "circle"), count_elements(without.svg(), "circle") + 3);
   EXPECT_THAT(figure.csv, HasSubstr("# flag samples_lost (dau: samples lost): aaa"));
-  EXPECT_THAT(figure.csv, HasSubstr(",samples_lost,,\n3,"));
+  EXPECT_THAT(figure.csv, HasSubstr(",samples_lost,,,0.9976,0.0010,-0.6407,0.0020\n3,"));
 }
 
 TEST(TransferFunctionFigure, HasBarsByChoice) {
