@@ -48,16 +48,9 @@ std::vector<json> points_of_axis(const json& points) {
   return found;
 }
 
-// Flags of the point, by name, as the result file and as the page write them.
-std::vector<std::string> names_in_file(const json& point) {
+// Flags of the point, by name.
+std::vector<std::string> names_of(const json& point) {
   return point["flag_names"].get<std::vector<std::string>>();
-}
-std::vector<std::string> names_on_page(const json& point) {
-  std::vector<std::string> names;
-  for (const json& flag : point["flags"]) {
-    names.push_back(flag["name"]);
-  }
-  return names;
 }
 
 void expect_same_on_page(const json& point, const json& shown) {
@@ -65,7 +58,7 @@ void expect_same_on_page(const json& point, const json& shown) {
        {"step", "valid", "magnitude", "u_magnitude", "phase_rad", "u_phase_rad"}) {
     EXPECT_EQ(shown[key], point[key]) << key;
   }
-  EXPECT_EQ(names_on_page(shown), names_in_file(point));
+  EXPECT_EQ(names_of(shown), names_of(point));
   EXPECT_FALSE(shown["provisional"].get<bool>());
 }
 
@@ -98,7 +91,7 @@ TEST_P(BenchSwitch, IsSeenInTheTableAndOnThePageOrIsCovered) {
   ASSERT_EQ(shown.size(), step_count);
   int flagged = 0;
   for (std::size_t i = 0; i < step_count; ++i) {
-    const auto names = names_in_file(points[i]);
+    const auto names = names_of(points[i]);
     flagged += std::count(names.begin(), names.end(), which.flag) > 0 ? 1 : 0;
     if (*which.refusal != '\0') {
       EXPECT_FALSE(points[i]["valid"].get<bool>());

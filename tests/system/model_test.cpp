@@ -242,7 +242,7 @@ TEST_F(Model, SaysInOneLineWhatIsWrong) {
     std::ofstream(folder / "changed.json") << json;
     return (folder / "changed.json").string();
   };
-  EXPECT_THAT(error_of({folder / "none.json"}), HasSubstr("none.json: cannot read this result"));
+  EXPECT_THAT(error_of({folder / "none.json"}), HasSubstr("none.json: cannot be read"));
   EXPECT_THAT(error_of({folder / "bench.toml"}), HasSubstr("not JSON"));
   EXPECT_THAT(error_of({result, folder / "." / "result.json"}),
               HasSubstr("result.json: this result is given twice"));
@@ -252,9 +252,9 @@ TEST_F(Model, SaysInOneLineWhatIsWrong) {
   EXPECT_THAT(error_of({result, "--filter", "fir", "--rate-hz", "300"}),
               HasSubstr("below half the sample rate (rate 300 Hz, --cutoff-hz 250)"));
   EXPECT_THAT(error_of({changed([](auto& json) { json["schema"]["name"] = "other"; })}),
-              HasSubstr("the schema is 'other'"));
+              HasSubstr("its schema is \"other\""));
   EXPECT_THAT(error_of({changed([](auto& json) { json.erase("schema"); })}),
-              HasSubstr("there is no key 'schema'"));
+              HasSubstr("there is no 'schema' in it"));
   EXPECT_THAT(
       error_of({changed([](auto& json) { json["transfer_function"][3].erase("U_phase_rad"); })}),
       HasSubstr("transfer_function[3].U_phase_rad is missing"));

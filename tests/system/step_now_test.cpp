@@ -22,10 +22,7 @@ double amplitude_of(const json& fitted) {
 }
 
 double u_amplitude(const json& fitted) {
-  const json& fit = fitted["fit"];
-  return std::hypot(fit["sine"].get<double>() * fit["u_sine"].get<double>(),
-                    fit["cosine"].get<double>() * fit["u_cosine"].get<double>()) /
-         amplitude_of(fitted);
+  return fitted["fit"]["u_amplitude"].get<double>();
 }
 
 TEST(StepNow, NumbersAreOfTheStepThatIsExcited) {

@@ -19,7 +19,6 @@ RunOutcome outcome_of(const std::string& bench, const Run& run) {
   outcome.run = run.name;
   for (const auto& [key, result] : run.results) {
     outcome.results.push_back(result);
-    outcome.results.back().budget.clear();
     outcome.results.back().fits.clear();
     outcome.results.back().samples.clear();
   }
@@ -37,6 +36,7 @@ Json points_json(const Run& run, const StoredResult& result) {
   auto heard = run.results.begin(); // in the same order
   for (const StoredPoint& point : result.points) {
     points.push_back(JsonWriter::of(point));
+    points.back().erase("budget"); // U is of it; the page does not show it
     points.back()["attempt"] = point.attempt;
     points.back()["provisional"] = (heard++)->second.provisional;
     points.back()["text"] =
