@@ -2,6 +2,7 @@
 //
 //   all that the analysis has published is there                           ends
 //   it refuses the run, as one that took it over and could not go on does  fails with its reason
+//   a result names another bench file                                      fails: bad_file
 //   it has been silent for StepSequence::away_limit                        fails: no_analysis
 //   nothing came for StepSequence::results_limit                           fails: no_result
 //   nothing came for StepSequence::missed_limit        all results are collected once more, once

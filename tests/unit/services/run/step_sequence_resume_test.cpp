@@ -139,6 +139,7 @@ TEST_F(StepSequenceResumeTest, AnEndedRunOfAnotherBenchFileIsNotTakenForThisOne)
   const auto outcome = try_to_resume();
   ASSERT_FALSE(outcome);
   EXPECT_EQ(outcome.error().code, ErrorCode::bad_file);
+  EXPECT_LT(clock_.elapsed(), 5s);
 }
 
 TEST_F(StepSequenceResumeTest, ARunOfAnotherBenchFileIsNotResumed) {
