@@ -33,6 +33,7 @@
 
 #include "analysis/sine/extended_sine_fit.hpp"
 #include "services/base/counted_text.hpp"
+#include "services/base/whole_file.hpp"
 #include "services/programs/command/work_progress.hpp"
 #include "services/records/replay/series_file.hpp"
 
@@ -169,13 +170,12 @@ double sum_of(const nlohmann::json& numbers) {
 }
 
 double read_json(const Files& files, const SharedWorkCount& count) {
+  const std::uintmax_t size = bytes_of_file(files.json());
+  const std::string text = read_whole_file(files.json(), size).value();
   if (!count) {
-    std::ifstream file(files.json());
-    return sum_of(nlohmann::json::parse(file));
+    return sum_of(nlohmann::json::parse(text));
   }
-  ByteCount bytes(count, "reading", bytes_of_file(files.json()));
-  std::ifstream file(files.json(), std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  ByteCount bytes(count, "reading", size);
   const CountedText counted(text, bytes);
   return sum_of(nlohmann::json::parse(counted.begin(), counted.end()));
 }
