@@ -14,6 +14,7 @@ import numpy as np
 
 PROBABILITY = 0.9545
 FLAGGED_RUNS = 0.99
+MOST = 0.85
 # Of clean calibrations 0.99 have no flag, and each has six claims.
 UNFLAGGED_CLAIMS = 0.998
 CHANCE = 1e-3
@@ -45,6 +46,7 @@ COVERED_NO_MORE = "covered, no more"  # by as many as stated; for the scatter of
 COVERED_AS_STUDENT = "covered, as Student"  # of few repetitions: as wide as the k they state
 COVERED_OR_FLAGGED = "covered or flagged"  # never wrong in silence
 FLAGGED = "flagged"  # a person must know, whatever the number is
+MOSTLY_FLAGGED = "covered or mostly flagged"  # what-it-cannot-see.md says of which it may be silent
 
 
 @dataclasses.dataclass
@@ -240,11 +242,15 @@ class Tally:
         n = len(self.claims)
         if n == 0:
             return "no claims at all: nothing was judged"
-        if not self.numbers and wanted not in (FLAGGED, COVERED_OR_FLAGGED):
+        if not self.numbers and wanted not in (FLAGGED, COVERED_OR_FLAGGED, MOSTLY_FLAGGED):
             return f"none of {n} has a number: nothing was judged"
         if wanted == FLAGGED:
             enough = not too_few(self.warned, n, FLAGGED_RUNS, chance)
             return "" if enough else f"{n - self.warned} of {n} carry no flag"
+        if wanted == MOSTLY_FLAGGED:
+            good = sum(one.warned or one.covered for one in self.claims)
+            enough = not too_few(good, n, MOST, chance)
+            return "" if enough else f"{n - good} of {n} are wrong without a flag"
         if wanted == COVERED_OR_FLAGGED:
             silent = self._wrong_among(self.silent, chance, "without a flag ")
             return silent or self._too_wide(self._widest_at_all(chance))

@@ -24,6 +24,7 @@ from judgement import (
     COVERED_OR_FLAGGED,
     COVERED_WITH_BOUND,
     FLAGGED,
+    MOSTLY_FLAGGED,
     Claim,
     Tally,
     at_most,
@@ -112,6 +113,12 @@ class TallyOfClaims(unittest.TestCase):
         self.assertTrue(row.judges(Claim(frequency="20")))
         self.assertFalse(row.judges(Claim(frequency="210")))
         self.assertTrue(row.judges(Claim(refused=True)))
+
+    def test_what_the_page_says_may_be_silent_is_flagged_mostly(self):
+        wrong = [Claim(error=9.0, expanded=1.0)] * 3
+        flagged = [Claim(error=9.0, expanded=1.0, flagged=True)] * 60
+        self.assertEqual(Tally(flagged + wrong).finding(MOSTLY_FLAGGED), "")
+        self.assertIn("without a flag", Tally(flagged + 10 * wrong).finding(MOSTLY_FLAGGED))
 
     def test_clean_intervals_are_as_wide_as_errors_from_a_tenth_less_to_a_half_more(self):
         for width in (1.0, 1.3):
