@@ -60,7 +60,7 @@ double mean_frame_s(const Bus& bus) {
 }
 
 // On a virtual interface the virtual sensor makes the bus's time itself. A machine that leaves it
-// no time for that, so that a quarter of its frames is late, says nothing about what receives them.
+// no time for that, so that a tenth of its frames is late, says nothing about what receives them.
 bool starved(const std::string& said) {
   unsigned long long all = 0;
   unsigned long long late = 0;
@@ -73,7 +73,7 @@ bool starved(const std::string& said) {
     return false;
   }
   std::printf("%llu frames, %llu of the %llu of the sensor late\n", all, late, sent);
-  if (4 * late <= sent) {
+  if (10 * late <= sent) {
     return false;
   }
   std::printf("skipped: this machine was too busy to keep the time of a bus: %llu of %llu frames "
