@@ -54,9 +54,8 @@ void ResultsWait::note_work(bool is_attended, const RunOutlook& outlook, bool st
 }
 
 Expected<void> ResultsWait::ending() const {
-  if (watch_.has_other_recipe()) {
-    return fail(ErrorCode::bad_file, "the analysis evaluates this run by another bench file than "
-                                     "it is conducted by; begin a new run");
+  if (auto other = watch_.other_recipe()) {
+    return fail(std::move(*other));
   }
   if (watch_.clock().now() - watch_.analysis_heard() > StepSequence::away_limit) {
     return fail(ErrorCode::no_analysis, fmt::format("the analysis service {} has gone silent",

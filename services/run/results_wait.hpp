@@ -7,8 +7,7 @@
 //   nothing came for StepSequence::results_limit                           fails: no_result
 //   nothing came for StepSequence::missed_limit        all results are collected once more, once
 //   recorded files are played, and the run cannot go on                    it is aborted
-//   it is stopped                                      it is aborted; what is evaluated still
-//   counts
+//   it is stopped                        it is aborted; what is evaluated still counts
 //
 // The limit begins again with every sign of work, and while the analysis is silent, waits itself,
 // or plays files well. Belongs to the conductor's thread.

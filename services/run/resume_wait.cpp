@@ -44,7 +44,7 @@ bool ResumeWait::may_be_another_recipe() const {
 
 std::optional<Expected<void>> ResumeWait::answer() const {
   const auto& analysis = watch_.analysis();
-  if (watch_.has_other_recipe()) {
+  if (watch_.other_recipe()) {
     return fail(other_bench_file(name_));
   }
   if (analysis && analysis->arm() == wire::ARM_REFUSED) {

@@ -127,7 +127,7 @@ Expected<RunOutcome> RunController::excite_and_collect(const std::stop_token& st
 Expected<RunOutcome> RunController::collect_of_ended_run(const std::stop_token& stop) {
   outcome_.began_utc_ns = clock_.utc_now_ns();
   const Expected<void> collected = ResultsWait(*watch_, sequence_ != nullptr).wait(stop);
-  if (watch_->has_other_recipe()) {
+  if (watch_->other_recipe()) {
     return fail(other_bench_file(name()));
   }
   if (!keeping_.begun) {

@@ -97,16 +97,22 @@ std::string RunWatch::silence_of_analysis(std::chrono::seconds limit) const {
       analysis()->service().c_str(), limit.count());
 }
 
+std::optional<Error> RunWatch::other_recipe() const {
+  return messages_.has_other_recipe()
+             ? std::optional(Error{ErrorCode::bad_file,
+                                   "the analysis evaluates this run by another bench file than it "
+                                   "is conducted by; begin a new run"})
+             : std::nullopt;
+}
+
 RunOutlook RunWatch::outlook() const {
   const RunOutlook outlook =
       run_outlook(messages_.analysis(), clock_.now() - messages_.analysis_heard(), commands_);
   if (outlook.kind != RunOutlook::Kind::well) {
     return outlook;
   }
-  if (messages_.has_other_recipe()) {
-    return {RunOutlook::Kind::over,
-            {ErrorCode::bad_file, "the analysis evaluates this run by another bench file than it "
-                                  "is conducted by; begin a new run"}};
+  if (auto other = other_recipe()) {
+    return {RunOutlook::Kind::over, std::move(*other)};
   }
   if (std::string other = messages_.other_instrument(); !other.empty()) {
     return {RunOutlook::Kind::waits, {ErrorCode::no_source, std::move(other)}};

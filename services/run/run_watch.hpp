@@ -79,8 +79,8 @@ public:
   [[nodiscard]] std::size_t signs_of_work() const { return messages_.signs_of_work(); }
   [[nodiscard]] std::size_t described() const { return messages_.described(); }
   [[nodiscard]] std::string other_instrument() const { return messages_.other_instrument(); }
-  // A result of this run names another bench file.
-  [[nodiscard]] bool has_other_recipe() const { return messages_.has_other_recipe(); }
+  // Where a result of this run names another bench file.
+  [[nodiscard]] std::optional<Error> other_recipe() const;
   [[nodiscard]] RunOutlook outlook() const;
   // For people, while it is silent. REQUIRES: analysis().
   [[nodiscard]] std::string silence_of_analysis(std::chrono::seconds limit) const;

@@ -28,8 +28,8 @@ WIDEST_BOUND = 3.0
 PROBABILITY_OF_BOUND = 0.9973
 # U against 2 rms of the errors, where nothing is wrong that U must hold.
 NARROWEST_CLEAN, WIDEST_CLEAN = 0.9, 1.5
-# Claims whose rms is known to a twentieth: no chance is added to the upper end.
-KNOWN_RMS = 200
+# Claims of the fixed seed whose rms is known to a tenth: no chance is added to the upper end.
+KNOWN_RMS = 60
 # By how much U of a mean may exceed what Student's factor alone, as stated, makes of the errors.
 BEYOND_STUDENT = 1.2
 # Sync is always connected here.
@@ -281,7 +281,9 @@ class Tally:
 
     def _not_as_wide_as_errors(self, n, chance):
         least, most = 2.0 * NARROWEST_CLEAN / most_rms(n, chance), 2.0 * WIDEST_CLEAN
-        most = most if n >= KNOWN_RMS else widest_of(most, n, chance)
+        # A smaller chance is that of another seed, for all rows together.
+        is_known = n >= KNOWN_RMS and chance >= CHANCE
+        most = most if is_known else widest_of(most, n, chance)
         narrow = self.width < least
         return f"U is {self.width:.1f} times the rms" if narrow else self._too_wide(most)
 

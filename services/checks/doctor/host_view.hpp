@@ -40,8 +40,8 @@ struct HostView {
   std::map<std::string, unsigned> link_changes_after;
   std::map<std::string, SendQueue> queues_before; // by interface
   std::map<std::string, SendQueue> queues_after;
-  std::map<std::string, TriedHost>
-      tried; // addresses that announcements came from, and no answer; peers, where nothing came
+  // Addresses that announcements came from, and no answer; where nothing came, those of peers.
+  std::map<std::string, TriedHost> tried;
   std::optional<bool> multicast_loops; // a datagram to a group comes back; nothing: not tried
   std::optional<UdpCounters> udp_before;
   std::optional<UdpCounters> udp_after;

@@ -2,10 +2,10 @@
 // this host have changed (address_change.hpp).
 //
 // A thread looks at the addresses where the kernel announces a change, within half a second, and
-// logs what has changed. Where the program is
-// deaf for `settling_time` on end, it asks for the end of the program, which then fails, so that
-// the service manager starts it again with the addresses that there are (RestartSec=2 of its unit):
-// it is heard again within ten seconds. A run goes on then as after a restart of the program.
+// logs what has changed. Where the program is deaf for `settling_time` on end, it asks for the end
+// of the program, which then fails, so that the service manager starts it again with the addresses
+// that there are (RestartSec=2 of its unit): it is heard again within ten seconds. A run goes on
+// then as after a restart of the program.
 //
 // The process ends without its participant, since Cyclone DDS waits at its end for a packet that it
 // sends to itself, to an address that is gone: in outcome() or the destructor, at the latest two
