@@ -9,6 +9,15 @@
 namespace dyncal::services {
 namespace {
 
+struct Count {
+  std::size_t steps = 0, flagged = 0;
+};
+
+// One flag alone may be chance.
+bool is_common(const Count& count) {
+  return count.flagged >= 2 && 2 * count.flagged >= count.steps;
+}
+
 bool carries(ResultFlag kind, const StepResult& result) {
   return std::any_of(result.flags.begin(), result.flags.end(),
                      [kind](const Flag& flag) { return flag.kind == kind; });
@@ -17,9 +26,6 @@ bool carries(ResultFlag kind, const StepResult& result) {
 } // namespace
 
 bool add_flag_of_most(ResultFlag kind, std::span<StepResult> results) {
-  struct Count {
-    std::size_t steps = 0, flagged = 0;
-  };
   std::map<std::string, Count> of_channel;
   for (const StepResult& result : results) {
     Count& count = of_channel[result.channel];
@@ -29,7 +35,7 @@ bool add_flag_of_most(ResultFlag kind, std::span<StepResult> results) {
   bool added = false;
   for (StepResult& result : results) {
     const Count& count = of_channel[result.channel];
-    if (result.valid && !carries(kind, result) && 2 * count.flagged > count.steps) {
+    if (result.valid && !carries(kind, result) && is_common(count)) {
       result.flags.push_back(
           {kind,
            fmt::format("{}: {}: so it is in {} of {} steps; here noise or a low frequency hides it",

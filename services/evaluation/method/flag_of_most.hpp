@@ -1,8 +1,8 @@
-// What most steps of a channel show holds for all of them, also where the noise or a low frequency
-// hides it: a clock that drifts in each series, stamps that are none of the samples.
+// What half of the steps of a channel show holds for all of them, also where the noise or a low
+// frequency hides it: a clock that drifts in each series, stamps that are none of the samples.
 //
-// Where more than half of the steps with a value carry the flag, the others get it too, with a
-// subject that counts them. Chance flags a step in less than one of 100, so that most of a run
+// Where half of the steps with a value and at least two carry the flag, the others get it too, with
+// a subject that counts them. Chance flags a step in less than one of 100, so that half of a run
 // never are. Plain function, any thread.
 #pragma once
 

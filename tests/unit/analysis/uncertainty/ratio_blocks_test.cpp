@@ -148,6 +148,38 @@ INSTANTIATE_TEST_SUITE_P(RatioBlocks, ChangeWithinTheStep,
                          testing::Values(Change{0.02, 0.0}, Change{-0.3, 0.0}, Change{0.0, 0.05},
                                          Change{0.0, 1.5}, Change{0.01, -0.02}));
 
+// A change of `sizes` standard deviations of the mean, drawn `draws` times: how often it is a
+// change, and how often either that or both levels lie within U.
+struct SmallChange {
+  int found = 0, found_or_held = 0;
+};
+
+SmallChange small_change_of(double sizes, int draws) {
+  constexpr double noise = 2e-3, u_mean = noise * std::numbers::sqrt2 / 38.7; // sqrt(3000 / 2)
+  const double lag_rad = sizes * u_mean;
+  SmallChange result;
+  for (int seed = 1; seed <= draws; ++seed) {
+    const Envelope lag = [=](double t) { return t > 1.3 ? lag_rad : 0.0; };
+    const Record a = record_of(0.0, noise, static_cast<unsigned>(seed), steady, lag);
+    const Record b = record_of(0.0, noise, static_cast<unsigned>(seed + draws), steady);
+    const auto ratio = compare_in_blocks(series_of(a), series_of(b), {});
+    const double phase =
+        std::atan2(a.fit.cosine, a.fit.sine) - std::atan2(b.fit.cosine, b.fit.sine);
+    const double expanded = 2.0 * std::max(u_mean, ratio->u_phase_rad);
+    const bool held = std::max(std::abs(phase), std::abs(phase + lag_rad)) <= expanded;
+    result.found += ratio->change ? 1 : 0;
+    result.found_or_held += ratio->change || held ? 1 : 0;
+  }
+  return result;
+}
+
+// Less than the scatter of 58 blocks shows, which it is only a part of.
+TEST(RatioBlocks, AChangeOfFewStandardDeviationsIsFoundOrHeld) {
+  EXPECT_GE(small_change_of(14.0, 100).found, 99);
+  EXPECT_GE(small_change_of(11.0, 100).found_or_held, 90);
+  EXPECT_EQ(small_change_of(0.0, 100).found, 0);
+}
+
 // Blocks of different phase add to a shorter phasor; their mean is not shorter.
 TEST(RatioBlocks, AWanderingPhaseShortensTheRecordAndNotTheBlocks) {
   const Envelope wanders = [](double t) { return 0.5 * std::sin(2.0 * pi * 0.7 * t); };

@@ -42,7 +42,14 @@ TEST(FlagOfMost, IsGivenToTheOtherStepsOfTheChannel) {
   EXPECT_EQ(flags_of(results), 3U);
 }
 
-TEST(FlagOfMost, HalfOfTheStepsAreNotMost) {
+TEST(FlagOfMost, IsGivenFromHalfOfTheStepsOn) {
+  std::vector<StepResult> results{result_of("dau/x", true), result_of("dau/x", false),
+                                  result_of("dau/x", true), result_of("dau/x", false)};
+  EXPECT_TRUE(add_flag_of_most(kind, results));
+  EXPECT_EQ(flags_of(results), 4U);
+}
+
+TEST(FlagOfMost, OneAloneMayBeChance) {
   std::vector<StepResult> results{result_of("dau/x", true), result_of("dau/x", false)};
   EXPECT_FALSE(add_flag_of_most(kind, results));
   EXPECT_EQ(flags_of(results), 1U);
