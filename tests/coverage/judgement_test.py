@@ -16,6 +16,7 @@ import expected_outcomes
 import fault_classes
 from expected_row import PHASE, Row
 from judgement import (
+    CHANCE,
     COVERED,
     COVERED_AND_NARROW,
     COVERED_AS_STUDENT,
@@ -141,6 +142,14 @@ class TallyOfClaims(unittest.TestCase):
     def test_one_error_of_many_u_is_found(self):
         claims = normal_claims(360) + [Claim(10.0, 2.0)]
         self.assertIn("more than 3 U", Tally(claims).finding(COVERED))
+
+    def test_one_far_off_of_few_degrees_of_freedom_is_chance_of_another_seed(self):
+        another_seed = CHANCE / 700
+        for far_off, expected in (([6.5], False), ([6.5, -6.5], True), ([12.5], True)):
+            claims = normal_claims(50, 0.9) + [Claim(error, 2.0) for error in far_off]
+            self.assertIn("more than 3 U", Tally(claims).finding(COVERED))
+            finding = Tally(claims).finding(COVERED, another_seed)
+            self.assertEqual("more than 3 U" in finding, expected, far_off)
         self.assertEqual(Tally(claims, few_repeats=True).finding(COVERED), "")
 
     def test_a_mean_may_be_as_wide_as_the_factor_that_it_states(self):
