@@ -18,9 +18,9 @@ file(CONFIGURE OUTPUT ${FILE} @ONLY CONTENT [[
 
 #include <string_view>
 
-namespace dyncal::services {
+namespace dyncal::inline base {
 
 inline constexpr std::string_view commit = "@commit@";
 
-} // namespace dyncal::services
+} // namespace dyncal::inline base
 ]])

@@ -12,7 +12,7 @@
 
 #include "services/base/work_count.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline base {
 
 class ByteCount {
 public:
@@ -64,4 +64,4 @@ private:
   return bytes;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline base

@@ -10,7 +10,7 @@
 
 #include "services/base/byte_count.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline base {
 
 class CountedText {
 public:
@@ -63,4 +63,4 @@ private:
   ByteCount* count_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline base

@@ -4,10 +4,10 @@
 #include "drivers/error.hpp"
 #include "services/base/error.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline base {
 
 [[nodiscard]] inline Error device_error(const drivers::Error& error) {
   return {ErrorCode::device, error.message};
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline base

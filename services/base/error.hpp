@@ -8,7 +8,7 @@
 
 #include "analysis/base/failure.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline base {
 
 enum class ErrorCode {
   bad_file,     // a file is missing, unreadable or holds a value that is not valid
@@ -39,4 +39,4 @@ template <class... T>
   return first;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline base

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace dyncal::services {
+namespace dyncal::inline base {
 
 // `indent`: of a level; -1: all in one line.
 template <class Json>
@@ -14,4 +14,4 @@ template <class Json>
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline base

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace dyncal::services {
+namespace dyncal::inline base {
 
 // How many letters are to be put in, left out or replaced to make `b` of `a`.
 [[nodiscard]] inline std::size_t edit_distance(const std::string& a, const std::string& b) {
@@ -41,4 +41,4 @@ template <class Names>
   return best;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline base

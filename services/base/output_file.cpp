@@ -11,7 +11,7 @@
 
 #include "drivers/link/file_descriptor.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline base {
 namespace {
 
 using drivers::FileDescriptor;
@@ -135,4 +135,4 @@ Expected<void> check_output_folder(const std::filesystem::path& folder) {
   return check_output_file(folder / "figure");
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline base

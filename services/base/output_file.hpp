@@ -14,7 +14,7 @@
 
 #include "services/base/error.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline base {
 
 [[nodiscard]] Expected<void> write_output_file(const std::filesystem::path& path,
                                                std::string_view text);
@@ -26,4 +26,4 @@ namespace dyncal::services {
 // The same for files in a folder, which is made if it is not there.
 [[nodiscard]] Expected<void> check_output_folder(const std::filesystem::path& folder);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline base

@@ -9,7 +9,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline base {
 namespace {
 
 constexpr mode_t for_everybody = 0666; // less what the umask takes
@@ -161,4 +161,4 @@ Expected<void> OutputFolder::finish() {
   return named;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline base

@@ -14,7 +14,7 @@
 #include "drivers/link/file_descriptor.hpp"
 #include "services/base/error.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline base {
 
 class OutputStream {
 public:
@@ -77,4 +77,4 @@ private:
 [[nodiscard]] Expected<void> take_output_name(const std::filesystem::path& unfinished,
                                               const std::filesystem::path& path);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline base

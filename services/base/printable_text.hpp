@@ -12,7 +12,7 @@
 #include <string>
 #include <string_view>
 
-namespace dyncal::services {
+namespace dyncal::inline base {
 
 // How many bytes of `text` are its first letter in UTF-8; 0: it begins with none.
 [[nodiscard]] inline std::size_t first_letter_bytes(std::string_view text) {
@@ -107,4 +107,4 @@ inline constexpr std::size_t max_line_bytes = 1000;
   return shown.replace(begin, end - begin, left_out);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline base

@@ -7,7 +7,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline base {
 namespace {
 
 constexpr double min_without_exponent = 1e-3; // of the larger of value and u
@@ -85,4 +85,4 @@ RoundedPhase round_phase(double phase_rad, double u_rad) {
   return result;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline base

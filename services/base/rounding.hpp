@@ -14,7 +14,7 @@
 
 #include <string>
 
-namespace dyncal::services {
+namespace dyncal::inline base {
 
 struct RoundedValue {
   std::string value;
@@ -35,4 +35,4 @@ struct RoundedPhase {
 // Two significant digits, without exponent where that is readable.
 [[nodiscard]] std::string rounded_uncertainty(double u);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline base

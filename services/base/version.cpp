@@ -2,7 +2,7 @@
 
 #include "commit.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline base {
 namespace {
 
 std::string compiler() {
@@ -26,4 +26,4 @@ std::string build_description() {
          "\ncompiler: " + compiler() + ", " DYNCAL_BUILD_TYPE;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline base

@@ -6,7 +6,7 @@
 
 #include <string>
 
-namespace dyncal::services {
+namespace dyncal::inline base {
 
 // As results and descriptions carry it: "dyncal 0.2.0 (1a2b3c4)".
 [[nodiscard]] std::string software_version();
@@ -15,4 +15,4 @@ namespace dyncal::services {
 // with the versions it was built with, the compiler and the build type.
 [[nodiscard]] std::string build_description();
 
-} // namespace dyncal::services
+} // namespace dyncal::inline base

@@ -6,7 +6,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline base {
 
 Expected<std::string> read_whole_file(const std::filesystem::path& path, std::uintmax_t max_bytes) {
   std::error_code unknown;
@@ -36,4 +36,4 @@ Expected<std::string> read_whole_file(const std::filesystem::path& path, std::ui
   return text;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline base

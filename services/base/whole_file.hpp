@@ -10,9 +10,9 @@
 
 #include "services/base/error.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline base {
 
 [[nodiscard]] Expected<std::string> read_whole_file(const std::filesystem::path& path,
                                                     std::uintmax_t max_bytes);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline base

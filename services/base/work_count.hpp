@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-namespace dyncal::services {
+namespace dyncal::inline base {
 
 class WorkCount {
 public:
@@ -66,4 +66,4 @@ inline void add_done(const SharedWorkCount& count) {
   }
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline base

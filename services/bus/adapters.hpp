@@ -9,9 +9,9 @@
 namespace dyncal::bus {
 
 // Neither throws; the error names the option that cannot be used.
-[[nodiscard]] services::Expected<std::unique_ptr<UntypedParticipant>>
+[[nodiscard]] base::Expected<std::unique_ptr<UntypedParticipant>>
 create_fast_dds_participant(const ParticipantOptions& options);
-[[nodiscard]] services::Expected<std::unique_ptr<UntypedParticipant>>
+[[nodiscard]] base::Expected<std::unique_ptr<UntypedParticipant>>
 create_cyclone_dds_participant(const ParticipantOptions& options);
 
 } // namespace dyncal::bus

@@ -16,7 +16,7 @@ std::string names_in_this_build() {
   return names.empty() ? "none" : names;
 }
 
-services::Expected<std::unique_ptr<UntypedParticipant>>
+base::Expected<std::unique_ptr<UntypedParticipant>>
 create_untyped(const ParticipantOptions& options) {
 #ifdef DYNCAL_HAVE_FAST_DDS
   if (options.vendor == Vendor::fast_dds) {
@@ -28,36 +28,36 @@ create_untyped(const ParticipantOptions& options) {
     return create_cyclone_dds_participant(options);
   }
 #endif
-  return fail(services::ErrorCode::network,
+  return fail(base::ErrorCode::network,
               "DDS implementation '" + to_string(options.vendor) +
                   "' is not in this build, which has: " + names_in_this_build());
 }
 
 } // namespace
 
-services::Expected<Participant> Participant::create(const ParticipantOptions& options) {
+base::Expected<Participant> Participant::create(const ParticipantOptions& options) {
   if (options.domain < 0 || options.domain > max_domain) {
-    return fail(services::ErrorCode::network,
-                "invalid DDS domain " + std::to_string(options.domain) +
-                    ": must be between 0 and " + std::to_string(max_domain));
+    return fail(base::ErrorCode::network, "invalid DDS domain " + std::to_string(options.domain) +
+                                              ": must be between 0 and " +
+                                              std::to_string(max_domain));
   }
   return create_untyped(options).map(
       [](auto participant) { return Participant(std::move(participant)); });
 }
 
-services::Expected<Vendor> parse_vendor(const std::string& name) {
+base::Expected<Vendor> parse_vendor(const std::string& name) {
   for (const Vendor vendor : vendors_in_this_build()) {
     if (name == to_string(vendor)) {
       return vendor;
     }
   }
   if (name == "memory") {
-    return fail(services::ErrorCode::bad_argument,
+    return fail(base::ErrorCode::bad_argument,
                 "'memory' is the bus of unit tests and cannot leave a process; this build has: " +
                     names_in_this_build());
   }
-  return fail(services::ErrorCode::bad_argument, "unknown DDS implementation '" + name +
-                                                     "'; this build has: " + names_in_this_build());
+  return fail(base::ErrorCode::bad_argument, "unknown DDS implementation '" + name +
+                                                 "'; this build has: " + names_in_this_build());
 }
 
 std::string to_string(Vendor vendor) {

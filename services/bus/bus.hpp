@@ -88,10 +88,10 @@ public:
 class UntypedParticipant {
 public:
   virtual ~UntypedParticipant() = default;
-  virtual services::Expected<std::unique_ptr<UntypedWriter>>
+  virtual base::Expected<std::unique_ptr<UntypedWriter>>
   writer(const TypeSupport& type, const std::string& topic, Profile profile,
          const std::vector<std::string>& partitions) = 0;
-  virtual services::Expected<std::unique_ptr<UntypedReader>>
+  virtual base::Expected<std::unique_ptr<UntypedReader>>
   reader(const TypeSupport& type, const std::string& topic, Profile profile,
          const std::string& partition, std::shared_ptr<WakeUp> wake_up) = 0;
   [[nodiscard]] virtual std::uint64_t malformed_messages() const = 0;
@@ -168,7 +168,7 @@ class Participant {
 public:
   // Fails (network) when the vendor is not in this build or cannot use the domain, interface or
   // peers.
-  [[nodiscard]] static services::Expected<Participant> create(const ParticipantOptions& options);
+  [[nodiscard]] static base::Expected<Participant> create(const ParticipantOptions& options);
   // Over any adapter; tests have one that does not leave the process (services/bus/memory).
   explicit Participant(std::unique_ptr<UntypedParticipant> untyped)
       : untyped_(std::move(untyped)) {}
@@ -176,17 +176,17 @@ public:
   // Fail (bad_argument) when the partition cannot be a bench's name, or that of who catches up
   // (services/bus/names.hpp), or (network) when the vendor refuses.
   template <class T>
-  [[nodiscard]] services::Expected<Writer<T>> writer(const std::string& topic, Profile profile,
-                                                     const std::string& partition) {
+  [[nodiscard]] base::Expected<Writer<T>> writer(const std::string& topic, Profile profile,
+                                                 const std::string& partition) {
     DYNCAL_TRY(profile == Profile::catch_up ? check_asker_name(partition)
                                             : check_bench_name(partition));
     return open_writer<T>(topic, profile, {partition});
   }
   // `wake_up` rings whenever something may have come, and once at the beginning; it may be empty.
   template <class T>
-  [[nodiscard]] services::Expected<Reader<T>> reader(const std::string& topic, Profile profile,
-                                                     const std::string& partition,
-                                                     const std::shared_ptr<WakeUp>& wake_up) {
+  [[nodiscard]] base::Expected<Reader<T>> reader(const std::string& topic, Profile profile,
+                                                 const std::string& partition,
+                                                 const std::shared_ptr<WakeUp>& wake_up) {
     const bool is_bench = profile != Profile::catch_up && check_bench_name(partition).has_value();
     return untyped_->reader(type_support<T>(), topic, profile, partition, wake_up).map([&](auto r) {
       return Reader<T>(std::move(r), is_bench ? partition : "");
@@ -195,27 +195,27 @@ public:
 
   // With the profile of the topic.
   template <class T>
-  [[nodiscard]] services::Expected<Writer<T>> writer(const Topic<T>& topic,
-                                                     const std::string& partition) {
+  [[nodiscard]] base::Expected<Writer<T>> writer(const Topic<T>& topic,
+                                                 const std::string& partition) {
     return writer<T>(topic.name, topic.profile, partition);
   }
   template <class T>
-  [[nodiscard]] services::Expected<Reader<T>> reader(const Topic<T>& topic,
-                                                     const std::string& partition,
-                                                     const std::shared_ptr<WakeUp>& wake_up) {
+  [[nodiscard]] base::Expected<Reader<T>> reader(const Topic<T>& topic,
+                                                 const std::string& partition,
+                                                 const std::shared_ptr<WakeUp>& wake_up) {
     return reader<T>(topic.name, topic.profile, partition, wake_up);
   }
 
   // Of what belongs to one run: everybody who reads the bench gets it, and so does who reads only
   // this run, and nothing of those before it that are kept for late joiners.
   template <class T>
-  [[nodiscard]] services::Expected<Writer<T>>
+  [[nodiscard]] base::Expected<Writer<T>>
   writer_of_run(const Topic<T>& topic, const std::string& bench, const std::string& run) {
     DYNCAL_TRY(check_bench_name(bench));
     return open_writer<T>(topic.name, topic.profile, {bench, partition_of_run(bench, run)});
   }
   template <class T>
-  [[nodiscard]] services::Expected<Reader<T>>
+  [[nodiscard]] base::Expected<Reader<T>>
   reader_of_run(const Topic<T>& topic, const std::string& bench, const std::string& run,
                 const std::shared_ptr<WakeUp>& wake_up) {
     return untyped_
@@ -241,8 +241,8 @@ public:
 
 private:
   template <class T>
-  services::Expected<Writer<T>> open_writer(const std::string& topic, Profile profile,
-                                            const std::vector<std::string>& partitions) {
+  base::Expected<Writer<T>> open_writer(const std::string& topic, Profile profile,
+                                        const std::vector<std::string>& partitions) {
     return untyped_->writer(type_support<T>(), topic, profile, partitions).map([](auto w) {
       return Writer<T>(std::move(w));
     });
@@ -252,7 +252,7 @@ private:
 };
 
 // From a name as --dds takes it. Fails (bad_argument) on any other name, with those of this build.
-[[nodiscard]] services::Expected<Vendor> parse_vendor(const std::string& name);
+[[nodiscard]] base::Expected<Vendor> parse_vendor(const std::string& name);
 [[nodiscard]] std::string to_string(Vendor vendor);
 // The first is the default of --dds.
 [[nodiscard]] std::vector<Vendor> vendors_in_this_build();

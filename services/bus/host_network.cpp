@@ -34,10 +34,10 @@ std::string host_name() {
   return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
 }
 
-services::Expected<std::vector<HostAddress>> host_addresses() {
+base::Expected<std::vector<HostAddress>> host_addresses() {
   ifaddrs* list = nullptr;
   if (getifaddrs(&list) != 0) {
-    return fail(services::ErrorCode::network,
+    return fail(base::ErrorCode::network,
                 "the network interfaces of this machine cannot be listed");
   }
   const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> owner(list, &freeifaddrs);
@@ -59,7 +59,7 @@ std::string to_string(const HostAddress& address) {
   return address.address + " (" + address.interface + ")";
 }
 
-services::Expected<std::string> interface_address(const std::string& name_or_address) {
+base::Expected<std::string> interface_address(const std::string& name_or_address) {
   DYNCAL_TRY(const auto addresses, host_addresses());
   std::string known;
   for (const HostAddress& one : addresses) {
@@ -68,13 +68,13 @@ services::Expected<std::string> interface_address(const std::string& name_or_add
     }
     known += (known.empty() ? "" : ", ") + one.interface + " (" + one.address + ")";
   }
-  return fail(services::ErrorCode::network,
+  return fail(base::ErrorCode::network,
               "network interface \"" + name_or_address +
                   "\" is not one that is up with an IPv4 address on this machine, which has " +
                   known);
 }
 
-services::Expected<std::vector<std::string>> resolve_peers(const std::vector<std::string>& hosts) {
+base::Expected<std::vector<std::string>> resolve_peers(const std::vector<std::string>& hosts) {
   std::vector<std::string> addresses;
   for (const std::string& host : hosts) {
     addrinfo wanted{};
@@ -82,7 +82,7 @@ services::Expected<std::vector<std::string>> resolve_peers(const std::vector<std
     wanted.ai_socktype = SOCK_DGRAM;
     addrinfo* found = nullptr;
     if (const int status = getaddrinfo(host.c_str(), nullptr, &wanted, &found); status != 0) {
-      return fail(services::ErrorCode::network,
+      return fail(base::ErrorCode::network,
                   "peer \"" + host + "\" has no IPv4 address: " + gai_strerror(status));
     }
     addresses.push_back(text_of(found->ai_addr));

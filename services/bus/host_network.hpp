@@ -23,7 +23,7 @@ struct HostAddress {
 };
 
 // Of all interfaces that are up. Fails (network) where they cannot be listed.
-[[nodiscard]] services::Expected<std::vector<HostAddress>> host_addresses();
+[[nodiscard]] base::Expected<std::vector<HostAddress>> host_addresses();
 
 // "10.98.0.1 (lab)"
 [[nodiscard]] std::string to_string(const HostAddress& address);
@@ -33,10 +33,10 @@ struct HostAddress {
 
 // IPv4 address of an interface given by name ("eth0") or by one of this machine's addresses. Fails
 // (network) naming those there are.
-[[nodiscard]] services::Expected<std::string> interface_address(const std::string& name_or_address);
+[[nodiscard]] base::Expected<std::string> interface_address(const std::string& name_or_address);
 
 // IPv4 addresses of hosts given by address or name. Fails (network) naming the first that has none.
-[[nodiscard]] services::Expected<std::vector<std::string>>
+[[nodiscard]] base::Expected<std::vector<std::string>>
 resolve_peers(const std::vector<std::string>& hosts);
 
 // What the kernel grants a UDP socket that asks for `wanted` bytes (net.core.rmem_max caps it); 0

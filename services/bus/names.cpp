@@ -8,12 +8,12 @@ namespace {
 
 constexpr std::string_view pattern_characters = "*?[]";
 
-services::Error bad_name(const std::string& what, const std::string& name, const std::string& why) {
-  return {services::ErrorCode::bad_argument, what + " \"" + name + "\" " + why};
+base::Error bad_name(const std::string& what, const std::string& name, const std::string& why) {
+  return {base::ErrorCode::bad_argument, what + " \"" + name + "\" " + why};
 }
 
-services::Expected<void> check_partition(const std::string& what, const std::string& name,
-                                         std::size_t longest) {
+base::Expected<void> check_partition(const std::string& what, const std::string& name,
+                                     std::size_t longest) {
   if (auto fits = check_name(what, name, longest); !fits) {
     return fits;
   }
@@ -26,10 +26,10 @@ services::Expected<void> check_partition(const std::string& what, const std::str
 
 } // namespace
 
-services::Expected<void> check_name(const std::string& what, const std::string& name,
-                                    std::size_t longest) {
+base::Expected<void> check_name(const std::string& what, const std::string& name,
+                                std::size_t longest) {
   if (name.empty()) {
-    return fail(services::ErrorCode::bad_argument, what + " has no name: give it one");
+    return fail(base::ErrorCode::bad_argument, what + " has no name: give it one");
   }
   if (name.size() > longest) {
     return fail(bad_name(what, name,
@@ -39,11 +39,11 @@ services::Expected<void> check_name(const std::string& what, const std::string& 
   return {};
 }
 
-services::Expected<void> check_bench_name(const std::string& name) {
+base::Expected<void> check_bench_name(const std::string& name) {
   return check_partition("bench", name, max_name);
 }
 
-services::Expected<void> check_asker_name(const std::string& name) {
+base::Expected<void> check_asker_name(const std::string& name) {
   return check_partition("asker", name, max_asker);
 }
 

@@ -18,15 +18,15 @@ inline constexpr std::size_t max_asker = 128;   // characters of who catches up
 
 // Fails (bad_argument) when the name is empty or too long. `what` begins the sentence: "the bench",
 // "source".
-[[nodiscard]] services::Expected<void> check_name(const std::string& what, const std::string& name,
-                                                  std::size_t longest = max_name);
+[[nodiscard]] base::Expected<void> check_name(const std::string& what, const std::string& name,
+                                              std::size_t longest = max_name);
 
 // A name that one bench can have: as above, and without the characters that make a DDS partition a
 // pattern (* ? [ ]).
-[[nodiscard]] services::Expected<void> check_bench_name(const std::string& name);
+[[nodiscard]] base::Expected<void> check_bench_name(const std::string& name);
 
 // The name of who catches up, which is a partition as well: likewise, but it may be longer.
-[[nodiscard]] services::Expected<void> check_asker_name(const std::string& name);
+[[nodiscard]] base::Expected<void> check_asker_name(const std::string& name);
 
 // The partition of one run: the bench, "/", and the run with _ in place of * ? [ ].
 [[nodiscard]] std::string partition_of_run(const std::string& bench, std::string run);

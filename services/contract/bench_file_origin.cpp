@@ -5,7 +5,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 namespace {
 
 std::map<std::string, std::string> values_by_key(const std::string& settings) {
@@ -65,4 +65,4 @@ std::string refusal(const SettingsDifference& difference, const std::string& ben
                      value_phrase(difference.service_value), value_phrase(difference.run_value));
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

@@ -10,7 +10,7 @@
 #include <optional>
 #include <string>
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 
 struct BenchFileOrigin {
   std::string sha256;   // of the whole file, in hexadecimal
@@ -38,4 +38,4 @@ settings_difference(const std::string& of_service, const std::map<std::string, s
 [[nodiscard]] std::string refusal(const SettingsDifference& difference, const std::string& bench,
                                   const std::string& source, const std::string& host);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

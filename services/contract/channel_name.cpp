@@ -1,6 +1,6 @@
 #include "services/contract/channel_name.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 
 std::optional<ChannelName> parse_channel_name(const std::string& text) {
   const std::size_t slash = text.find('/');
@@ -11,4 +11,4 @@ std::optional<ChannelName> parse_channel_name(const std::string& text) {
   return ChannelName{text.substr(0, slash), text.substr(slash + 1)};
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 
 struct ChannelName {
   std::string source;
@@ -18,4 +18,4 @@ struct ChannelName {
 // Splits "source/channel"; nothing when it is not of that form.
 [[nodiscard]] std::optional<ChannelName> parse_channel_name(const std::string& text);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

@@ -4,10 +4,10 @@
 
 #include <cstdint>
 
-namespace dyncal::contract_versions {
+namespace dyncal::inline contract::contract_versions {
 
 // An analysis writes its status and the results of a run in the partition of that run, too; before,
 // in that of the bench alone.
 inline constexpr std::uint32_t partitions_of_runs = 2;
 
-} // namespace dyncal::contract_versions
+} // namespace dyncal::inline contract::contract_versions

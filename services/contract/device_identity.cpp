@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 
 drivers::SourceDescription with_identity(drivers::SourceDescription description,
                                          const DeviceIdentity& identity) {
@@ -22,4 +22,4 @@ drivers::SourceDescription with_identity(drivers::SourceDescription description,
   return description;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

@@ -8,7 +8,7 @@
 
 #include "drivers/sample_block.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 
 struct StatedRange { // minimum == maximum: the channel has none
   double minimum = 0.0;
@@ -27,4 +27,4 @@ struct DeviceIdentity { // empty: what the instrument says
 [[nodiscard]] drivers::SourceDescription with_identity(drivers::SourceDescription description,
                                                        const DeviceIdentity& identity);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

@@ -6,7 +6,7 @@
 #include <fmt/core.h>
 #include <openssl/evp.h>
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 
 struct Digest::Context {
   EVP_MD_CTX* evp = EVP_MD_CTX_new();
@@ -44,4 +44,4 @@ std::string sha256_hex(std::string_view text) {
   return digest.hex();
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 
 class Digest {
 public:
@@ -27,4 +27,4 @@ private:
 
 [[nodiscard]] std::string sha256_hex(std::string_view text);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

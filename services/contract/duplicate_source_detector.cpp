@@ -1,6 +1,6 @@
 #include "services/contract/duplicate_source_detector.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 
 void DuplicateSourceDetector::add(std::uint64_t session) {
   if (session_ == session) {
@@ -18,4 +18,4 @@ void DuplicateSourceDetector::add(std::uint64_t session) {
   session_ = session;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 
 class DuplicateSourceDetector {
 public:
@@ -31,4 +31,4 @@ private:
   int returns_ = 0;                   // to a session that had been left
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

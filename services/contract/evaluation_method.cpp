@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 namespace {
 
 struct Spelling {
@@ -37,4 +37,4 @@ std::optional<EvaluationMethod> parse_evaluation_method(std::string_view text) {
   return std::nullopt;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string_view>
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 
 enum class EvaluationMethod {
   analogue,            // sensor and reference are channels of one system
@@ -25,4 +25,4 @@ enum class EvaluationMethod {
   return method == EvaluationMethod::analogue || method == EvaluationMethod::absolute_time;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

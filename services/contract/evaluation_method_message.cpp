@@ -1,6 +1,6 @@
 #include "services/contract/evaluation_method_message.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 
 wire::Method to_wire(EvaluationMethod method) {
   switch (method) {
@@ -30,4 +30,4 @@ std::optional<EvaluationMethod> from_wire(wire::Method method) {
   return std::nullopt;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

@@ -6,10 +6,10 @@
 #include "idl/dyncal.h"
 #include "services/contract/evaluation_method.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 
 [[nodiscard]] wire::Method to_wire(EvaluationMethod method);
 // Nothing for a value of a later contract.
 [[nodiscard]] std::optional<EvaluationMethod> from_wire(wire::Method method);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

@@ -5,7 +5,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 
 void KnownSource::take(const wire::SourceDescription& described) {
   if (description && description->session() != described.session()) {
@@ -55,4 +55,4 @@ std::string two_send_as(const std::string& bench, const std::string& source,
       are_known ? fmt::format(" ({} and {})", one_service, other_service) : "", source, bench);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

@@ -15,7 +15,7 @@
 #include "idl/dyncal.h"
 #include "services/contract/duplicate_source_detector.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 
 struct KnownSource {
   static constexpr std::size_t max_earlier = 4;
@@ -55,4 +55,4 @@ using KnownSources = std::map<std::string, KnownSource>;
                                       const std::string& one_service,
                                       const std::string& other_service);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 
 struct ProgramIdentity {
   std::string program; // "dyncal-acs"
@@ -14,4 +14,4 @@ struct ProgramIdentity {
   std::string dds;      // "fastdds" or "cyclonedds"
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

@@ -10,7 +10,7 @@
 
 #include "services/contract/unit.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 namespace {
 
 struct Dimension {
@@ -217,4 +217,4 @@ Quantity quantity_of_word(const std::string& word) {
   return found == known.end() ? Quantity::unknown : found->second;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

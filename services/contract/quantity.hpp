@@ -11,7 +11,7 @@
 
 #include <string>
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 
 enum class Quantity {
   unknown,
@@ -43,4 +43,4 @@ enum class Quantity {
 // `word` may be a unit, too: what a file says where the bench file says another.
 [[nodiscard]] Quantity quantity_of_word(const std::string& word);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

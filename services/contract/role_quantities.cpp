@@ -7,7 +7,7 @@
 #include "services/contract/quantity.hpp"
 #include "services/contract/unit.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 namespace {
 
 struct Expectation {
@@ -152,4 +152,4 @@ std::vector<RoleQuantityProblem> find_quantity_problems(const RoleNames& names,
   return problems;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

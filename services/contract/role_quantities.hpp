@@ -24,7 +24,7 @@
 #include "drivers/sample_block.hpp"
 #include "services/contract/role_rules.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 
 struct RoleQuantityProblem {
   std::string role;      // "sync_acs"
@@ -40,4 +40,4 @@ using DescribedChannel =
 [[nodiscard]] std::vector<RoleQuantityProblem>
 find_quantity_problems(const RoleNames& roles, const DescribedChannel& described);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

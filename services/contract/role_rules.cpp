@@ -4,7 +4,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 namespace {
 
 std::optional<RoleProblem> find_missing_sensor(const RoleNames& roles) {
@@ -97,4 +97,4 @@ bool has_own_clocks(const std::vector<ChannelName>& dut, const ChannelName& sync
   return !dut.empty() && dut.front().source != sync_dau.source;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

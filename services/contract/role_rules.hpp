@@ -12,7 +12,7 @@
 #include "services/contract/channel_name.hpp"
 #include "services/contract/evaluation_method.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 
 struct RoleNames {
   EvaluationMethod method = EvaluationMethod::sample_timestamping;
@@ -40,4 +40,4 @@ struct RoleProblem {
 // their own, and sync is recorded beside them.
 [[nodiscard]] bool has_own_clocks(const std::vector<ChannelName>& dut, const ChannelName& sync_dau);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

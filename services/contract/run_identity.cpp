@@ -8,7 +8,7 @@
 #include "services/contract/session_number.hpp"
 #include "services/contract/time_name.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 namespace {
 
 constexpr std::size_t start_size = std::string_view("20261122T101530.125Z").size();
@@ -92,4 +92,4 @@ std::string safe_name(std::string name) {
   return name;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

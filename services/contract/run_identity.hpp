@@ -14,7 +14,7 @@
 
 #include "services/base/error.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 
 inline constexpr std::size_t max_run_name = 34; // 64 of the key, less ".START.CONDUCTOR"
 
@@ -40,4 +40,4 @@ struct RunIdentity {
 // As it stands in the name of a file or folder.
 [[nodiscard]] std::string safe_name(std::string name);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 
 void SampleContinuity::begin_session(const SourceBlock& block, ContinuityFinding& finding) {
   finding.first = !heard_;
@@ -59,4 +59,4 @@ void SampleContinuity::count_samples(const SourceBlock& block, ContinuityFinding
   counts_.repeated_samples += finding.repeated_samples;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

@@ -17,7 +17,7 @@
 
 #include "services/contract/source_block.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 
 // What one block says about those before it.
 struct ContinuityFinding {
@@ -79,4 +79,4 @@ private:
   ContinuityCounts counts_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

@@ -2,7 +2,7 @@
 
 #include <random>
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 
 std::uint64_t random_session() {
   std::random_device device;
@@ -13,4 +13,4 @@ std::uint64_t random_session() {
   return session;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

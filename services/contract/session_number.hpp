@@ -4,9 +4,9 @@
 
 #include <cstdint>
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 
 // Never 0.
 [[nodiscard]] std::uint64_t random_session();
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

@@ -2,7 +2,7 @@
 
 #include "idl/dyncal.h"
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 
 bool SourceBlock::is_consistent() const {
   const bool stamped = stamps_ns.empty()
@@ -41,4 +41,4 @@ SourceBlock view_block(const drivers::SampleBlock& block, std::uint64_t session,
           .values = block.values};
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

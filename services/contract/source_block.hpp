@@ -16,7 +16,7 @@ namespace dyncal::wire {
 class SampleBlock;
 }
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 
 struct SourceBlock {
   std::uint64_t session = 0;
@@ -47,4 +47,4 @@ struct SourceBlock {
 [[nodiscard]] SourceBlock view_block(const drivers::SampleBlock& block, std::uint64_t session,
                                      std::uint64_t number);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

@@ -5,7 +5,7 @@
 #include "idl/dyncal.h"
 #include "services/base/printable_text.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 namespace {
 
 drivers::StampInstant stamp_instant(wire::StampInstant instant) {
@@ -67,4 +67,4 @@ std::string device_difference(const std::string& source, const drivers::SourceDe
                      source, device_text(now), device_text(first));
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

@@ -12,7 +12,7 @@ namespace dyncal::wire {
 class SourceDescription;
 }
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 
 [[nodiscard]] drivers::SourceDescription from_message(const wire::SourceDescription& message);
 
@@ -22,4 +22,4 @@ namespace dyncal::services {
                                             const drivers::SourceDescription& first,
                                             const drivers::SourceDescription& now);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

@@ -2,7 +2,7 @@
 
 #include "services/contract/topics.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 
 const char* to_string(SourceKind kind) {
   switch (kind) {
@@ -71,4 +71,4 @@ const char* sample_topic(SourceKind kind) {
   return bus::topics::acs_samples;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

@@ -4,7 +4,7 @@
 
 #include "idl/dyncal.h"
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 
 enum class SourceKind {
   dau, // a digital acquisition unit: sensors with digital output and time stamps
@@ -26,4 +26,4 @@ enum class SourceKind {
 // The topic on which a source of this kind publishes its samples.
 [[nodiscard]] const char* sample_topic(SourceKind kind);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

@@ -7,7 +7,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 
 std::string time_name(std::int64_t utc_ns) {
   const std::int64_t now_ms = utc_ns / 1'000'000;
@@ -25,4 +25,4 @@ bool is_time_name(const std::string& name) {
                     [](char c, char f) { return f == 'd' ? c >= '0' && c <= '9' : c == f; });
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <string>
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 
 [[nodiscard]] std::string time_name(std::int64_t utc_ns);
 [[nodiscard]] bool is_time_name(const std::string& name);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

@@ -4,7 +4,7 @@
 
 #include "idl/dyncal.h"
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 
 TriggeredRecord from_message(const wire::TriggeredRecord& message) {
   return {.session = message.session(),
@@ -19,4 +19,4 @@ TriggeredRecord from_message(const wire::TriggeredRecord& message) {
           .values = message.values()};
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

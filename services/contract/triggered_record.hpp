@@ -14,7 +14,7 @@ namespace dyncal::wire {
 class TriggeredRecord;
 }
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 
 struct TriggeredRecord {
   std::uint64_t session = 0;
@@ -36,4 +36,4 @@ struct TriggeredRecord {
 
 [[nodiscard]] TriggeredRecord from_message(const wire::TriggeredRecord& message);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

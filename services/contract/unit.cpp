@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 namespace {
 
 using Pair = std::pair<std::string_view, std::string_view>;
@@ -116,4 +116,4 @@ bool is_acceleration(const std::string& d_si) {
   return d_si == R"(\metre\second\tothe{-2})";
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 
 // The D-SI form, or nothing when `unit` is neither D-SI nor a known short form.
 [[nodiscard]] std::optional<std::string> to_d_si(const std::string& unit);
@@ -18,4 +18,4 @@ namespace dyncal::services {
 // m/s^2, the unit in which levels are planned.
 [[nodiscard]] bool is_acceleration(const std::string& d_si);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

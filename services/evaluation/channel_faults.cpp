@@ -7,7 +7,7 @@
 
 #include "analysis/base/chi_squared_limit.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 constexpr double same_acceleration = 0.97; // a level is held to some per cent
@@ -159,4 +159,4 @@ StepResult ChannelFaults::settled(StepResult result) const {
   return result;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

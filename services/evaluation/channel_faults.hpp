@@ -26,7 +26,7 @@
 
 #include "services/evaluation/result/step_result.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 class ChannelFaults {
 public:
@@ -63,4 +63,4 @@ private:
   std::map<std::string, ShownOfSteps> shown_; // by channel under calibration
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 constexpr double max_distrusted_part = 0.2; // as where it is the cause that a step has no result
@@ -87,4 +87,4 @@ std::vector<ClockReport> ClockReportBuilder::reports(std::uint64_t lost) const {
   return {std::move(report)};
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

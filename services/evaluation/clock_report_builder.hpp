@@ -20,7 +20,7 @@
 #include "services/contract/source_block.hpp"
 #include "services/evaluation/result/clock_report.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 class ClockReportBuilder {
 public:
@@ -51,4 +51,4 @@ private:
   std::vector<std::int64_t> stamps_; // of a block whose stamps follow from a clock
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -5,7 +5,7 @@
 #include <iterator>
 #include <utility>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 namespace {
 
@@ -71,4 +71,4 @@ void EvaluationQueue::keep(std::vector<StepResult> results) {
                    std::make_move_iterator(results.end()));
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -13,7 +13,7 @@
 
 #include "services/evaluation/method/method.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 class EvaluationQueue {
 public:
@@ -51,4 +51,4 @@ private:
   std::vector<StepResult> finished_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -8,7 +8,7 @@
 #include "services/contract/unit.hpp"
 #include "services/evaluation/record/channel_level.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 double highest_level_m_s2(const Recipe& recipe, const std::string& frequency_text_hz) {
@@ -52,4 +52,4 @@ std::optional<std::string> LevelWatch::look(const SourceRecord& reference,
                      planned_m_s2);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

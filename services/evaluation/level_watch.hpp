@@ -18,7 +18,7 @@
 #include "services/evaluation/recipe/recipe.hpp"
 #include "services/evaluation/record/source_record.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 class LevelWatch {
 public:
@@ -36,4 +36,4 @@ private:
   std::optional<std::int64_t> looked_ns_; // newest stamp when it was looked at last
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

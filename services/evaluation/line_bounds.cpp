@@ -7,7 +7,7 @@
 #include "analysis/uncertainty/background_power.hpp"
 #include "services/evaluation/method/line_check.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 using analysis::Contribution;
@@ -319,4 +319,4 @@ StepResult LineBounds::settled(StepResult result) const {
   return result;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -35,7 +35,7 @@
 
 #include "services/evaluation/result/step_result.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 class LineBounds {
 public:
@@ -96,4 +96,4 @@ private:
   MeasuredLines quiet_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

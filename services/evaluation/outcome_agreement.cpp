@@ -8,7 +8,7 @@
 
 #include "services/evaluation/transfer_summary.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 constexpr double agreement_u = 0.01;     // far above rounding, far below what anybody relies on
@@ -189,4 +189,4 @@ OutcomeAgreement hold_against(const RunOutcome& published, const RunOutcome& aga
   return agreement;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

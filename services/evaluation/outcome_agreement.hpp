@@ -14,7 +14,7 @@
 
 #include "services/evaluation/result/run_outcome.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 struct OutcomeAgreement {
   std::size_t values = 0;    // valid ones that were published
@@ -34,4 +34,4 @@ struct OutcomeAgreement {
 // The one of its points takes its place, or none; a sentence for each. REQUIRES: a recipe
 [[nodiscard]] std::vector<std::string> replace_foreign_means(RunOutcome& outcome);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

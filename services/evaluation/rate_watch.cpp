@@ -4,7 +4,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 constexpr std::size_t blocks_looked_at = 16;
@@ -58,4 +58,4 @@ void RateWatch::judge(const std::string& source, double rate_hz) {
   }
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -18,7 +18,7 @@
 #include "services/contract/source_block.hpp"
 #include "services/evaluation/recipe/recipe.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 class RateWatch {
 public:
@@ -46,4 +46,4 @@ private:
   std::optional<std::string> problem_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -12,7 +12,7 @@
 #include "services/evaluation/method/monte_carlo_check.hpp"
 #include "services/evaluation/record/step_temperature.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 namespace {
 
@@ -397,4 +397,4 @@ void RunEvaluator::finish(EvaluationOutput& output) {
   }
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

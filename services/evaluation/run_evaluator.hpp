@@ -47,7 +47,7 @@
 #include "services/evaluation/record/step_snapshot.hpp"
 #include "services/evaluation/transfer_summary.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 struct EvaluationOutput {
   std::vector<StepResult> results;
@@ -205,4 +205,4 @@ private:
   EvaluationQueue evaluations_; // the last member: it ends those that look at the others
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

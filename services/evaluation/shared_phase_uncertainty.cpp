@@ -7,7 +7,7 @@
 #include <numbers>
 #include <string>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 using analysis::Contribution;
@@ -105,4 +105,4 @@ SharedPhaseUncertainty shared_phase_uncertainty(std::span<const BudgetAtFrequenc
   return result;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

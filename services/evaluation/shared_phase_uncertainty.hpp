@@ -16,7 +16,7 @@
 #include "analysis/response/group_delay.hpp"
 #include "analysis/uncertainty/contribution.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 struct BudgetAtFrequency {
   double frequency_hz = 0.0;
@@ -31,4 +31,4 @@ struct SharedPhaseUncertainty {
 [[nodiscard]] SharedPhaseUncertainty
 shared_phase_uncertainty(std::span<const BudgetAtFrequency> frequencies);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

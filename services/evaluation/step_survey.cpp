@@ -6,7 +6,7 @@
 #include "services/evaluation/method/method.hpp"
 #include "services/evaluation/record/step_alignment.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 StepSurvey::StepSurvey(const Recipe& recipe) : recipe_(recipe) {
   const auto method = make_method(std::make_shared<const Recipe>(recipe));
@@ -52,4 +52,4 @@ std::shared_ptr<const RunSchedule> StepSurvey::schedule() const {
   return std::make_shared<const RunSchedule>(align_steps(plan, found));
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

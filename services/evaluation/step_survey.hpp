@@ -17,7 +17,7 @@
 #include "services/evaluation/record/excitation_survey.hpp"
 #include "services/evaluation/record/run_schedule.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 class StepSurvey {
 public:
@@ -37,4 +37,4 @@ private:
   std::vector<ExcitationSurvey> records_; // in the order of the method's searches
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

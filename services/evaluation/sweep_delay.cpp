@@ -9,7 +9,7 @@
 #include "analysis/response/delay_branches.hpp"
 #include "analysis/uncertainty/random_effects.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 // Less would add the scatter of noise to the group delay of every clean run of few repetitions;
@@ -74,4 +74,4 @@ double u_delay_of_sweeps(std::span<const SweepPhase> phases) {
   return std::sqrt(std::max(0.0, half * half - noise));
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -13,7 +13,7 @@
 #include <cstdint>
 #include <span>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 struct SweepPhase { // of one repetition at one frequency
   std::uint32_t sweep = 0;
@@ -25,4 +25,4 @@ struct SweepPhase { // of one repetition at one frequency
 // In seconds.
 [[nodiscard]] double u_delay_of_sweeps(std::span<const SweepPhase> phases);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

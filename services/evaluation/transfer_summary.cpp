@@ -13,7 +13,7 @@
 #include "services/evaluation/shared_phase_uncertainty.hpp"
 #include "services/evaluation/sweep_delay.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 constexpr double before_excitation = 3.0; // standard uncertainties of a group delay below 0
@@ -203,4 +203,4 @@ std::vector<TransferFunction> TransferSummary::transfer_functions() const {
   return functions;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

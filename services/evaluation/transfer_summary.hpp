@@ -15,7 +15,7 @@
 #include "services/evaluation/result/step_result.hpp"
 #include "services/evaluation/result/transfer_function.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 class TransferSummary {
 public:
@@ -40,4 +40,4 @@ private:
   std::map<std::string, ChannelResults> results_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

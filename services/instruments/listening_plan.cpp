@@ -6,7 +6,7 @@
 
 #include "drivers/smartup/sensor_id.hpp"
 
-namespace dyncal::services::dau {
+namespace dyncal::inline instruments {
 
 namespace {
 
@@ -90,4 +90,4 @@ Expected<std::vector<PlannedEndpoint>> plan_listening(const std::vector<BenchFil
   return endpoints;
 }
 
-} // namespace dyncal::services::dau
+} // namespace dyncal::inline instruments

@@ -10,7 +10,7 @@
 #include "services/base/error.hpp"
 #include "services/bench/file/bench_file.hpp"
 
-namespace dyncal::services::dau {
+namespace dyncal::inline instruments {
 
 struct PlannedSource {
   std::string bench;
@@ -30,4 +30,4 @@ struct PlannedEndpoint {
 [[nodiscard]] Expected<std::vector<PlannedEndpoint>>
 plan_listening(const std::vector<BenchFile>& benches);
 
-} // namespace dyncal::services::dau
+} // namespace dyncal::inline instruments

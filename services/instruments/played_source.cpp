@@ -8,7 +8,7 @@
 #include "drivers/files/file_source.hpp"
 #include "services/stream/play_of_run.hpp"
 
-namespace dyncal::services::acs {
+namespace dyncal::inline instruments {
 namespace {
 
 Error named(const SourceSettings& settings, const drivers::Error& error) {
@@ -131,4 +131,4 @@ Expected<void> PlayedSource::play_for_every_run(SourcePublisher& publisher,
   return {};
 }
 
-} // namespace dyncal::services::acs
+} // namespace dyncal::inline instruments

@@ -17,7 +17,7 @@
 #include "services/bench/file/bench_file.hpp"
 #include "services/stream/source_publisher.hpp"
 
-namespace dyncal::services::acs {
+namespace dyncal::inline instruments {
 
 class PlayedSource {
 public:
@@ -57,4 +57,4 @@ make_driver(const SourceSettings& settings);
 // Where such a source publishes, and how long it waits for room.
 [[nodiscard]] SourceOptions options_of(const BenchFile& bench, const SourceSettings& settings);
 
-} // namespace dyncal::services::acs
+} // namespace dyncal::inline instruments

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace dyncal::services::dso {
+namespace dyncal::inline instruments {
 
 Expected<drivers::tss::Series> select_channels(drivers::tss::Series series,
                                                const std::map<std::string, std::string>& our_names,
@@ -36,4 +36,4 @@ Expected<drivers::tss::Series> select_channels(drivers::tss::Series series,
   return series;
 }
 
-} // namespace dyncal::services::dso
+} // namespace dyncal::inline instruments

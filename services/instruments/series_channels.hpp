@@ -11,10 +11,10 @@
 #include "drivers/tss/series.hpp"
 #include "services/base/error.hpp"
 
-namespace dyncal::services::dso {
+namespace dyncal::inline instruments {
 
 [[nodiscard]] Expected<drivers::tss::Series>
 select_channels(drivers::tss::Series series, const std::map<std::string, std::string>& our_names,
                 const std::vector<std::string>& wanted);
 
-} // namespace dyncal::services::dso
+} // namespace dyncal::inline instruments

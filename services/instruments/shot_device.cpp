@@ -6,7 +6,7 @@
 
 #include "services/base/device_error.hpp"
 
-namespace dyncal::services::dso {
+namespace dyncal::inline instruments {
 namespace {
 
 using std::chrono::milliseconds;
@@ -87,4 +87,4 @@ Expected<std::optional<drivers::tss::Series>> ShotDevice::series_of_last_trigger
   }
 }
 
-} // namespace dyncal::services::dso
+} // namespace dyncal::inline instruments

@@ -22,7 +22,7 @@
 #include "services/bench/file/source_settings.hpp"
 #include "services/instruments/trigger_count.hpp"
 
-namespace dyncal::services::dso {
+namespace dyncal::inline instruments {
 
 struct ShotPair {
   drivers::dso::Shot trace;
@@ -56,4 +56,4 @@ private:
 // The trace of sync that a shot needs: some periods, the trigger in the middle.
 [[nodiscard]] drivers::dso::Acquisition acquisition_for(double frequency_hz);
 
-} // namespace dyncal::services::dso
+} // namespace dyncal::inline instruments

@@ -2,7 +2,7 @@
 
 #include "drivers/can/time/system_clock.hpp"
 
-namespace dyncal::services::can {
+namespace dyncal::inline instruments {
 
 namespace {
 
@@ -66,4 +66,4 @@ drivers::can::StreamSettings stream_settings(const SourceSettings& source) {
   return stream;
 }
 
-} // namespace dyncal::services::can
+} // namespace dyncal::inline instruments

@@ -4,9 +4,9 @@
 #include "drivers/can/stream_settings.hpp"
 #include "services/bench/file/source_settings.hpp"
 
-namespace dyncal::services::can {
+namespace dyncal::inline instruments {
 
 // REQUIRES: the driver of the source is "can".
 [[nodiscard]] drivers::can::StreamSettings stream_settings(const SourceSettings& source);
 
-} // namespace dyncal::services::can
+} // namespace dyncal::inline instruments

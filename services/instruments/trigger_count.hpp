@@ -16,7 +16,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace dyncal::services::dso {
+namespace dyncal::inline instruments {
 
 enum class SeriesVerdict { belongs, late, open, first };
 
@@ -58,4 +58,4 @@ private:
   std::uint64_t possible_ = 0;
 };
 
-} // namespace dyncal::services::dso
+} // namespace dyncal::inline instruments

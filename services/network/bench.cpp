@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services::live {
+namespace dyncal::network {
 namespace {
 
 std::int64_t seconds_since(bus::Clock::Instant then, bus::Clock::Instant now) {
@@ -197,4 +197,4 @@ Condition condition_of(const Bench& bench, bus::Clock::Instant now) {
   return condition;
 }
 
-} // namespace dyncal::services::live
+} // namespace dyncal::network

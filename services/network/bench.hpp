@@ -13,7 +13,7 @@
 #include "services/network/run.hpp"
 #include "services/network/source.hpp"
 
-namespace dyncal::services::live {
+namespace dyncal::network {
 
 // A program that reports on the bench beside its sources: an analysis, a recorder, or the guard of
 // the exciter.
@@ -66,4 +66,4 @@ struct Bench {
 // The worst of the bench, its sources, services and its current run.
 [[nodiscard]] Condition condition_of(const Bench& bench, bus::Clock::Instant now);
 
-} // namespace dyncal::services::live
+} // namespace dyncal::network

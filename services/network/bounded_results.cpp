@@ -1,7 +1,7 @@
 #include "services/network/bounded_results.hpp"
 #include "services/base/printable_text.hpp"
 
-namespace dyncal::services::live {
+namespace dyncal::network {
 namespace {
 
 template <class List>
@@ -64,4 +64,4 @@ void bound(ClockReport& report, const Limits& limits) {
   bound(report.flags, limits);
 }
 
-} // namespace dyncal::services::live
+} // namespace dyncal::network

@@ -7,11 +7,11 @@
 #include "services/evaluation/result/transfer_function.hpp"
 #include "services/network/limits.hpp"
 
-namespace dyncal::services::live {
+namespace dyncal::network {
 
 void bound(StepResult& result, const Limits& limits);
 // The phase covariance, which is as large as the square of its points, is dropped.
 void bound(TransferFunction& function, const Limits& limits);
 void bound(ClockReport& report, const Limits& limits);
 
-} // namespace dyncal::services::live
+} // namespace dyncal::network

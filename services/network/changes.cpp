@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services::live {
+namespace dyncal::network {
 
 std::vector<Condition> changes_of(const Source& before, const Source& source) {
   if (before.name.empty()) {
@@ -54,4 +54,4 @@ std::vector<Condition> changes_of(const RunBefore& before, const Run& run) {
   return changes;
 }
 
-} // namespace dyncal::services::live
+} // namespace dyncal::network

@@ -9,7 +9,7 @@
 #include "services/network/run.hpp"
 #include "services/network/source.hpp"
 
-namespace dyncal::services::live {
+namespace dyncal::network {
 
 // `before` has no name if the source is new.
 [[nodiscard]] std::vector<Condition> changes_of(const Source& before, const Source& source);
@@ -23,4 +23,4 @@ struct RunBefore {
 [[nodiscard]] RunBefore state_before(const Run& run);
 [[nodiscard]] std::vector<Condition> changes_of(const RunBefore& before, const Run& run);
 
-} // namespace dyncal::services::live
+} // namespace dyncal::network

@@ -1,6 +1,6 @@
 #include "services/network/condition.hpp"
 
-namespace dyncal::services::live {
+namespace dyncal::network {
 
 const char* to_string(Severity severity) {
   switch (severity) {
@@ -18,4 +18,4 @@ const char* to_string(Severity severity) {
   return "ok";
 }
 
-} // namespace dyncal::services::live
+} // namespace dyncal::network

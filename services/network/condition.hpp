@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-namespace dyncal::services::live {
+namespace dyncal::network {
 
 // The worse the higher. Stale: nothing is known, for nothing is heard any more.
 enum class Severity { ok, note, warning, error, stale };
@@ -32,4 +32,4 @@ struct Event {
   std::string text;
 };
 
-} // namespace dyncal::services::live
+} // namespace dyncal::network

@@ -13,7 +13,7 @@
 #include "services/network/bounded_results.hpp"
 #include "services/network/changes.hpp"
 
-namespace dyncal::services::live {
+namespace dyncal::network {
 namespace {
 
 // What was heard of longest ago makes way, if it is gone.
@@ -394,4 +394,4 @@ std::vector<Event> Laboratory::events() const {
   return all;
 }
 
-} // namespace dyncal::services::live
+} // namespace dyncal::network

@@ -25,7 +25,7 @@
 #include "services/network/bench.hpp"
 #include "services/network/limits.hpp"
 
-namespace dyncal::services::live {
+namespace dyncal::network {
 
 class Laboratory {
 public:
@@ -88,4 +88,4 @@ private:
   std::uint64_t runs_heard_ = 0;
 };
 
-} // namespace dyncal::services::live
+} // namespace dyncal::network

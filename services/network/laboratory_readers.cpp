@@ -2,7 +2,7 @@
 
 #include "services/contract/topics.hpp"
 
-namespace dyncal::services::live {
+namespace dyncal::network {
 
 Expected<LaboratoryReaders> LaboratoryReaders::open(bus::Participant& participant,
                                                     const std::string& bench,
@@ -44,4 +44,4 @@ void LaboratoryReaders::work(Laboratory& laboratory) {
   laboratory.work();
 }
 
-} // namespace dyncal::services::live
+} // namespace dyncal::network

@@ -14,7 +14,7 @@
 #include "services/contract/program_identity.hpp"
 #include "services/network/laboratory.hpp"
 
-namespace dyncal::services::live {
+namespace dyncal::network {
 
 class LaboratoryReaders {
 public:
@@ -46,4 +46,4 @@ private:
   ClockAsker asker_;
 };
 
-} // namespace dyncal::services::live
+} // namespace dyncal::network

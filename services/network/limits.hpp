@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace dyncal::services::live {
+namespace dyncal::network {
 
 // Nothing was heard of a bench or a source for longer: it is silent. Sources and services report
 // every second; a page that asks in turn still shows it within 3 s.
@@ -38,4 +38,4 @@ struct LeftOut {
   std::uint64_t results = 0;
 };
 
-} // namespace dyncal::services::live
+} // namespace dyncal::network

@@ -5,7 +5,7 @@
 #include "services/base/printable_text.hpp"
 #include "services/contract/evaluation_method_message.hpp"
 
-namespace dyncal::services::live {
+namespace dyncal::network {
 namespace {
 
 RunState state_of(wire::MeasurementState state) {
@@ -304,4 +304,4 @@ void Run::take(const wire::ServiceStatus& status, Instant at) {
                             .heard = at};
 }
 
-} // namespace dyncal::services::live
+} // namespace dyncal::network

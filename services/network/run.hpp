@@ -22,7 +22,7 @@
 #include "services/network/condition.hpp"
 #include "services/network/limits.hpp"
 
-namespace dyncal::services::live {
+namespace dyncal::network {
 
 enum class RunState { unknown, planned, running, done, aborted };
 [[nodiscard]] const char* to_string(RunState state);
@@ -132,4 +132,4 @@ struct Run {
   void take(const wire::ServiceStatus& status, Instant at);
 };
 
-} // namespace dyncal::services::live
+} // namespace dyncal::network

@@ -7,7 +7,7 @@
 #include "services/base/printable_text.hpp"
 #include "services/contract/source_description.hpp"
 
-namespace dyncal::services::live {
+namespace dyncal::network {
 namespace {
 
 SourceState state_of(wire::SourceState state) {
@@ -132,4 +132,4 @@ Condition condition_of(const Source& source, bus::Clock::Instant now) {
   return condition;
 }
 
-} // namespace dyncal::services::live
+} // namespace dyncal::network

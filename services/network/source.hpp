@@ -14,7 +14,7 @@
 #include "services/network/condition.hpp"
 #include "services/network/limits.hpp"
 
-namespace dyncal::services::live {
+namespace dyncal::network {
 
 // Of its own report; whether it is heard at all is Source::is_silent.
 enum class SourceState { unknown, starting, running, silent, ended, failed };
@@ -55,4 +55,4 @@ struct Source {
 
 [[nodiscard]] Condition condition_of(const Source& source, bus::Clock::Instant now);
 
-} // namespace dyncal::services::live
+} // namespace dyncal::network

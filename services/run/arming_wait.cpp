@@ -4,7 +4,7 @@
 
 #include "services/run/step_sequence.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 
 Expected<void> ArmingWait::wait(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
@@ -46,4 +46,4 @@ std::optional<Expected<void>> ArmingWait::answer() const {
   return std::nullopt;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

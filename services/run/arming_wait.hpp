@@ -16,7 +16,7 @@
 #include "services/base/error.hpp"
 #include "services/run/run_watch.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 
 class ArmingWait {
 public:
@@ -38,4 +38,4 @@ private:
   RunWatch::Instant attended_; // since when it waits for an answer
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

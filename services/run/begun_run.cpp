@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 
 Error other_bench_file(const std::string& run_name) {
   return {ErrorCode::bad_file, fmt::format("run '{}' was made with another bench file; resume it "
@@ -21,4 +21,4 @@ Expected<void> check_same_recipe(const BegunRun& begun, const std::string& run_n
   return fail(std::move(other));
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

@@ -9,7 +9,7 @@
 #include "services/base/error.hpp"
 #include "services/evaluation/result/run_outcome.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 
 struct BegunRun {
   std::string recipe_sha256;
@@ -22,4 +22,4 @@ struct BegunRun {
 [[nodiscard]] Expected<void> check_same_recipe(const BegunRun& begun, const std::string& run_name,
                                                const std::string& recipe_sha256);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

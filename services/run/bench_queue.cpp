@@ -5,7 +5,7 @@
 #include "services/contract/run_identity.hpp"
 #include "services/contract/topics.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 namespace {
 
 using namespace std::chrono_literals;
@@ -65,4 +65,4 @@ Expected<void> BenchQueue::wait_until_free(const Show& show, const std::stop_tok
               "interrupted while another run had the bench; nothing was excited");
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

@@ -20,7 +20,7 @@
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 
 class BenchQueue {
 public:
@@ -59,4 +59,4 @@ private:
   std::map<std::string, Run> runs_; // that have not ended, by name
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

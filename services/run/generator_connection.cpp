@@ -7,7 +7,7 @@
 #include "drivers/generator/scpi_generator.hpp"
 #include "services/base/device_error.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 
 Expected<GeneratorConnection> connect_generator(const GeneratorSettings& settings,
                                                 AskOperator ask) {
@@ -30,4 +30,4 @@ Expected<GeneratorConnection> connect_generator(const GeneratorSettings& setting
   return connection;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

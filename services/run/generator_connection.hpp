@@ -12,7 +12,7 @@
 #include "services/bench/file/bench_file.hpp"
 #include "services/run/output_guard.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 
 struct GeneratorConnection {
   std::optional<OutputGuard> guard; // to be dismissed when the output is known to be off
@@ -31,4 +31,4 @@ using ConnectGenerator =
 [[nodiscard]] Expected<GeneratorConnection> connect_generator(const GeneratorSettings& settings,
                                                               AskOperator ask);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

@@ -4,7 +4,7 @@
 
 #include "services/bench/file/generator_address.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 namespace {
 
 constexpr const char* consequence = "should this program, its host or its link fail, the exciter "
@@ -102,4 +102,4 @@ std::optional<std::string> GuardWatch::notice(Instant now) {
              : told_;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

@@ -18,7 +18,7 @@
 #include "idl/dyncal.h"
 #include "services/bus/clock.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 
 class GuardWatch {
 public:
@@ -62,4 +62,4 @@ private:
   std::string told_;                    // the lack that was told last
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

@@ -9,7 +9,7 @@
 #include "services/evaluation/record/channel_level.hpp"
 #include "services/run/level_settling.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 namespace {
 
 constexpr double max_drift = 1e-4; // of two clocks
@@ -124,4 +124,4 @@ double listening_s(const std::vector<std::string>& frequencies_hz) {
   return window_s + level_transport_s + level_slack_s;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

@@ -32,7 +32,7 @@
 #include "services/evaluation/record/source_record.hpp"
 #include "services/run/level_reading.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 
 class LevelMeter {
 public:
@@ -75,4 +75,4 @@ private:
 // How long quiet_levels_after() needs samples for, in bench time.
 [[nodiscard]] double listening_s(const std::vector<std::string>& frequencies_hz);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

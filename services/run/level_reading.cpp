@@ -7,7 +7,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 namespace {
 
 constexpr double max_part_at_range = 5e-4; // as a result is flagged (signal_integrity.hpp)
@@ -80,4 +80,4 @@ Expected<LevelReading> read_level(const SourceRecord& record, std::size_t channe
   return LevelReading{.level_m_s2 = level, .sine = *sine};
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

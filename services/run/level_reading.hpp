@@ -23,7 +23,7 @@
 #include "services/evaluation/record/channel_level.hpp"
 #include "services/evaluation/record/source_record.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 
 struct LevelReading {
   std::optional<double> level_m_s2{};
@@ -37,4 +37,4 @@ struct LevelReading {
                                                 const analysis::Frequency& frequency,
                                                 double agreement_rel);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

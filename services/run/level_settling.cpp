@@ -4,7 +4,7 @@
 
 #include "services/evaluation/record/channel_level.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 
 int level_corrections(int repetition) {
   return repetition > 1 ? 1 : 3;
@@ -35,4 +35,4 @@ drivers::generator::LevelLimits level_limits(const BenchFile& bench) {
   return limits;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

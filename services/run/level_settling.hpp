@@ -13,7 +13,7 @@
 #include "drivers/generator/level_control.hpp"
 #include "services/bench/file/bench_file.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 
 // Longest way of a sample from the instrument to a reader on DDS.
 inline constexpr double level_transport_s = 0.3;
@@ -28,4 +28,4 @@ inline constexpr double level_slack_s = 0.5;
 // What the bench file states, and what of it a level beyond the highest planned one makes.
 [[nodiscard]] drivers::generator::LevelLimits level_limits(const BenchFile& bench);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

@@ -19,7 +19,7 @@
 #include "services/daemon/program/child_process.hpp"
 #include "services/daemon/program/program.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 namespace {
 
 constexpr char farewell = '.';
@@ -137,4 +137,4 @@ int guard_output(const std::string& generator_address, int input, std::chrono::m
   return switch_off(generator_address, limit);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

@@ -18,7 +18,7 @@
 #include "drivers/link/file_descriptor.hpp"
 #include "services/base/error.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 
 class OutputGuard {
 public:
@@ -48,4 +48,4 @@ inline constexpr std::chrono::minutes output_guard_limit{10};
 [[nodiscard]] int guard_output(const std::string& generator_address, int input,
                                std::chrono::milliseconds limit = output_guard_limit);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

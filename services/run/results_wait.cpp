@@ -7,7 +7,7 @@
 
 #include "services/run/step_sequence.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 namespace {
 
 using Kind = RunOutlook::Kind;
@@ -98,4 +98,4 @@ bool ResultsWait::plays_files() const {
   return !excites_ && watch_.measurement().state() == wire::MEASUREMENT_RUNNING;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

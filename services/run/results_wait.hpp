@@ -18,7 +18,7 @@
 #include "services/base/error.hpp"
 #include "services/run/run_watch.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 
 class ResultsWait {
 public:
@@ -46,4 +46,4 @@ private:
   bool collected_again_ = false;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

@@ -7,7 +7,7 @@
 #include "services/run/arming_wait.hpp"
 #include "services/run/step_sequence.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 namespace {
 
 using Kind = RunOutlook::Kind;
@@ -94,4 +94,4 @@ Error ResumeWait::refusal() const {
                                                        name_)};
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

@@ -22,7 +22,7 @@
 #include "services/run/begun_run.hpp"
 #include "services/run/run_watch.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 
 // `name`: of the run, for people.
 [[nodiscard]] Expected<void> check_same_instruments(const RunWatch& watch, const std::string& name);
@@ -56,4 +56,4 @@ private:
   std::size_t signs_before_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

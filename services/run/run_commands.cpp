@@ -7,7 +7,7 @@
 
 #include "services/contract/topics.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 namespace {
 
 constexpr const char* conductor = "conductor";
@@ -102,4 +102,4 @@ std::set<std::uint32_t> RunCommands::take_repeats() {
   return std::exchange(repeats_, {});
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

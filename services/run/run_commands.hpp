@@ -23,7 +23,7 @@
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 
 class RunCommands {
 public:
@@ -73,4 +73,4 @@ private:
   std::map<std::pair<std::string, std::uint32_t>, bus::Clock::Instant> asked_; // last, by sender
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

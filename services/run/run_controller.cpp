@@ -18,7 +18,7 @@
 #include "services/run/resume_wait.hpp"
 #include "services/run/run_plan.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 namespace {
 
 using namespace std::chrono_literals;
@@ -230,4 +230,4 @@ Expected<void> RunController::check_before_first_step(const std::stop_token& sto
   return keeping_.check ? keeping_.check(outcome_) : Expected<void>{};
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

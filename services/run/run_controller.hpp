@@ -27,7 +27,7 @@
 #include "services/run/run_watch.hpp"
 #include "services/run/step_sequence.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 
 // How results are kept while the run goes on. All may be empty; the functions are called by the
 // thread that conducts the run and must not make it wait.
@@ -97,4 +97,4 @@ private:
   std::unique_ptr<StepSequence> sequence_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

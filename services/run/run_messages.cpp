@@ -10,7 +10,7 @@
 #include "services/evaluation/result/transfer_function_message.hpp"
 #include "services/run/run_outlook.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 namespace {
 
 constexpr std::chrono::milliseconds announcement_interval{500};
@@ -290,4 +290,4 @@ bool RunMessages::follows(const wire::ServiceStatus& status) const {
   return !evaluates || clock_->now() - analysis_heard_ > attention_limit;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

@@ -27,7 +27,7 @@
 #include "services/evaluation/result/run_outcome.hpp"
 #include "services/run/guard_watch.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 
 class RunMessages {
 public:
@@ -148,4 +148,4 @@ private:
   bus::Clock::Instant announced_{};
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 namespace {
 
 using Kind = RunOutlook::Kind;
@@ -76,4 +76,4 @@ RunOutlook run_outlook(const std::optional<wire::ServiceStatus>& analysis,
   return outlook;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

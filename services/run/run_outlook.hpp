@@ -15,7 +15,7 @@
 #include "services/base/error.hpp"
 #include "services/run/run_commands.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 
 struct RunOutlook {
   enum class Kind {
@@ -35,4 +35,4 @@ inline constexpr std::chrono::seconds attention_limit{3};
 [[nodiscard]] RunOutlook run_outlook(const std::optional<wire::ServiceStatus>& analysis,
                                      std::chrono::nanoseconds unheard, const RunCommands& commands);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

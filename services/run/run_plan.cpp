@@ -7,7 +7,7 @@
 #include "services/contract/digest.hpp"
 #include "services/run/level_settling.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 namespace {
 
 std::vector<RecipeStep> plan_steps(const BenchFile& file) {
@@ -86,4 +86,4 @@ std::optional<AdcFile> adc_file_of(const BenchFile& bench) {
                  sha256_hex(text)};
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

@@ -15,7 +15,7 @@
 #include "services/evaluation/recipe/recipe.hpp"
 #include "services/evaluation/result/run_outcome.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 
 // Fails (bad_argument) as check_recipe() does.
 [[nodiscard]] Expected<Recipe>
@@ -25,4 +25,4 @@ plan_recipe(const BenchFile& file, const std::string& run,
 // The file of the ADC's calibration, as it is now; nothing when the bench file names none.
 [[nodiscard]] std::optional<AdcFile> adc_file_of(const BenchFile& bench);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

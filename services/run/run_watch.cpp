@@ -5,7 +5,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 namespace {
 
 using namespace std::chrono_literals;
@@ -158,4 +158,4 @@ void RunWatch::show(const std::string& phase, const std::string& request,
   show_progress_(progress);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

@@ -17,7 +17,7 @@
 #include "services/run/run_messages.hpp"
 #include "services/run/run_outlook.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 
 struct RunProgress {
   std::size_t step = 0; // 1..steps; 0 before the first
@@ -116,4 +116,4 @@ private:
   bool unplanned_said_ = false;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

@@ -4,7 +4,7 @@
 
 #include "services/contract/topics.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 
 Expected<ShotCounter> ShotCounter::create(bus::Participant& participant, const std::string& bench,
                                           const std::shared_ptr<bus::WakeUp>& wake_up) {
@@ -40,4 +40,4 @@ int ShotCounter::shots() {
                     [&](const auto& number) { return series_numbers_.contains(number); }));
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

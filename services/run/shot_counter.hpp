@@ -13,7 +13,7 @@
 #include "services/base/error.hpp"
 #include "services/bus/bus.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 
 class ShotCounter {
 public:
@@ -40,4 +40,4 @@ private:
   Numbers series_numbers_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

@@ -9,7 +9,7 @@
 #include "services/base/device_error.hpp"
 #include "services/run/level_settling.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 namespace {
 
 using namespace std::chrono_literals;
@@ -377,4 +377,4 @@ Expected<bool> StepExcitation::hold_until(double bench_time_s, const std::stop_t
   return !stop.stop_requested();
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

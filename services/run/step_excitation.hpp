@@ -34,13 +34,13 @@
 #include "services/run/level_meter.hpp"
 #include "services/run/shot_counter.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 
 // What a run is conducted with. All of it outlives the run; tests bring their own.
 struct RunEnvironment {
   bus::Participant& participant;
   bus::Clock& clock = bus::system_clock();
-  ConnectGenerator connect_generator = services::connect_generator;
+  ConnectGenerator connect_generator = run::connect_generator;
 };
 
 // What the run does while a step is excited.
@@ -137,4 +137,4 @@ private:
   std::optional<ShotCounter> shots_; // series time stamping only
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

@@ -4,7 +4,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 namespace {
 
 std::set<std::string> channels_of(const std::vector<StepResult>& results, bool valid_only) {
@@ -95,4 +95,4 @@ std::optional<StepRepeat> StepRepeats::next(const std::vector<StepResult>& resul
   return best;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

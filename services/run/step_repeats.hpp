@@ -19,7 +19,7 @@
 
 #include "services/evaluation/result/step_result.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 
 struct StepRepeat {
   std::uint32_t step = 0; // as the recipe numbers it
@@ -58,4 +58,4 @@ private:
   std::set<std::uint32_t> asked_for_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

@@ -7,7 +7,7 @@
 
 #include "services/evaluation/result/run_pause.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 namespace {
 
 using namespace std::chrono_literals;
@@ -315,4 +315,4 @@ Expected<bool> StepSequence::wait_until_evaluated(const std::stop_token& stop) {
   return false;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

@@ -35,7 +35,7 @@
 #include "services/run/step_excitation.hpp"
 #include "services/run/step_repeats.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 
 class StepSequence {
 public:
@@ -88,4 +88,4 @@ private:
   std::optional<std::uint32_t> broken_off_; // and whose result has not been waited for
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline run

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 
 std::size_t held_bytes(const drivers::SampleBlock& block) {
   return sizeof(RingEntry) + block.values.capacity() * sizeof(double) +
@@ -129,4 +129,4 @@ std::uint64_t BlockRing::dropped() const {
   return dropped_;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

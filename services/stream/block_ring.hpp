@@ -22,7 +22,7 @@
 
 #include "drivers/sample_block.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 
 struct RingLimits {
   std::chrono::nanoseconds span = std::chrono::seconds(60);
@@ -94,4 +94,4 @@ private:
   bool waited_in_vain_ = false; // for room, and there was none since
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 
 namespace {
 
@@ -52,4 +52,4 @@ std::vector<drivers::SampleBlock> split(drivers::SampleBlock block, std::size_t 
   return parts;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

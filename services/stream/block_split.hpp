@@ -10,7 +10,7 @@
 
 #include "drivers/sample_block.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 
 // Of the arrays of a block; a message is little longer.
 inline constexpr std::size_t max_block_bytes = std::size_t{64} << 10U;
@@ -20,4 +20,4 @@ inline constexpr std::size_t max_block_bytes = std::size_t{64} << 10U;
 [[nodiscard]] std::vector<drivers::SampleBlock> split(drivers::SampleBlock block,
                                                       std::size_t max_bytes = max_block_bytes);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

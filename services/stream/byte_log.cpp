@@ -10,7 +10,7 @@
 #include <system_error>
 #include <utility>
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 
 namespace {
 
@@ -145,4 +145,4 @@ std::filesystem::path folder_for_kept_messages() {
   return none ? "/tmp" : folder;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

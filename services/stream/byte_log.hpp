@@ -19,7 +19,7 @@
 
 #include "services/base/error.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 
 class ByteLog {
 public:
@@ -69,4 +69,4 @@ private:
 // $STATE_DIRECTORY), else the one for temporary files.
 [[nodiscard]] std::filesystem::path folder_for_kept_messages();
 
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

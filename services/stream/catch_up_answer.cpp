@@ -5,7 +5,7 @@
 #include "services/bus/payload_checksum.hpp"
 #include "services/contract/topics.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 
 namespace {
 
@@ -159,4 +159,4 @@ CatchUpAnswer::State CatchUpAnswer::step(Instant now) {
   return state_;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

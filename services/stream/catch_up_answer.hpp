@@ -18,7 +18,7 @@
 #include "services/stream/source_publisher.hpp"
 #include "services/stream/write_pace.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 
 // What somebody asks for; `after` is the number of the last block or shot they have.
 struct CatchUpOptions {
@@ -81,4 +81,4 @@ private:
   Instant progress_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

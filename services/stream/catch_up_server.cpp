@@ -7,7 +7,7 @@
 
 #include "services/contract/topics.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 
 namespace {
 
@@ -123,4 +123,4 @@ bus::Clock::Instant CatchUpServer::step() {
   return clock_.now() + (answering ? answer_interval : tidy_interval);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

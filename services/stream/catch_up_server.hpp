@@ -20,7 +20,7 @@
 #include "services/stream/catch_up_answer.hpp"
 #include "services/stream/retransmission_buffer.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 
 class CatchUpServer {
 public:
@@ -64,4 +64,4 @@ private:
   std::deque<Asked> asked_; // the last ones
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 namespace {
 
 constexpr double value_bytes = 8.0;
@@ -39,4 +39,4 @@ std::optional<KeptSpan> kept_span(SourceKind kind, const drivers::SourceDescript
   return span;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

@@ -13,7 +13,7 @@
 #include "services/contract/source_kind.hpp"
 #include "services/stream/retransmission_buffer.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 
 struct KeptSpan {
   double minutes = 0.0;
@@ -25,4 +25,4 @@ struct KeptSpan {
 [[nodiscard]] std::optional<KeptSpan>
 kept_span(SourceKind kind, const drivers::SourceDescription& source, const KeptLimits& limits);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

@@ -7,7 +7,7 @@
 #include "services/bus/host_network.hpp"
 #include "services/contract/source_kind.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 
 namespace {
 
@@ -141,4 +141,4 @@ dyncal::wire::SourceStatus to_message(const SourceOptions& source,
   return message;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

@@ -9,7 +9,7 @@
 #include "idl/dyncal.h"
 #include "services/stream/source_publisher.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 
 [[nodiscard]] dyncal::wire::SourceDescription
 to_message(const SourceOptions& source, std::uint64_t session, const std::string& software,
@@ -30,4 +30,4 @@ to_message(const SourceOptions& source, std::uint64_t session, const std::string
 [[nodiscard]] dyncal::wire::SourceStatus to_message(const SourceOptions& source,
                                                     const SourcePublisher::Snapshot& snapshot);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

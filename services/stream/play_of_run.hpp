@@ -10,7 +10,7 @@
 
 #include "services/stream/source_publisher.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 
 class PlayOfRun {
 public:
@@ -42,4 +42,4 @@ private:
   std::jthread watch_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

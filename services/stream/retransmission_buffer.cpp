@@ -5,7 +5,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 
 namespace {
 
@@ -256,4 +256,4 @@ std::string RetransmissionBuffer::problem() const {
   return problem_;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

@@ -26,7 +26,7 @@
 #include "services/bus/type_support.hpp"
 #include "services/stream/byte_log.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 
 struct KeptLimits {
   std::chrono::nanoseconds span = std::chrono::minutes(10);
@@ -133,4 +133,4 @@ private:
   std::string problem_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

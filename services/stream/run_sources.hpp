@@ -20,7 +20,7 @@
 #include "services/stream/source_service.hpp"
 #include "services/stream/supervised.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 
 template <class Source>
 struct RunnableSource {
@@ -64,4 +64,4 @@ template <class Source>
   return {};
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

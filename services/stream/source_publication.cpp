@@ -9,7 +9,7 @@
 #include "services/contract/topics.hpp"
 #include "services/stream/kept_span.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 
 namespace {
 
@@ -273,4 +273,4 @@ SourcePublication::step_status(std::chrono::nanoseconds interval,
   return (status_written_ ? *status_written_ : now) + interval;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

@@ -22,7 +22,7 @@
 #include "services/stream/stream_writer.hpp"
 #include "services/stream/write_pace.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 
 struct SourceWriters {
   bus::Writer<dyncal::wire::SourceDescription> description;
@@ -119,4 +119,4 @@ private:
   double rate_hz_ = 0.0;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

@@ -8,7 +8,7 @@
 #include "services/contract/session_number.hpp"
 #include "services/stream/block_split.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 
 using Clock = std::chrono::steady_clock;
 
@@ -247,4 +247,4 @@ std::optional<drivers::SourceDescription> SourcePublisher::take_changed_descript
   return description_;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

@@ -35,7 +35,7 @@ namespace dyncal::bus {
 class WakeUp;
 }
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 
 // `wait_briefly`: for a second, then as `drop` until there is room again. For streams that are held
 // back by TCP: a simulated instrument that runs faster than real time is to be, a real one never.
@@ -160,4 +160,4 @@ private:
   bool play_ended_ = false;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

@@ -11,7 +11,7 @@
 #include "services/stream/catch_up_server.hpp"
 #include "services/stream/source_publication.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 
 namespace {
 
@@ -277,4 +277,4 @@ void SourceService::stop() {
   implementation_->stop();
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

@@ -32,7 +32,7 @@ namespace dyncal::wire {
 class SourceStatus;
 }
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 
 struct SourceServiceOptions {
   std::string software; // name and version, as descriptions carry it
@@ -73,4 +73,4 @@ private:
   std::unique_ptr<Implementation> implementation_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

@@ -4,7 +4,7 @@
 
 #include "services/stream/messages.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 
 namespace {
 
@@ -106,4 +106,4 @@ Expected<std::unique_ptr<StreamWriter>> StreamWriter::create(bus::Participant& p
                                                     bus::Profile::live_samples);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

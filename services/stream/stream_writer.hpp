@@ -13,7 +13,7 @@
 #include "services/stream/retransmission_buffer.hpp"
 #include "services/stream/source_publisher.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 
 class StreamWriter {
 public:
@@ -33,4 +33,4 @@ public:
   [[nodiscard]] virtual int matched_readers() const = 0;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

@@ -7,7 +7,7 @@
 #include "services/daemon/supervision/supervisor.hpp"
 #include "services/stream/source_service.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 
 // Both outlive the service.
 [[nodiscard]] inline SourceServiceOptions supervised(Supervisor& supervisor,
@@ -25,4 +25,4 @@ namespace dyncal::services {
   return options;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

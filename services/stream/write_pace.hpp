@@ -12,7 +12,7 @@
 #include <cstddef>
 #include <optional>
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 
 class WritePace {
 public:
@@ -63,4 +63,4 @@ private:
   bool hanging_ = false;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

@@ -39,7 +39,7 @@
 
 namespace {
 
-using namespace dyncal::services;
+using namespace dyncal;
 
 double cpu_s() {
   std::timespec time{};

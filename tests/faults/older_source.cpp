@@ -21,7 +21,7 @@ wire::SourceDescription description(const char* bench, const char* source) {
   wire::SourceDescription description;
   description.bench(bench);
   description.source(source);
-  description.session(services::random_session());
+  description.session(contract::random_session());
   description.kind(wire::SOURCE_DAU);
   description.contract_version(1);
   description.nominal_rate_hz(500.0);

@@ -40,7 +40,7 @@ std::string frequency_of(std::uint32_t step) {
 }
 
 wire::Measurement measurement_of(const std::string& run, wire::MeasurementState state) {
-  wire::Measurement measurement = services::live::measurement_of(bench, run, state);
+  wire::Measurement measurement = live::measurement_of(bench, run, state);
   measurement.steps().resize(steps, measurement.steps().front());
   for (std::uint32_t step = 1; step <= steps; ++step) {
     measurement.steps()[step - 1].step(step);
@@ -54,17 +54,16 @@ Run play(bus::Participant& participant, const std::string& name) {
           participant.writer(bus::topics::excitation, bench).value(),
           participant.writer(bus::topics::calibration_result, bench).value(),
           participant.writer(bus::topics::transfer_function, bench).value()};
-  services::Recipe recipe = tests::example_recipe();
+  evaluation::Recipe recipe = tests::example_recipe();
   recipe.bench = bench;
   recipe.run = name;
   run.measurement.write(measurement_of(name, wire::MEASUREMENT_RUNNING));
-  services::TransferFunction function = tests::example_function("dau/acceleration_z", 1.0);
+  evaluation::TransferFunction function = tests::example_function("dau/acceleration_z", 1.0);
   function.points.resize(steps, function.points.front());
-  services::StepResult result = tests::example_outcome().results.front();
+  evaluation::StepResult result = tests::example_outcome().results.front();
   result.budget.resize(budget_rows, result.budget.back());
   for (std::uint32_t step = 1; step <= steps; ++step) {
-    wire::Excitation excitation =
-        services::live::excitation_of(bench, name, step, wire::EXCITATION_DONE);
+    wire::Excitation excitation = live::excitation_of(bench, name, step, wire::EXCITATION_DONE);
     excitation.frequency_text_hz(frequency_of(step));
     run.excitation.write(excitation);
     result.step = step;

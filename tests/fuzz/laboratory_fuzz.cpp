@@ -10,7 +10,7 @@
 
 namespace {
 
-using namespace dyncal::services;
+using namespace dyncal;
 
 void require(bool holds) {
   if (!holds) {

@@ -18,7 +18,7 @@
 #include "services/views/lab_file/laboratory_file.hpp"
 #include "services/views/lab_file/sensor_file.hpp"
 
-namespace dyncal::services {
+namespace dyncal {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -66,10 +66,10 @@ Json flags() {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal
 
 int main(int argc, char** argv) {
-  using namespace dyncal::services;
+  using namespace dyncal;
   if (argc > 1 && std::string_view(argv[1]) == "--flags") {
     std::cout << flags() << '\n';
     return 0;

@@ -165,13 +165,13 @@ int read_stream(bus::Participant& participant, const Options& options) {
   auto reader =
       participant.reader<wire::SampleBlock>(bus::topics::dau_samples, options.profile(), "*", bell)
           .value();
-  std::map<std::string, services::SampleContinuity> continuity; // by source
+  std::map<std::string, contract::SampleContinuity> continuity; // by source
   std::size_t ended = 0;
   std::uint64_t wrong = 0;
   std::uint64_t begun_late = 0;
   std::uint64_t taken = 0;
   const auto consume = [&](const wire::SampleBlock& block) {
-    const auto finding = continuity[block.source().to_string()].add(services::view_block(block));
+    const auto finding = continuity[block.source().to_string()].add(contract::view_block(block));
     if (finding.first) {
       begun_late += options.live ? 0 : block.block();
     }
@@ -205,7 +205,7 @@ int read_stream(bus::Participant& participant, const Options& options) {
   std::uint64_t blocks = 0;
   std::uint64_t lost = begun_late;
   for (const std::string& source : source_names()) {
-    const services::ContinuityCounts& counts = continuity[source].counts();
+    const contract::ContinuityCounts& counts = continuity[source].counts();
     blocks += counts.blocks;
     lost += counts.missing_blocks + counts.duplicates;
   }

@@ -7,6 +7,6 @@
 #include "tests/unit/services/views/report/example_outcome.hpp"
 
 int main() {
-  std::puts(dyncal::services::result_json(dyncal::tests::example_outcome()).dump(1).c_str());
+  std::puts(dyncal::views::result_json(dyncal::tests::example_outcome()).dump(1).c_str());
   return 0;
 }

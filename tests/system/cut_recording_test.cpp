@@ -76,7 +76,7 @@ protected:
       const std::string& topic = one.channel.topic;
       if (topic == (source == "acs" ? "AcsSamples" : "DauSamples")) {
         const auto block = recording::decode<wire::SampleBlock>(one.message.data);
-        const auto view = services::view_block(*block);
+        const auto view = contract::view_block(*block);
         if (view.samples > 0 && cut.begin_ns <= view.first_stamp_ns() &&
             view.first_stamp_ns() < cut.end_ns) {
           ++left_out;

@@ -73,7 +73,7 @@ public:
     std::vector<wire::CalibrationResult> found;
     std::copy_if(all_.begin(), all_.end(), std::back_inserter(found),
                  [&](const wire::CalibrationResult& result) {
-                   return services::RunIdentity::parse(result.run().to_string()).name == run;
+                   return contract::RunIdentity::parse(result.run().to_string()).name == run;
                  });
     return found;
   }

@@ -43,13 +43,13 @@ std::optional<std::filesystem::path> result_of(const std::vector<std::string>& a
   return std::nullopt;
 }
 
-services::ChildProcess started(const std::filesystem::path& program,
-                               const std::vector<std::string>& arguments,
-                               services::ChildOutput output, const std::filesystem::path& runs) {
+daemon::ChildProcess started(const std::filesystem::path& program,
+                             const std::vector<std::string>& arguments, daemon::ChildOutput output,
+                             const std::filesystem::path& runs) {
   setenv("DYNCAL_RUNS", runs.c_str(), 1); // run folders stay with the test
   setenv("XDG_STATE_HOME", (runs.parent_path().parent_path() / "state").c_str(), 1); // a guard's
   setenv("DYNCAL_DOMAIN", std::to_string(own_dds_domain()).c_str(), 1);
-  auto process = services::ChildProcess::start(program, arguments, std::move(output));
+  auto process = daemon::ChildProcess::start(program, arguments, std::move(output));
   if (!process) {
     throw std::runtime_error(process.error().message);
   }

@@ -50,7 +50,7 @@ private:
   std::filesystem::path errors_;
   std::chrono::steady_clock::time_point began_;
   std::optional<std::chrono::steady_clock::time_point> ended_;
-  services::ChildProcess process_;
+  daemon::ChildProcess process_;
 };
 
 // A fresh folder of this test below the build tree.

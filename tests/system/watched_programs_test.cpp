@@ -29,7 +29,7 @@ constexpr auto watchdog = 1s; // four signs in it, the loops turn twice a second
 class SupervisionTest : public ::testing::Test {
 protected:
   void SetUp() override {
-    if (!services::can_notify_service_manager()) {
+    if (!daemon::can_notify_service_manager()) {
       GTEST_SKIP() << "this build has no libsystemd";
     }
   }
@@ -105,7 +105,7 @@ TEST_F(SupervisionTest, ShowsThatAGuardServes) {
 }
 
 TEST_F(SupervisionTest, OffersMetricsAndRefusesAPortThatIsInUse) {
-  if (!services::can_serve_metrics()) {
+  if (!daemon::can_serve_metrics()) {
     GTEST_SKIP() << "this build has no prometheus-cpp";
   }
   const int port = own_udp_port();

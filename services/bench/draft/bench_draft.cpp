@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace dyncal::services::bench_draft {
+namespace dyncal::inline bench::bench_draft {
 namespace {
 
 template <class Kind>
@@ -48,4 +48,4 @@ std::optional<GeneratorKind> parse_generator_kind(std::string_view name) {
   return parse<GeneratorKind>(generator_kinds(), name);
 }
 
-} // namespace dyncal::services::bench_draft
+} // namespace dyncal::inline bench::bench_draft

@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-namespace dyncal::services::bench_draft {
+namespace dyncal::inline bench::bench_draft {
 
 enum class SensorKind { smartup, file, can, series, analogue };
 enum class AcsKind { socket, file };
@@ -64,4 +64,4 @@ struct BenchDraft {
 [[nodiscard]] std::optional<AcsKind> parse_acs_kind(std::string_view name);
 [[nodiscard]] std::optional<GeneratorKind> parse_generator_kind(std::string_view name);
 
-} // namespace dyncal::services::bench_draft
+} // namespace dyncal::inline bench::bench_draft

@@ -6,7 +6,7 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
-namespace dyncal::services::bench_draft {
+namespace dyncal::inline bench::bench_draft {
 namespace {
 
 // A TOML basic string.
@@ -318,4 +318,4 @@ BO_ 291 Sample: 8 Sensor
 )";
 }
 
-} // namespace dyncal::services::bench_draft
+} // namespace dyncal::inline bench::bench_draft

@@ -7,7 +7,7 @@
 
 #include "services/bench/draft/bench_draft.hpp"
 
-namespace dyncal::services::bench_draft {
+namespace dyncal::inline bench::bench_draft {
 
 // `dbc_name` is written where the draft names no DBC file.
 [[nodiscard]] std::string bench_text(const BenchDraft& draft, const std::string& dbc_name);
@@ -15,4 +15,4 @@ namespace dyncal::services::bench_draft {
 // One message with three axes and a counter.
 [[nodiscard]] std::string dbc_text();
 
-} // namespace dyncal::services::bench_draft
+} // namespace dyncal::inline bench::bench_draft

@@ -13,7 +13,7 @@
 #include "analysis/base/frequency.hpp"
 #include "drivers/link/address.hpp"
 
-namespace dyncal::services::bench_draft {
+namespace dyncal::inline bench::bench_draft {
 namespace {
 
 std::string trimmed(const std::string& text) {
@@ -224,4 +224,4 @@ Expected<BenchDraft> ask_for_draft(BenchDraft draft, const NameProblem& name_pro
   return draft;
 }
 
-} // namespace dyncal::services::bench_draft
+} // namespace dyncal::inline bench::bench_draft

@@ -10,7 +10,7 @@
 #include "services/base/error.hpp"
 #include "services/bench/draft/bench_draft.hpp"
 
-namespace dyncal::services::bench_draft {
+namespace dyncal::inline bench::bench_draft {
 
 // Why a bench cannot have this name, for example because there is a file of it; nothing: it can.
 using NameProblem = std::function<std::optional<std::string>(const std::string& name)>;
@@ -19,4 +19,4 @@ using NameProblem = std::function<std::optional<std::string>(const std::string& 
 [[nodiscard]] Expected<BenchDraft> ask_for_draft(BenchDraft draft, const NameProblem& name_problem,
                                                  std::istream& answers, std::ostream& questions);
 
-} // namespace dyncal::services::bench_draft
+} // namespace dyncal::inline bench::bench_draft

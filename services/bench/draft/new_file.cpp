@@ -11,7 +11,7 @@
 
 #include "services/base/output_file.hpp"
 
-namespace dyncal::services::bench_draft {
+namespace dyncal::inline bench::bench_draft {
 
 namespace {
 
@@ -61,4 +61,4 @@ Expected<void> write_new_file(const std::filesystem::path& path, std::string_vie
                                                      path.string(), std::strerror(reason)));
 }
 
-} // namespace dyncal::services::bench_draft
+} // namespace dyncal::inline bench::bench_draft

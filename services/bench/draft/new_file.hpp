@@ -8,7 +8,7 @@
 
 #include "services/base/error.hpp"
 
-namespace dyncal::services::bench_draft {
+namespace dyncal::inline bench::bench_draft {
 
 // Whether there is none of this name, and one could be written.
 [[nodiscard]] Expected<void> check_new_file(const std::filesystem::path& path);
@@ -16,4 +16,4 @@ namespace dyncal::services::bench_draft {
 [[nodiscard]] Expected<void> write_new_file(const std::filesystem::path& path,
                                             std::string_view text);
 
-} // namespace dyncal::services::bench_draft
+} // namespace dyncal::inline bench::bench_draft

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 namespace {
 
 using Json = nlohmann::json;
@@ -177,4 +177,4 @@ Expected<Points> read_adc_file(const AdcCorrectionSettings& settings) {
   return of_one_amplitude(analysis::adc_calibration_points(measurements), settings);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

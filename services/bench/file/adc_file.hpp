@@ -22,9 +22,9 @@
 #include "services/base/error.hpp"
 #include "services/bench/file/bench_file.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 
 [[nodiscard]] Expected<std::vector<analysis::AdcCalibrationPoint>>
 read_adc_file(const AdcCorrectionSettings& settings);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

@@ -6,7 +6,7 @@
 #include "services/base/json_text.hpp"
 #include "services/base/output_file.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 
 Expected<void> write_adc_file(const std::filesystem::path& path, const AdcFileHead& head,
                               std::span<const analysis::AdcCalibrationPoint> measurements) {
@@ -29,4 +29,4 @@ Expected<void> write_adc_file(const std::filesystem::path& path, const AdcFileHe
   return write_output_file(path, json_text(file, 1) + '\n');
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

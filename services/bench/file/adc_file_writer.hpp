@@ -19,7 +19,7 @@
 #include "analysis/instrument/adc_calibration.hpp"
 #include "services/base/error.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 
 struct AdcFileHead {
   std::string channel;   // "ADC1"
@@ -32,4 +32,4 @@ struct AdcFileHead {
 write_adc_file(const std::filesystem::path& path, const AdcFileHead& head,
                std::span<const analysis::AdcCalibrationPoint> measurements);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

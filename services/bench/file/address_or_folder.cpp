@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 
 void read_address_or_folder(TomlTable& table, NamedFiles& files, const char* what,
                             std::string& address, std::filesystem::path& path) {
@@ -16,4 +16,4 @@ void read_address_or_folder(TomlTable& table, NamedFiles& files, const char* wha
   }
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 namespace {
 
 AskedKeys*& listener() {
@@ -31,4 +31,4 @@ void AskedKeys::add(AskedKey key) {
   }
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

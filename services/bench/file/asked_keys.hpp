@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 
 struct AskedKey {
   std::string name{};  // dotted: "excitation.level"
@@ -39,4 +39,4 @@ private:
   std::vector<AskedKey> all_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

@@ -17,7 +17,7 @@
 #include "services/bench/file/toml_text.hpp"
 #include "services/contract/digest.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 namespace {
 
 constexpr std::size_t max_bytes = std::size_t{4} << 20U;
@@ -193,4 +193,4 @@ Expected<BenchFile> read_bench_file(const std::filesystem::path& path, NamedFile
   return valid(read_whole_bench_file(path, place));
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

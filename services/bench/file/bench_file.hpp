@@ -24,7 +24,7 @@
 #include "services/contract/channel_name.hpp"
 #include "services/contract/evaluation_method.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 
 struct NetworkSettings {
   std::vector<std::string> peers;
@@ -145,4 +145,4 @@ read_whole_bench_file(const std::filesystem::path& path,
 parse_whole_bench_file(const std::string& text, const std::filesystem::path& path,
                        NamedFiles::Place place = NamedFiles::Place::as_named);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

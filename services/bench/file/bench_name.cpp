@@ -5,7 +5,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 
 namespace {
 
@@ -25,4 +25,4 @@ void check_name(TomlTable& table, const std::string& key, const std::string& nam
   }
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

@@ -5,9 +5,9 @@
 
 #include "services/bench/file/toml_table.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 
 // Refuses a name that is too long or has other characters than letters, digits, '-', '_' and '.'.
 void check_name(TomlTable& table, const std::string& key, const std::string& name);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

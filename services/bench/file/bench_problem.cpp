@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 
 std::string BenchProblem::text(std::string_view severity) const {
   const std::string place = line == whole_file ? file : fmt::format("{}:{}", file, line);
@@ -11,4 +11,4 @@ std::string BenchProblem::text(std::string_view severity) const {
   return fmt::format("{}: {}{}{}", place, weight, about, sentence);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

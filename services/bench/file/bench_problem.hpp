@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 
 struct BenchProblem {
   static constexpr std::size_t whole_file = 0; // as `line`: the file cannot be read
@@ -23,4 +23,4 @@ struct BenchProblem {
 
 using BenchProblems = std::vector<BenchProblem>;
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

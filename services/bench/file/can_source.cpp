@@ -7,7 +7,7 @@
 
 #include "services/bench/file/file_source.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 
 namespace {
 
@@ -105,4 +105,4 @@ CanSourceSettings read_can_source(TomlTable& table, NamedFiles& files) {
   return can;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

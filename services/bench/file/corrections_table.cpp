@@ -5,7 +5,7 @@
 #include "services/bench/file/dso_delay_file.hpp"
 #include "services/bench/file/reference_file.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 
 namespace {
 
@@ -74,4 +74,4 @@ CorrectionSettings read_corrections(TomlTable table, NamedFiles& files) {
   return corrections;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

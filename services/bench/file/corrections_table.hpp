@@ -13,9 +13,9 @@
 #include "services/bench/file/named_files.hpp"
 #include "services/bench/file/toml_table.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 
 // Files are looked up in `files`. What is not valid is refused in the table.
 [[nodiscard]] CorrectionSettings read_corrections(TomlTable table, NamedFiles& files);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

@@ -6,7 +6,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 
 Expected<DsoDelay> read_dso_delay_file(const std::filesystem::path& path) {
   const auto refused = [&](const std::string& why) {
@@ -28,4 +28,4 @@ Expected<DsoDelay> read_dso_delay_file(const std::filesystem::path& path) {
   return delay;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

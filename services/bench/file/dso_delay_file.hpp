@@ -8,7 +8,7 @@
 
 #include "services/base/error.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 
 struct DsoDelay {
   double value_s = 0.0;
@@ -17,4 +17,4 @@ struct DsoDelay {
 
 [[nodiscard]] Expected<DsoDelay> read_dso_delay_file(const std::filesystem::path& path);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

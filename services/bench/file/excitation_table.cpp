@@ -6,7 +6,7 @@
 
 #include "analysis/base/frequency.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 namespace {
 
 constexpr int max_attempts = 10;
@@ -112,4 +112,4 @@ ExcitationSettings read_excitation(TomlTable table) {
   return excitation;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

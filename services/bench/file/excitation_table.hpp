@@ -5,9 +5,9 @@
 #include "services/bench/file/bench_file.hpp"
 #include "services/bench/file/toml_table.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 
 // What cannot be is refused in the table.
 [[nodiscard]] ExcitationSettings read_excitation(TomlTable table);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 #include <toml++/toml.h>
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 
 double read_play_speed(TomlTable& table) {
   const toml::node* play = table.node("play");
@@ -41,4 +41,4 @@ FileSourceSettings read_file_source(TomlTable& table, NamedFiles& files) {
   return file;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

@@ -13,11 +13,11 @@
 #include "services/bench/file/source_settings.hpp"
 #include "services/bench/file/toml_table.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 
 [[nodiscard]] FileSourceSettings read_file_source(TomlTable& table, NamedFiles& files);
 
 // The key `play`: times real time; 0: at once.
 [[nodiscard]] double read_play_speed(TomlTable& table);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

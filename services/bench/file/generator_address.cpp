@@ -1,6 +1,6 @@
 #include "services/bench/file/generator_address.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 namespace {
 
 bool is_loopback(const std::string& address) {
@@ -14,4 +14,4 @@ bool may_be_one_generator(const std::string& first, const std::string& second) {
   return first == second || is_loopback(first) || is_loopback(second);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

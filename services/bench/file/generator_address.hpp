@@ -5,8 +5,8 @@
 
 #include <string>
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 
 [[nodiscard]] bool may_be_one_generator(const std::string& first, const std::string& second);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

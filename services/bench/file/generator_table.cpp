@@ -1,6 +1,6 @@
 #include "services/bench/file/generator_table.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 
 namespace {
 
@@ -52,4 +52,4 @@ GeneratorSettings read_generator(TomlTable table, const ExcitationSettings& exci
   return generator;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

@@ -5,10 +5,10 @@
 #include "services/bench/file/bench_file.hpp"
 #include "services/bench/file/toml_table.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 
 // What cannot be, or not together with this excitation, is refused in the table.
 [[nodiscard]] GeneratorSettings read_generator(TomlTable table,
                                                const ExcitationSettings& excitation);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

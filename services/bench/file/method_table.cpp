@@ -7,7 +7,7 @@
 
 #include "services/contract/role_rules.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 
 namespace {
 
@@ -164,4 +164,4 @@ MethodSettings read_method(TomlTable table, const Sources& sources) {
   return method;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

@@ -13,10 +13,10 @@
 #include "services/bench/file/bench_file.hpp"
 #include "services/bench/file/toml_table.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 
 // What is not valid is refused in the table.
 [[nodiscard]] MethodSettings read_method(TomlTable table,
                                          const std::vector<SourceSettings>& sources);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

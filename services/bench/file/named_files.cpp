@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 namespace {
 
 constexpr std::string_view outside = "outside";
@@ -46,4 +46,4 @@ std::filesystem::path NamedFiles::resolve(const std::string& name) {
   return file.path;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

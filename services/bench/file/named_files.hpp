@@ -16,7 +16,7 @@
 #include <string_view>
 #include <vector>
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 
 // What a run folder has for its own files; a name that begins with one of them is not used for a
 // copy.
@@ -53,4 +53,4 @@ private:
   std::vector<NamedFile> all_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

@@ -2,7 +2,7 @@
 
 #include "services/bench/file/address_or_folder.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 
 OscilloscopeSourceSettings read_oscilloscope_source(TomlTable& table, NamedFiles& files) {
   OscilloscopeSourceSettings oscilloscope;
@@ -20,4 +20,4 @@ OscilloscopeSourceSettings read_oscilloscope_source(TomlTable& table, NamedFiles
   return oscilloscope;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

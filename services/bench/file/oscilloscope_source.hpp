@@ -15,9 +15,9 @@
 #include "services/bench/file/source_settings.hpp"
 #include "services/bench/file/toml_table.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 
 [[nodiscard]] OscilloscopeSourceSettings read_oscilloscope_source(TomlTable& table,
                                                                   NamedFiles& files);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

@@ -12,7 +12,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 namespace {
 
 using analysis::ReferenceCalibrationPoint;
@@ -291,4 +291,4 @@ read_reference_file(const std::filesystem::path& path) {
   return parse_reference_file(text.str(), path.string());
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

@@ -24,7 +24,7 @@
 #include "analysis/instrument/reference_calibration.hpp"
 #include "services/base/error.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 
 [[nodiscard]] Expected<std::vector<analysis::ReferenceCalibrationPoint>>
 read_reference_file(const std::filesystem::path& path);
@@ -33,4 +33,4 @@ read_reference_file(const std::filesystem::path& path);
 [[nodiscard]] Expected<std::vector<analysis::ReferenceCalibrationPoint>>
 parse_reference_file(std::string_view text, const std::string& name);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

@@ -2,7 +2,7 @@
 
 #include "services/bench/file/address_or_folder.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 
 SeriesSourceSettings read_series_source(TomlTable& table, NamedFiles& files) {
   SeriesSourceSettings series;
@@ -12,4 +12,4 @@ SeriesSourceSettings read_series_source(TomlTable& table, NamedFiles& files) {
   return series;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

@@ -11,8 +11,8 @@
 #include "services/bench/file/source_settings.hpp"
 #include "services/bench/file/toml_table.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 
 [[nodiscard]] SeriesSourceSettings read_series_source(TomlTable& table, NamedFiles& files);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

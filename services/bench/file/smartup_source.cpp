@@ -4,7 +4,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 
 namespace {
 
@@ -43,4 +43,4 @@ SmartupSourceSettings read_smartup_source(TomlTable& table) {
   return smartup;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

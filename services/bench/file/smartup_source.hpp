@@ -8,8 +8,8 @@
 #include "services/bench/file/source_settings.hpp"
 #include "services/bench/file/toml_table.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 
 [[nodiscard]] SmartupSourceSettings read_smartup_source(TomlTable& table);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

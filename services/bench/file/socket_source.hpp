@@ -7,10 +7,10 @@
 #include "services/bench/file/source_settings.hpp"
 #include "services/bench/file/toml_table.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 
 [[nodiscard]] inline SocketSourceSettings read_socket_source(TomlTable& table) {
   return {.address = table.required_text("address")};
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

@@ -14,7 +14,7 @@
 #include "services/contract/bench_file_origin.hpp"
 #include "services/contract/device_identity.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 
 struct SmartupSourceSettings { // driver = "smartup"
   std::string listen;
@@ -103,4 +103,4 @@ struct SourceSettings {
   }
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

@@ -18,7 +18,7 @@
 #include "services/bench/file/socket_source.hpp"
 #include "services/contract/unit.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 
 namespace {
 
@@ -139,4 +139,4 @@ std::vector<SourceSettings> read_sources(TomlTable table, NamedFiles& files) {
   return sources;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

@@ -14,9 +14,9 @@
 #include "services/bench/file/source_settings.hpp"
 #include "services/bench/file/toml_table.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 
 // Files are looked up in `files`. What is not valid is refused in the table.
 [[nodiscard]] std::vector<SourceSettings> read_sources(TomlTable table, NamedFiles& files);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

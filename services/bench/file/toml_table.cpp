@@ -10,7 +10,7 @@
 
 #include "services/base/nearest_name.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 namespace {
 
 constexpr std::size_t whole_key = std::numeric_limits<std::size_t>::max();
@@ -334,4 +334,4 @@ void TomlTable::finish() {
   }
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

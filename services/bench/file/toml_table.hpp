@@ -16,7 +16,7 @@
 #include "services/bench/file/asked_keys.hpp"
 #include "services/bench/file/bench_problem.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 
 class TomlTable {
 public:
@@ -74,4 +74,4 @@ private:
   std::vector<std::string> absent_keys_;                  // in the order of the refusals
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

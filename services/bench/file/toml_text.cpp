@@ -8,7 +8,7 @@
 #include <fmt/core.h>
 #include <toml++/toml.h>
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 namespace {
 
 constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
@@ -74,4 +74,4 @@ tl::expected<toml::table, BenchProblem> parse_toml(std::string_view text,
   }
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

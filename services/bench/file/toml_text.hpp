@@ -13,9 +13,9 @@
 
 #include "services/bench/file/bench_problem.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 
 [[nodiscard]] tl::expected<toml::table, BenchProblem> parse_toml(std::string_view text,
                                                                  const std::filesystem::path& path);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

@@ -17,8 +17,8 @@
 namespace dyncal::bus {
 namespace {
 
-services::Error cyclone_error(const std::string& what, dds_return_t code) {
-  return {services::ErrorCode::network, what + ": " + dds_strretcode(-code)};
+base::Error cyclone_error(const std::string& what, dds_return_t code) {
+  return {base::ErrorCode::network, what + ": " + dds_strretcode(-code)};
 }
 
 // Owns one thing of Cyclone DDS; deleting it deletes what it contains.
@@ -45,7 +45,7 @@ struct Domain {
   std::string config;
 };
 
-services::Expected<std::shared_ptr<Domain>> open_domain(int number, const std::string& config) {
+base::Expected<std::shared_ptr<Domain>> open_domain(int number, const std::string& config) {
   static std::mutex mutex;
   static std::map<int, std::weak_ptr<Domain>> open;
   const std::lock_guard lock(mutex);
@@ -53,7 +53,7 @@ services::Expected<std::shared_ptr<Domain>> open_domain(int number, const std::s
     if (domain->config == config) {
       return domain;
     }
-    return fail(services::ErrorCode::network,
+    return fail(base::ErrorCode::network,
                 "Cyclone DDS domain " + std::to_string(number) +
                     " is open in this process with other network settings");
   }
@@ -235,7 +235,7 @@ public:
   explicit CycloneParticipant(std::shared_ptr<CycloneParticipantHandle> participant)
       : participant_(std::move(participant)) {}
 
-  services::Expected<std::unique_ptr<UntypedWriter>>
+  base::Expected<std::unique_ptr<UntypedWriter>>
   writer(const TypeSupport& type, const std::string& topic, Profile profile,
          const std::vector<std::string>& partitions) override {
     const dds_entity_t cyclone_topic = open_topic(type, topic);
@@ -253,9 +253,10 @@ public:
     return writer;
   }
 
-  services::Expected<std::unique_ptr<UntypedReader>>
-  reader(const TypeSupport& type, const std::string& topic, Profile profile,
-         const std::string& partition, std::shared_ptr<WakeUp> wake_up) override {
+  base::Expected<std::unique_ptr<UntypedReader>> reader(const TypeSupport& type,
+                                                        const std::string& topic, Profile profile,
+                                                        const std::string& partition,
+                                                        std::shared_ptr<WakeUp> wake_up) override {
     const dds_entity_t cyclone_topic = open_topic(type, topic);
     if (cyclone_topic < 0) {
       return fail(cyclone_error("Cyclone DDS refuses topic " + topic, cyclone_topic));
@@ -314,7 +315,7 @@ private:
 
 } // namespace
 
-services::Expected<std::unique_ptr<UntypedParticipant>>
+base::Expected<std::unique_ptr<UntypedParticipant>>
 create_cyclone_dds_participant(const ParticipantOptions& options) {
   DYNCAL_TRY(const auto config, cyclone_dds_config(options));
   if (const auto warning = receive_buffer_warning(

@@ -59,7 +59,7 @@ std::string internal() {
 
 } // namespace
 
-services::Expected<std::string> cyclone_dds_config(const ParticipantOptions& options) {
+base::Expected<std::string> cyclone_dds_config(const ParticipantOptions& options) {
   std::string address;
   if (!options.interface_name.empty()) {
     DYNCAL_TRY(address, interface_address(options.interface_name));

@@ -12,6 +12,6 @@
 namespace dyncal::bus {
 
 // Fails (network) on an interface or peer that does not exist.
-[[nodiscard]] services::Expected<std::string> cyclone_dds_config(const ParticipantOptions& options);
+[[nodiscard]] base::Expected<std::string> cyclone_dds_config(const ParticipantOptions& options);
 
 } // namespace dyncal::bus

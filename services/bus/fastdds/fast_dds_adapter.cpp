@@ -273,12 +273,12 @@ public:
     addresses_->set(std::move(addresses));
   }
 
-  services::Expected<std::unique_ptr<UntypedWriter>>
+  base::Expected<std::unique_ptr<UntypedWriter>>
   writer(const TypeSupport& type, const std::string& topic, Profile profile,
          const std::vector<std::string>& partitions) override {
     dds::Topic* fast_topic = participant_->topic(type, topic);
     if (fast_topic == nullptr) {
-      return fail(services::ErrorCode::network,
+      return fail(base::ErrorCode::network,
                   "Fast DDS refuses topic " + topic + " of type " + type.name);
     }
     dds::PublisherQos publisher_qos;
@@ -287,38 +287,39 @@ public:
     }
     dds::Publisher* publisher = participant_->get()->create_publisher(publisher_qos);
     if (publisher == nullptr) {
-      return fail(services::ErrorCode::network,
+      return fail(base::ErrorCode::network,
                   "Fast DDS refuses to publish in partition " + partitions.front());
     }
     dds::DataWriter* fast_writer =
         publisher->create_datawriter(fast_topic, writer_qos(qos_of_writer(profile)));
     if (fast_writer == nullptr) {
       participant_->get()->delete_publisher(publisher);
-      return fail(services::ErrorCode::network, "Fast DDS refuses a writer of topic " + topic);
+      return fail(base::ErrorCode::network, "Fast DDS refuses a writer of topic " + topic);
     }
     return std::make_unique<FastDdsWriter>(participant_, type, publisher, fast_writer);
   }
 
-  services::Expected<std::unique_ptr<UntypedReader>>
-  reader(const TypeSupport& type, const std::string& topic, Profile profile,
-         const std::string& partition, std::shared_ptr<WakeUp> wake_up) override {
+  base::Expected<std::unique_ptr<UntypedReader>> reader(const TypeSupport& type,
+                                                        const std::string& topic, Profile profile,
+                                                        const std::string& partition,
+                                                        std::shared_ptr<WakeUp> wake_up) override {
     dds::Topic* fast_topic = participant_->topic(type, topic);
     if (fast_topic == nullptr) {
-      return fail(services::ErrorCode::network,
+      return fail(base::ErrorCode::network,
                   "Fast DDS refuses topic " + topic + " of type " + type.name);
     }
     dds::SubscriberQos subscriber_qos;
     subscriber_qos.partition().push_back(partition.c_str());
     dds::Subscriber* subscriber = participant_->get()->create_subscriber(subscriber_qos);
     if (subscriber == nullptr) {
-      return fail(services::ErrorCode::network,
+      return fail(base::ErrorCode::network,
                   "Fast DDS refuses to subscribe in partition " + partition);
     }
     auto listener = wake_up ? std::make_unique<RingOnData>(wake_up) : nullptr;
     auto fast_reader =
         std::make_unique<FastDdsReader>(participant_, subscriber, type, std::move(listener));
     if (!fast_reader->open(fast_topic, reader_qos(qos_of_reader(profile)))) {
-      return fail(services::ErrorCode::network, "Fast DDS refuses a reader of topic " + topic);
+      return fail(base::ErrorCode::network, "Fast DDS refuses a reader of topic " + topic);
     }
     if (wake_up) {
       wake_up->ring();
@@ -361,7 +362,7 @@ std::vector<std::string> announced_addresses(const std::string& interface_name) 
 
 } // namespace
 
-services::Expected<std::unique_ptr<UntypedParticipant>>
+base::Expected<std::unique_ptr<UntypedParticipant>>
 create_fast_dds_participant(const ParticipantOptions& options) {
   auto transports =
       std::make_shared<TransportState>(std::make_shared<RefusedPackets>(options.warn));
@@ -375,7 +376,7 @@ create_fast_dds_participant(const ParticipantOptions& options) {
           static_cast<std::uint32_t>(options.domain), qos,
           options.watch_discovery ? discovery.get() : nullptr, dds::StatusMask::none());
   if (participant == nullptr) {
-    return fail(services::ErrorCode::network,
+    return fail(base::ErrorCode::network,
                 "Fast DDS cannot join domain " + std::to_string(options.domain) +
                     ": see its messages above, and check the profiles file if you set one");
   }

@@ -120,7 +120,7 @@ void set_discovery(int domain, bool multicast, const std::string& own_address,
 
 } // namespace
 
-services::Expected<dds::DomainParticipantQos>
+base::Expected<dds::DomainParticipantQos>
 fast_dds_participant_qos(const ParticipantOptions& options,
                          const std::shared_ptr<TransportState>& state) {
   auto* factory = dds::DomainParticipantFactory::get_instance();

@@ -17,7 +17,7 @@ namespace dyncal::bus {
 
 // `state` is shared by its transports, which send nothing before it says that the participant
 // listens. Fails (network) on an interface or peer that does not exist.
-[[nodiscard]] services::Expected<eprosima::fastdds::dds::DomainParticipantQos>
+[[nodiscard]] base::Expected<eprosima::fastdds::dds::DomainParticipantQos>
 fast_dds_participant_qos(const ParticipantOptions& options,
                          const std::shared_ptr<TransportState>& state);
 

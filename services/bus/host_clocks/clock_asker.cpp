@@ -4,7 +4,7 @@
 
 #include "services/contract/topics.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline host_clocks {
 namespace {
 
 constexpr std::size_t open_requests = 8; // an answer to an older one is too late to be of use
@@ -122,4 +122,4 @@ std::vector<HostClock> ClockAsker::other_hosts() const {
   return hosts;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline host_clocks

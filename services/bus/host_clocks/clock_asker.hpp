@@ -22,7 +22,7 @@
 #include "services/bus/host_clocks/clock_messages.hpp"
 #include "services/bus/host_clocks/clock_offset.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline host_clocks {
 
 struct AskingPace {
   int quick_requests = 5;
@@ -102,4 +102,4 @@ private:
   std::map<std::string, Heard> heard_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline host_clocks

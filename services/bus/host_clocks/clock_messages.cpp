@@ -5,7 +5,7 @@
 #include "services/bus/host_network.hpp"
 #include "services/bus/names.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline host_clocks {
 
 std::string service_name(const ProgramIdentity& identity) {
   const std::string name =
@@ -30,4 +30,4 @@ ProgramIdentity identity_of(const wire::ClockAnswer& answer) {
           .dds = answer.dds()};
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline host_clocks

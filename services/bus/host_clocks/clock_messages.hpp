@@ -6,7 +6,7 @@
 #include "idl/dyncal.h"
 #include "services/contract/program_identity.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline host_clocks {
 
 // Partition and `bench` of requests and answers: they are of no single bench.
 inline constexpr const char* all_benches_partition = "all-benches";
@@ -20,4 +20,4 @@ inline constexpr const char* all_benches_partition = "all-benches";
 
 [[nodiscard]] ProgramIdentity identity_of(const wire::ClockAnswer& answer);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline host_clocks

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace dyncal::services {
+namespace dyncal::inline host_clocks {
 namespace {
 
 // Of stamps since 1970 no difference overflows.
@@ -65,4 +65,4 @@ std::optional<ClockOffset> OffsetTracker::offset(Instant now) const {
   return best;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline host_clocks

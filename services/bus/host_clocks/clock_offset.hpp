@@ -17,7 +17,7 @@
 
 #include "services/bus/clock.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline host_clocks {
 
 struct ClockStamps { // UTC
   std::int64_t request_sent_ns = 0;
@@ -62,4 +62,4 @@ private:
   std::deque<Exchange> exchanges_; // the newest last
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline host_clocks

@@ -2,7 +2,7 @@
 
 #include "services/contract/topics.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline host_clocks {
 namespace {
 
 constexpr std::chrono::seconds max_wait{10};
@@ -96,4 +96,4 @@ void ClockResponder::echo(const wire::LinkProbe& probe) {
   static_cast<void>(topics_.echoes.write(echo, std::chrono::nanoseconds(0))); // as lost as others
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline host_clocks

@@ -16,7 +16,7 @@
 #include "services/bus/clock.hpp"
 #include "services/bus/host_clocks/clock_messages.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline host_clocks {
 
 class ClockResponder {
 public:
@@ -72,4 +72,4 @@ private:
   std::jthread thread_; // the last: ended first
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline host_clocks

@@ -5,7 +5,7 @@
 #include "services/contract/session_number.hpp"
 #include "services/contract/topics.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline host_clocks {
 namespace {
 
 constexpr std::uint32_t first_contract_with_probes = 2;
@@ -108,4 +108,4 @@ std::vector<LinkLoss> LinkMeter::losses(const std::vector<DiscoveredProgram>& pr
   return losses;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline host_clocks

@@ -26,7 +26,7 @@
 #include "services/bus/clock.hpp"
 #include "services/bus/host_clocks/clock_asker.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline host_clocks {
 
 struct LinkLoss {
   ProgramIdentity identity = {}; // of the other end
@@ -89,4 +89,4 @@ private:
   std::map<std::string, Echoes> echoes_of_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline host_clocks

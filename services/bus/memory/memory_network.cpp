@@ -98,7 +98,7 @@ public:
       : exchange_(std::move(exchange)), name_(std::move(name)),
         malformed_(std::make_shared<MalformedMessages>(std::move(warn))) {}
 
-  services::Expected<std::unique_ptr<UntypedWriter>>
+  base::Expected<std::unique_ptr<UntypedWriter>>
   writer(const TypeSupport& type, const std::string& topic, Profile profile,
          const std::vector<std::string>& partitions) override {
     return std::make_unique<MemoryWriter>(
@@ -106,9 +106,10 @@ public:
         endpoint(type, topic, qos_of_writer(profile), partitions, std::make_shared<WakeUp>()));
   }
 
-  services::Expected<std::unique_ptr<UntypedReader>>
-  reader(const TypeSupport& type, const std::string& topic, Profile profile,
-         const std::string& partition, std::shared_ptr<WakeUp> wake_up) override {
+  base::Expected<std::unique_ptr<UntypedReader>> reader(const TypeSupport& type,
+                                                        const std::string& topic, Profile profile,
+                                                        const std::string& partition,
+                                                        std::shared_ptr<WakeUp> wake_up) override {
     return std::make_unique<MemoryReader>(
         exchange_, type,
         endpoint(type, topic, qos_of_reader(profile), {partition}, std::move(wake_up)), malformed_);

@@ -9,7 +9,7 @@
 #include "services/records/replay/file_input.hpp"
 #include "services/records/replay/shot_files.hpp"
 
-namespace dyncal::services::bench_check {
+namespace dyncal::inline checks::bench_check {
 namespace {
 
 // Of the intervals of the first block; 0: too few samples.
@@ -54,7 +54,7 @@ void look_at_can(const SourceSettings& settings, SourceView& view) {
     return;
   }
   view.warnings = dbc->warnings;
-  const auto layout = drivers::can::lay_out(can::stream_settings(settings), *dbc);
+  const auto layout = drivers::can::lay_out(stream_settings(settings), *dbc);
   if (!layout) {
     view.problem = layout.error().message;
     return;
@@ -165,4 +165,4 @@ BenchView look_at_bench_text(const std::string& text, const std::filesystem::pat
   return look_at(parse_whole_bench_file(text, path));
 }
 
-} // namespace dyncal::services::bench_check
+} // namespace dyncal::inline checks::bench_check

@@ -15,7 +15,7 @@
 #include "services/checks/bench_check/finding.hpp"
 #include "services/checks/bench_check/key_lines.hpp"
 
-namespace dyncal::services::bench_check {
+namespace dyncal::inline checks::bench_check {
 
 // A message of a sensor on CAN.
 struct CanMessage {
@@ -55,4 +55,4 @@ struct BenchView {
 [[nodiscard]] BenchView look_at_bench_text(const std::string& text,
                                            const std::filesystem::path& path);
 
-} // namespace dyncal::services::bench_check
+} // namespace dyncal::inline checks::bench_check

@@ -10,7 +10,7 @@
 #include "services/contract/role_quantities.hpp"
 #include "services/contract/unit.hpp"
 
-namespace dyncal::services::bench_check {
+namespace dyncal::inline checks::bench_check {
 namespace {
 
 struct Role {
@@ -209,4 +209,4 @@ Findings check_channels(const BenchView& view) {
   return findings;
 }
 
-} // namespace dyncal::services::bench_check
+} // namespace dyncal::inline checks::bench_check

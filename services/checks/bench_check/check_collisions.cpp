@@ -7,7 +7,7 @@
 #include "drivers/link/address.hpp"
 #include "services/checks/bench_check/checks.hpp"
 
-namespace dyncal::services::bench_check {
+namespace dyncal::inline checks::bench_check {
 namespace {
 
 // Somebody who wants something for itself: a place in a bench file.
@@ -230,4 +230,4 @@ Findings check_collisions(std::span<const BenchView> views) {
   return findings;
 }
 
-} // namespace dyncal::services::bench_check
+} // namespace dyncal::inline checks::bench_check

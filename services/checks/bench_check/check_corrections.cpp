@@ -3,7 +3,7 @@
 #include "analysis/base/frequency.hpp"
 #include "services/checks/bench_check/checks.hpp"
 
-namespace dyncal::services::bench_check {
+namespace dyncal::inline checks::bench_check {
 namespace {
 
 void check_reference(const BenchView& view, const analysis::Frequency& frequency, std::size_t entry,
@@ -53,4 +53,4 @@ Findings check_corrections(const BenchView& view) {
   return findings;
 }
 
-} // namespace dyncal::services::bench_check
+} // namespace dyncal::inline checks::bench_check

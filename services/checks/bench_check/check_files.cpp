@@ -8,7 +8,7 @@
 #include "services/checks/bench_check/checks.hpp"
 #include "services/contract/digest.hpp"
 
-namespace dyncal::services::bench_check {
+namespace dyncal::inline checks::bench_check {
 namespace {
 
 constexpr std::size_t piece_bytes = 1U << 20U;
@@ -114,4 +114,4 @@ Findings check_files(const BenchView& view) {
   return findings;
 }
 
-} // namespace dyncal::services::bench_check
+} // namespace dyncal::inline checks::bench_check

@@ -7,7 +7,7 @@
 #include "analysis/base/frequency.hpp"
 #include "services/checks/bench_check/checks.hpp"
 
-namespace dyncal::services::bench_check {
+namespace dyncal::inline checks::bench_check {
 namespace {
 
 struct PlannedLevel {
@@ -126,4 +126,4 @@ Findings check_levels(const BenchView& view) {
   return findings;
 }
 
-} // namespace dyncal::services::bench_check
+} // namespace dyncal::inline checks::bench_check

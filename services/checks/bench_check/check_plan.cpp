@@ -5,7 +5,7 @@
 #include "services/checks/bench_check/checks.hpp"
 #include "services/run/run_plan.hpp"
 
-namespace dyncal::services::bench_check {
+namespace dyncal::inline checks::bench_check {
 namespace {
 
 constexpr double between_steps_s = 2.0; // changing the generator, evaluating the last step
@@ -54,4 +54,4 @@ Findings check_plan(const BenchView& view) {
   return findings;
 }
 
-} // namespace dyncal::services::bench_check
+} // namespace dyncal::inline checks::bench_check

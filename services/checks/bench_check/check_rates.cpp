@@ -5,7 +5,7 @@
 #include "analysis/base/frequency.hpp"
 #include "services/checks/bench_check/checks.hpp"
 
-namespace dyncal::services::bench_check {
+namespace dyncal::inline checks::bench_check {
 namespace {
 
 // A fit over less than a period has no phase, over less than three a poor one.
@@ -86,4 +86,4 @@ Findings check_rates(const BenchView& view) {
   return findings;
 }
 
-} // namespace dyncal::services::bench_check
+} // namespace dyncal::inline checks::bench_check

@@ -5,7 +5,7 @@
 #include "services/checks/bench_check/checks.hpp"
 #include "services/contract/role_rules.hpp"
 
-namespace dyncal::services::bench_check {
+namespace dyncal::inline checks::bench_check {
 namespace {
 
 // Whether the calibration of the reference states this uncertainty.
@@ -133,4 +133,4 @@ Findings check_uncertainty(const BenchView& view) {
   return findings;
 }
 
-} // namespace dyncal::services::bench_check
+} // namespace dyncal::inline checks::bench_check

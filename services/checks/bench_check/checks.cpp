@@ -4,7 +4,7 @@
 #include <set>
 #include <tuple>
 
-namespace dyncal::services::bench_check {
+namespace dyncal::inline checks::bench_check {
 
 Findings check_benches(std::span<const BenchView> views) {
   Findings findings;
@@ -56,4 +56,4 @@ Findings find_errors_before_run(const BenchView& view) {
   return findings;
 }
 
-} // namespace dyncal::services::bench_check
+} // namespace dyncal::inline checks::bench_check

@@ -8,7 +8,7 @@
 #include "services/checks/bench_check/bench_view.hpp"
 #include "services/checks/bench_check/finding.hpp"
 
-namespace dyncal::services::bench_check {
+namespace dyncal::inline checks::bench_check {
 
 // Files that the bench names: there, readable, their SHA-256.
 [[nodiscard]] Findings check_files(const BenchView& view);
@@ -34,4 +34,4 @@ namespace dyncal::services::bench_check {
 // All of them, with what the readers refused, in the order of files and lines.
 [[nodiscard]] Findings check_benches(std::span<const BenchView> views);
 
-} // namespace dyncal::services::bench_check
+} // namespace dyncal::inline checks::bench_check

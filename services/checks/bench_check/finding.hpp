@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace dyncal::services::bench_check {
+namespace dyncal::inline checks::bench_check {
 
 enum class Severity { note, warning, error };
 
@@ -23,4 +23,4 @@ struct Finding {
 
 using Findings = std::vector<Finding>;
 
-} // namespace dyncal::services::bench_check
+} // namespace dyncal::inline checks::bench_check

@@ -8,7 +8,7 @@
 
 #include "services/bench/file/toml_text.hpp"
 
-namespace dyncal::services::bench_check {
+namespace dyncal::inline checks::bench_check {
 
 std::string text_of(const KeyPath& path) {
   return fmt::format("{}", fmt::join(path, "."));
@@ -48,4 +48,4 @@ std::size_t KeyLines::line_of(const KeyPath& path, std::optional<std::size_t> en
   return std::max<std::size_t>(node->source().begin.line, 1);
 }
 
-} // namespace dyncal::services::bench_check
+} // namespace dyncal::inline checks::bench_check

@@ -9,7 +9,7 @@
 
 #include <toml++/impl/forward_declarations.h>
 
-namespace dyncal::services::bench_check {
+namespace dyncal::inline checks::bench_check {
 
 // The names of the tables around a key, and its own: {"sources", "dau", "listen"}.
 using KeyPath = std::vector<std::string>;
@@ -32,4 +32,4 @@ private:
   std::shared_ptr<const toml::table> root_; // null: not valid TOML
 };
 
-} // namespace dyncal::services::bench_check
+} // namespace dyncal::inline checks::bench_check

@@ -7,7 +7,7 @@
 
 #include "services/base/printable_text.hpp"
 
-namespace dyncal::services::bench_check {
+namespace dyncal::inline checks::bench_check {
 namespace {
 
 std::size_t count(const Findings& findings, Severity severity) {
@@ -57,4 +57,4 @@ nlohmann::ordered_json as_json(const Findings& findings, std::span<const BenchVi
           {"findings", std::move(list)}};
 }
 
-} // namespace dyncal::services::bench_check
+} // namespace dyncal::inline checks::bench_check

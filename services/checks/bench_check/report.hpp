@@ -9,7 +9,7 @@
 #include "services/checks/bench_check/bench_view.hpp"
 #include "services/checks/bench_check/finding.hpp"
 
-namespace dyncal::services::bench_check {
+namespace dyncal::inline checks::bench_check {
 
 // 0: no errors; 1: there are.
 [[nodiscard]] int exit_status(const Findings& findings);
@@ -22,4 +22,4 @@ namespace dyncal::services::bench_check {
 [[nodiscard]] nlohmann::ordered_json as_json(const Findings& findings,
                                              std::span<const BenchView> views);
 
-} // namespace dyncal::services::bench_check
+} // namespace dyncal::inline checks::bench_check

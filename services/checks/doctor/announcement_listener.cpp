@@ -12,7 +12,7 @@
 
 #include "services/bus/discovery.hpp"
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 namespace {
 
 constexpr const char* discovery_group = "239.255.0.1";
@@ -110,4 +110,4 @@ std::string sender_of_packet(const unsigned char* bytes, std::size_t count) {
   return bus::hexadecimal(bytes + prefix_offset, bus::guid_prefix_bytes);
 }
 
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

@@ -11,7 +11,7 @@
 
 #include "services/base/error.hpp"
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 
 class AnnouncementListener {
 public:
@@ -43,4 +43,4 @@ private:
 // The sender of an RTPS packet; empty if it is none.
 [[nodiscard]] std::string sender_of_packet(const unsigned char* bytes, std::size_t count);
 
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

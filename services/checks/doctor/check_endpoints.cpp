@@ -11,7 +11,7 @@
 #include "services/checks/doctor/qos_mismatch.hpp"
 #include "services/contract/topics.hpp"
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 namespace {
 
 using bus::DiscoveredEndpoint;
@@ -169,4 +169,4 @@ Findings check_endpoints(const LaboratoryView& view, const std::vector<std::stri
   return findings;
 }
 
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

@@ -3,7 +3,7 @@
 #include "services/bench/file/generator_address.hpp"
 #include "services/checks/doctor/checks.hpp"
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 namespace {
 
 Finding check_guard(const wire::ServiceStatus& guard) {
@@ -64,4 +64,4 @@ Findings check_guards(const LaboratoryView& view, const std::optional<BenchFile>
   return findings;
 }
 
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

@@ -6,7 +6,7 @@
 #include "services/bus/qos_profiles.hpp"
 #include "services/checks/doctor/checks.hpp"
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 namespace {
 
 constexpr int udp_and_ip_header_bytes = 28;
@@ -128,4 +128,4 @@ Findings check_host(const HostView& host, int domain) {
   return findings;
 }
 
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

@@ -2,7 +2,7 @@
 
 #include "services/checks/doctor/checks.hpp"
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 namespace {
 
 constexpr double notable_part = 0.01;
@@ -66,4 +66,4 @@ Findings check_loss(const LaboratoryView& view) {
   return findings;
 }
 
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

@@ -5,7 +5,7 @@
 #include "services/bus/qos_profiles.hpp"
 #include "services/checks/doctor/checks.hpp"
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 namespace {
 
 constexpr int base_port = 7400;
@@ -132,4 +132,4 @@ Findings check_network(const LaboratoryView& view) {
   return findings;
 }
 
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

@@ -7,7 +7,7 @@
 #include "services/checks/doctor/checks.hpp"
 #include "services/checks/doctor/unheard_analysis.hpp"
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 namespace {
 
 std::string place_of(const ProgramIdentity& identity) {
@@ -187,4 +187,4 @@ Findings check_programs(const LaboratoryView& view) {
   return findings;
 }
 
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

@@ -6,7 +6,7 @@
 #include "services/checks/doctor/checks.hpp"
 #include "services/contract/bench_file_origin.hpp"
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 namespace {
 
 constexpr double full_buffer = 0.5;
@@ -210,4 +210,4 @@ Findings check_sources(const LaboratoryView& view, const std::optional<BenchFile
   return findings;
 }
 
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

@@ -11,7 +11,7 @@
 #include "services/checks/doctor/host_view.hpp"
 #include "services/checks/doctor/laboratory_view.hpp"
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 
 // Who is there: programs and an analysis service, versions of software and contract, clocks.
 [[nodiscard]] Findings check_programs(const LaboratoryView& view);
@@ -45,4 +45,4 @@ namespace dyncal::services::doctor {
 // do not match.
 [[nodiscard]] bool partitions_match(const std::string& first, const std::string& second);
 
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

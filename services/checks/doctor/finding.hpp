@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 
 enum class Severity { ok, warning, problem };
 
@@ -20,4 +20,4 @@ struct Finding {
 
 using Findings = std::vector<Finding>;
 
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

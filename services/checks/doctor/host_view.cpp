@@ -19,7 +19,7 @@
 #include "services/bus/host_network.hpp"
 #include "services/bus/qos_profiles.hpp"
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 namespace {
 
 constexpr int answer_limit_ms = 200;
@@ -202,4 +202,4 @@ HostView look_at_host(const std::filesystem::path& output_folder) {
   return view;
 }
 
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

@@ -14,7 +14,7 @@
 #include "services/checks/doctor/send_queues.hpp"
 #include "services/checks/doctor/trial_connections.hpp"
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 
 struct HostInterface {
   std::string name;
@@ -55,4 +55,4 @@ struct HostView {
 [[nodiscard]] std::optional<UdpCounters> udp_counters();
 [[nodiscard]] std::map<std::string, unsigned> link_changes();
 
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

@@ -15,7 +15,7 @@
 #include "services/bus/host_clocks/clock_asker.hpp"
 #include "services/bus/host_clocks/link_meter.hpp"
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 
 // A source, by what it publishes of itself.
 struct ObservedSource {
@@ -45,4 +45,4 @@ struct LaboratoryView {
   std::uint64_t malformed_messages = 0;
 };
 
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

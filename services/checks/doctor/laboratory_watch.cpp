@@ -5,7 +5,7 @@
 #include "services/contract/known_sources.hpp"
 #include "services/contract/topics.hpp"
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 namespace {
 
 constexpr const char* all_benches = "*";
@@ -86,4 +86,4 @@ LaboratoryView LaboratoryWatch::view() const {
   return view;
 }
 
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

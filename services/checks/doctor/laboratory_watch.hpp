@@ -14,7 +14,7 @@
 #include "services/checks/doctor/laboratory_view.hpp"
 #include "services/contract/duplicate_source_detector.hpp"
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 
 class LaboratoryWatch {
 public:
@@ -53,4 +53,4 @@ private:
   std::map<LaboratoryView::SourceKey, DuplicateSourceDetector> turns_;
 };
 
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 namespace {
 
 using bus::AccessScope;
@@ -120,4 +120,4 @@ std::vector<std::string> qos_mismatches(const DiscoveredEndpoint& writer,
   return mismatches.take();
 }
 
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

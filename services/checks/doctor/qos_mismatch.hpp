@@ -9,11 +9,11 @@
 
 #include "services/bus/discovery.hpp"
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 
 // Each policy with both values: "reliability: the reader asks for RELIABLE, the writer offers
 // BEST_EFFORT". Empty: they match.
 [[nodiscard]] std::vector<std::string> qos_mismatches(const bus::DiscoveredEndpoint& writer,
                                                       const bus::DiscoveredEndpoint& reader);
 
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

@@ -7,7 +7,7 @@
 
 #include "services/base/printable_text.hpp"
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 namespace {
 
 using nlohmann::ordered_json;
@@ -180,4 +180,4 @@ ordered_json as_json(const Findings& findings, const LaboratoryView& view) {
   return all;
 }
 
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

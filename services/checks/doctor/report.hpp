@@ -9,7 +9,7 @@
 #include "services/checks/doctor/finding.hpp"
 #include "services/checks/doctor/laboratory_view.hpp"
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 
 // The gravest of all.
 [[nodiscard]] Severity worst(const Findings& findings);
@@ -24,4 +24,4 @@ namespace dyncal::services::doctor {
 // "participants".
 [[nodiscard]] nlohmann::ordered_json as_json(const Findings& findings, const LaboratoryView& view);
 
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

@@ -13,7 +13,7 @@
 
 #include "drivers/link/file_descriptor.hpp"
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 namespace {
 
 constexpr std::size_t answer_bytes = 65536; // of one part of the kernel's list
@@ -108,4 +108,4 @@ std::map<std::string, SendQueue> send_queues() {
   return queues;
 }
 
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

@@ -10,7 +10,7 @@
 #include <map>
 #include <string>
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 
 struct SendQueue { // since it was set up
   std::uint64_t sent = 0;
@@ -20,4 +20,4 @@ struct SendQueue { // since it was set up
 // By the names of the interfaces.
 [[nodiscard]] std::map<std::string, SendQueue> send_queues();
 
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

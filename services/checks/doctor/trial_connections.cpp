@@ -14,7 +14,7 @@
 
 #include "drivers/link/file_descriptor.hpp"
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -109,4 +109,4 @@ std::map<std::string, TriedHost> try_hosts(const std::set<std::string>& addresse
   return hosts;
 }
 
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

@@ -14,7 +14,7 @@
 #include <stop_token>
 #include <string>
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 
 inline constexpr int discard_port = 9; // RFC 863; whoever listens there takes a connection, too
 
@@ -34,4 +34,4 @@ struct TriedHost { // connections
                                                          const std::stop_token& stop,
                                                          int port = discard_port);
 
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

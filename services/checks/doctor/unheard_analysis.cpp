@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 namespace {
 
 constexpr const char* analysis_program = "dyncal-analysis";
@@ -183,4 +183,4 @@ std::string why_no_analysis_is_heard(const LaboratoryView& view, const HostView&
   return own.empty() ? why : why + "; " + own;
 }
 
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

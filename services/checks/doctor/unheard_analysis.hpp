@@ -11,7 +11,7 @@
 #include "services/checks/doctor/host_view.hpp"
 #include "services/checks/doctor/laboratory_view.hpp"
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 
 // It answers, or has spoken of a bench.
 [[nodiscard]] bool analysis_is_heard(const LaboratoryView& view);
@@ -25,4 +25,4 @@ namespace dyncal::services::doctor {
 [[nodiscard]] std::string why_no_analysis_is_heard(const LaboratoryView& view,
                                                    const HostView& host);
 
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

@@ -4,7 +4,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 namespace {
 
 using bus::HostAddress;
@@ -79,4 +79,4 @@ std::string difference(const std::vector<bus::HostAddress>& before,
   return text;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

@@ -16,7 +16,7 @@
 
 #include "services/bus/host_network.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 
 // When the participant was made.
 struct AddressesAtStart {
@@ -32,4 +32,4 @@ struct AddressesAtStart {
 [[nodiscard]] std::string difference(const std::vector<bus::HostAddress>& before,
                                      const std::vector<bus::HostAddress>& now);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

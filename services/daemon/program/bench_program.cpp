@@ -2,7 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 namespace {
 
 Expected<std::vector<BenchFile>> read_benches(const std::vector<std::string>& paths,
@@ -44,4 +44,4 @@ int run_bench_program(int argc, char** argv, const BenchProgram& program) {
        }});
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

@@ -14,7 +14,7 @@
 #include "services/bench/file/bench_file.hpp"
 #include "services/daemon/program/daemon.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 
 // Adds the bench file's peers to those of the command line; what the command line leaves open is
 // taken from the bench file.
@@ -30,4 +30,4 @@ struct BenchProgram {
 // The body of main(). Returns the exit status.
 [[nodiscard]] int run_bench_program(int argc, char** argv, const BenchProgram& program);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

@@ -18,7 +18,7 @@
 
 #include "services/base/error.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 
 // Files that take what a child prints; one path for both keeps the order of the lines.
 struct ChildOutput {
@@ -70,4 +70,4 @@ private:
 // The folder of the running program: all programs of dyncal are installed side by side.
 [[nodiscard]] std::filesystem::path program_folder();
 
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

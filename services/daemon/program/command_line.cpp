@@ -15,7 +15,7 @@
 #include "services/daemon/program/command_tree.hpp"
 #include "services/daemon/program/completion.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 namespace {
 
 tl::unexpected<Error> refuse(std::string sentence) {
@@ -220,4 +220,4 @@ std::optional<int> read_command_line(CLI::App& app, int argc, const char* const*
   return *parsed ? std::nullopt : std::optional(0);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

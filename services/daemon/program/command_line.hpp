@@ -17,7 +17,7 @@ namespace CLI { // NOLINT(readability-identifier-naming): of the library
 class App;
 }
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 
 // Of a wrong command line.
 inline constexpr int wrong_command_line = 2;
@@ -31,4 +31,4 @@ inline constexpr int wrong_command_line = 2;
 [[nodiscard]] std::optional<int> read_command_line(CLI::App& app, int argc,
                                                    const char* const* argv);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

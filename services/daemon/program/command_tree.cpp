@@ -4,7 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 namespace {
 
 std::vector<std::string> split(const std::string& text, char separator) {
@@ -93,4 +93,4 @@ DescribedCommand describe_commands(const CLI::App& app) {
   return describe(app, "");
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

@@ -10,7 +10,7 @@ namespace CLI { // NOLINT(readability-identifier-naming): of the library
 class App;
 }
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 
 struct DescribedOption {
   std::vector<std::string> names; // "-h", "--help"; of an argument by its place, "BENCH.toml"
@@ -31,4 +31,4 @@ struct DescribedCommand {
 
 [[nodiscard]] DescribedCommand describe_commands(const CLI::App& app);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

@@ -8,7 +8,7 @@
 
 #include "services/daemon/program/command_tree.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 namespace {
 
 using Commands = std::vector<DescribedCommand>;
@@ -313,4 +313,4 @@ Expected<std::string> completion_script(const CLI::App& app, const std::string& 
                           shell));
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

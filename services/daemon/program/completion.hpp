@@ -12,10 +12,10 @@ namespace CLI { // NOLINT(readability-identifier-naming): of the library
 class App;
 }
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 
 // Fails (bad_argument) with another shell than "bash", "zsh" and "fish".
 [[nodiscard]] Expected<std::string> completion_script(const CLI::App& app,
                                                       const std::string& shell);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

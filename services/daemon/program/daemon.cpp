@@ -10,7 +10,7 @@
 #include "services/bus/host_clocks/clock_messages.hpp"
 #include "services/daemon/program/command_line.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 
 Daemon::Daemon(std::string name, NetworkOptions options, std::unique_ptr<Supervisor> supervisor,
                const std::stop_token& signals)
@@ -69,4 +69,4 @@ int run_daemon(int argc, char** argv, const DaemonProgram& program) {
   return EXIT_SUCCESS;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

@@ -20,7 +20,7 @@
 #include "services/daemon/program/watched_network.hpp"
 #include "services/daemon/supervision/supervisor.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 
 class Daemon;
 
@@ -69,4 +69,4 @@ private:
 // The body of main(). Returns the exit status.
 [[nodiscard]] int run_daemon(int argc, char** argv, const DaemonProgram& program);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

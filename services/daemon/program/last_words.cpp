@@ -13,7 +13,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 namespace {
 
 std::array<char, 64> program_name{};
@@ -106,4 +106,4 @@ void set_last_words(const std::string& program) {
   sigaction(SIGABRT, &action, nullptr);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

@@ -14,8 +14,8 @@
 
 #include <string>
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 
 void set_last_words(const std::string& program);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

@@ -17,7 +17,7 @@
 #include "services/base/printable_text.hpp"
 #include "services/daemon/program/last_words.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 
 namespace {
 
@@ -108,4 +108,4 @@ void finish_log() {
   spdlog::details::registry::instance().set_tp(nullptr);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

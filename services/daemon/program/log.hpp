@@ -7,7 +7,7 @@
 
 #include <string>
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 
 enum class LogWriting {
   at_once,  // by the thread that logs
@@ -20,4 +20,4 @@ void set_up_log(const std::string& program, LogWriting writing = LogWriting::at_
 // Writes what is held; later lines are written at once. When other threads have ended.
 void finish_log();
 
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

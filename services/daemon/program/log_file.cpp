@@ -14,7 +14,7 @@
 
 #include "drivers/link/file_descriptor.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 namespace {
 
 constexpr const char* pattern = "%Y-%m-%dT%H:%M:%S.%e %n %l: %v";
@@ -80,4 +80,4 @@ void LogFile::write(const std::string& line) {
   sink_->own->info("{}", line);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

@@ -9,7 +9,7 @@
 
 #include "services/base/error.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 
 class LogFile {
 public:
@@ -31,4 +31,4 @@ private:
   std::unique_ptr<Sink> sink_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

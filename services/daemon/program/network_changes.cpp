@@ -6,7 +6,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 namespace {
 
 int listen_to_kernel() {
@@ -46,4 +46,4 @@ bool NetworkChanges::any() {
   return changed || (count < 0 && errno != EAGAIN && errno != EINTR);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

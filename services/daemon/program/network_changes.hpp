@@ -7,7 +7,7 @@
 
 #include <utility>
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 
 class NetworkChanges {
 public:
@@ -25,4 +25,4 @@ private:
   int socket_; // -1: the kernel cannot be asked
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

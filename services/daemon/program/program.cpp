@@ -13,7 +13,7 @@
 
 #include "services/base/printable_text.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 namespace {
 
 constexpr int interrupted_status = 130; // 128 + SIGINT, as shells report it
@@ -115,4 +115,4 @@ int report_error(const Error& error) {
                                                  : 1;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

@@ -14,7 +14,7 @@ namespace CLI { // NOLINT(readability-identifier-naming): of the library
 class App;
 }
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 
 struct NetworkOptions {
   std::string dds; // as parse_vendor() takes it
@@ -52,4 +52,4 @@ void wait_for_stop(const std::stop_token& stop);
 // belongs to the error.
 [[nodiscard]] int report_error(const Error& error);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 namespace {
 
 using Addresses = std::vector<bus::HostAddress>;
@@ -120,4 +120,4 @@ Expected<void> WatchedNetwork::outcome(Expected<void> served) const {
   return served;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

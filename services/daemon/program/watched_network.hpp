@@ -26,7 +26,7 @@
 #include "services/daemon/program/network_changes.hpp"
 #include "services/daemon/program/program.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 
 class WatchedNetwork {
 public:
@@ -71,4 +71,4 @@ private:
   std::jthread thread_; // the last: it uses the others
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

@@ -4,7 +4,7 @@
 
 #include "idl/dyncal.h"
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 namespace {
 
 constexpr MetricKind counter = MetricKind::counter;
@@ -178,4 +178,4 @@ void report(const AnalysisFigures& figures, MetricStore& store) {
   report_refused_packets(figures.refused_packets, store);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

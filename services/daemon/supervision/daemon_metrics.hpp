@@ -14,7 +14,7 @@ namespace dyncal::wire {
 class SourceStatus;
 }
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 
 // What the analysis service does, all in all.
 struct AnalysisFigures {
@@ -68,4 +68,4 @@ void report(const WebFigures& figures, MetricStore& store);
 void report_malformed_messages(std::uint64_t count, MetricStore& store);
 void report_refused_packets(std::uint64_t count, MetricStore& store);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

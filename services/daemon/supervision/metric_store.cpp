@@ -5,7 +5,7 @@
 #include <prometheus/registry.h>
 #endif
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 
 #ifdef DYNCAL_HAVE_PROMETHEUS
 
@@ -38,4 +38,4 @@ void MetricStore::set(const MetricFamily& /*family*/, const MetricLabels& /*labe
 
 #endif
 
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

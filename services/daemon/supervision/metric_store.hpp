@@ -15,7 +15,7 @@ namespace prometheus {
 class Registry;
 }
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 
 enum class MetricKind { counter, gauge };
 
@@ -40,4 +40,4 @@ private:
   std::shared_ptr<prometheus::Registry> registry_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

@@ -17,7 +17,7 @@
 #include <prometheus/registry.h>
 #endif
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 namespace {
 
 std::optional<sockaddr_in> parse_address(const std::string& text) {
@@ -138,4 +138,4 @@ MetricsServer::MetricsServer(std::unique_ptr<Implementation> implementation)
 
 MetricsServer::~MetricsServer() = default;
 
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

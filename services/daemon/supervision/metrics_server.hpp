@@ -11,7 +11,7 @@
 #include "services/base/error.hpp"
 #include "services/daemon/supervision/metric_store.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 
 class MetricsServer {
 public:
@@ -35,4 +35,4 @@ private:
 // False: this build has no prometheus-cpp.
 [[nodiscard]] bool can_serve_metrics();
 
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

@@ -9,7 +9,7 @@
 #include <sstream>
 #include <string>
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 namespace {
 
 constexpr MetricFamily resident_memory{"process_resident_memory_bytes",
@@ -59,4 +59,4 @@ void add_process_metrics(MetricStore& store) {
   }
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

@@ -3,9 +3,9 @@
 
 #include "services/daemon/supervision/metric_store.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 
 // Resident and virtual memory, processor time, open descriptors, threads, time of start.
 void add_process_metrics(MetricStore& store);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

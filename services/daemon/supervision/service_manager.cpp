@@ -6,7 +6,7 @@
 #include <systemd/sd-daemon.h>
 #endif
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 namespace {
 
 constexpr int signs_per_interval = 4;
@@ -69,4 +69,4 @@ void ServiceManager::stopping() {
   }
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

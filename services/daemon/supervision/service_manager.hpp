@@ -15,7 +15,7 @@
 #include <mutex>
 #include <string>
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 
 // False: this build has no libsystemd.
 [[nodiscard]] bool can_notify_service_manager();
@@ -42,4 +42,4 @@ private:
   Clock::time_point next_watchdog_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

@@ -1,15 +1,15 @@
 #include "services/daemon/supervision/supervisor.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 
 Expected<std::unique_ptr<Supervisor>> Supervisor::create(ProgramIdentity identity,
                                                          const std::string& metrics_address) {
   std::unique_ptr<Supervisor> supervisor(new Supervisor(std::move(identity)));
-  services::report(supervisor->identity_, supervisor->store_);
+  daemon::report(supervisor->identity_, supervisor->store_);
   if (!metrics_address.empty()) {
     DYNCAL_TRY(supervisor->server_, MetricsServer::start(metrics_address, supervisor->store_));
   }
   return supervisor;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

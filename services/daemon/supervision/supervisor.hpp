@@ -16,7 +16,7 @@
 #include "services/daemon/supervision/metrics_server.hpp"
 #include "services/daemon/supervision/service_manager.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 
 class Supervisor {
 public:
@@ -38,23 +38,23 @@ public:
   // second.
   void report(const wire::SourceStatus& status, std::uint64_t messages_written) {
     if (server_) {
-      services::report(status, messages_written, store_);
+      daemon::report(status, messages_written, store_);
     }
   }
   template <class Figures>
   void report(const Figures& figures) {
     if (server_) {
-      services::report(figures, store_);
+      daemon::report(figures, store_);
     }
   }
   void report_malformed_messages(std::uint64_t count) {
     if (server_) {
-      services::report_malformed_messages(count, store_);
+      daemon::report_malformed_messages(count, store_);
     }
   }
   void report_refused_packets(std::uint64_t count) {
     if (server_) {
-      services::report_refused_packets(count, store_);
+      daemon::report_refused_packets(count, store_);
     }
   }
 
@@ -68,4 +68,4 @@ private:
   std::unique_ptr<MetricsServer> server_; // of store_; null: nobody asked for it
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

@@ -10,7 +10,7 @@
 #include "services/evaluation/method/step_task.hpp"
 #include "services/evaluation/recipe/reference_correction.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 analysis::Expected<EvaluatedStep>
@@ -115,4 +115,4 @@ Evaluation AbsoluteTime::evaluation(std::size_t step, const RunRecords& records)
              const std::stop_token& stop) { return evaluate(task.until(stop), acs, sensors); };
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

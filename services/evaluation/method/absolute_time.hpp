@@ -7,7 +7,7 @@
 
 #include "services/evaluation/method/method.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 class AbsoluteTime : public Method {
 public:
@@ -27,4 +27,4 @@ private:
   const AbsoluteTimeRoles& roles_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

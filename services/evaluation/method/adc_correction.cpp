@@ -1,6 +1,6 @@
 #include "services/evaluation/method/adc_correction.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 analysis::Expected<analysis::AdcResponse> adc_response(const SampleStampingRoles& roles,
                                                        const RecipeStep& step) {
@@ -10,4 +10,4 @@ analysis::Expected<analysis::AdcResponse> adc_response(const SampleStampingRoles
   return analysis::adc_response_at(roles.adc_calibration, step.frequency.hz());
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

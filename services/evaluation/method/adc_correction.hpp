@@ -4,11 +4,11 @@
 #include "analysis/base/error.hpp"
 #include "services/evaluation/recipe/recipe.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 // At the step's frequency, by the recipe's calibration; without one: no correction, and the
 // uncertainty of the delay that the recipe states.
 [[nodiscard]] analysis::Expected<analysis::AdcResponse>
 adc_response(const SampleStampingRoles& roles, const RecipeStep& step);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -7,7 +7,7 @@
 #include "services/evaluation/method/step_task.hpp"
 #include "services/evaluation/recipe/reference_correction.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 // The reference, then the channels under calibration.
@@ -91,4 +91,4 @@ Evaluation Analogue::evaluation(std::size_t step, const RunRecords& records) {
   };
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -7,7 +7,7 @@
 
 #include "services/evaluation/method/method.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 class Analogue : public Method {
 public:
@@ -22,4 +22,4 @@ private:
   const AnalogueRoles& roles_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -7,7 +7,7 @@
 
 #include "analysis/clock/clock_steps.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 constexpr double worth_a_flag = 0.5; // of u
@@ -66,4 +66,4 @@ void add_clock_check(const std::vector<SteppedClock>& stepped, StepResult& resul
   }
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -17,7 +17,7 @@
 #include "services/evaluation/method/selected_channels.hpp"
 #include "services/evaluation/result/step_result.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 struct SteppedClock {
   std::string source;
@@ -33,4 +33,4 @@ struct SteppedClock {
 // REQUIRES: the result has its u.
 void add_clock_check(const std::vector<SteppedClock>& stepped, StepResult& result);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 bool cut(const analysis::KnockedChannel& found, std::initializer_list<SelectedChannels*> parts,
@@ -40,4 +40,4 @@ evaluate_without_knocks(StepTask& task, std::initializer_list<SelectedChannels*>
   return any && !task.given_up.stop_requested() ? evaluate() : step;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

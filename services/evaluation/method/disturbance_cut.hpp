@@ -12,11 +12,11 @@
 #include "services/evaluation/method/step_results.hpp"
 #include "services/evaluation/method/step_task.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 // `evaluate` is called anew where samples of `parts` were left out. Flags go to the task.
 [[nodiscard]] analysis::Expected<EvaluatedStep>
 evaluate_without_knocks(StepTask& task, std::initializer_list<SelectedChannels*> parts,
                         const std::function<analysis::Expected<EvaluatedStep>()>& evaluate);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

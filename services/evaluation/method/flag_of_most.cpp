@@ -6,7 +6,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 struct Count {
@@ -46,4 +46,4 @@ bool add_flag_of_most(ResultFlag kind, std::span<StepResult> results) {
   return added;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -11,9 +11,9 @@
 #include "services/evaluation/result/result_flag.hpp"
 #include "services/evaluation/result/step_result.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 // Returns whether it changed a result.
 [[nodiscard]] bool add_flag_of_most(ResultFlag kind, std::span<StepResult> results);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

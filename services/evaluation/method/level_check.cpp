@@ -6,7 +6,7 @@
 
 #include "services/contract/unit.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 std::optional<Flag> find_level_deviation(const RecipeStep& step, double level_deviation_rel,
                                          const analysis::ChannelFit& reference,
@@ -23,4 +23,4 @@ std::optional<Flag> find_level_deviation(const RecipeStep& step, double level_de
       fmt::format("{:.4g} m/s^2 in place of {:.4g} m/s^2", measured_m_s2, step.level_m_s2));
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -13,11 +13,11 @@
 #include "services/evaluation/recipe/recipe.hpp"
 #include "services/evaluation/result/result_flag.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 [[nodiscard]] std::optional<Flag> find_level_deviation(const RecipeStep& step,
                                                        double level_deviation_rel,
                                                        const analysis::ChannelFit& reference,
                                                        const std::string& reference_unit);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

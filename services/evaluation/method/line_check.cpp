@@ -9,7 +9,7 @@
 #include "analysis/sine/background_spectrum.hpp"
 #include "analysis/sine/stationary_line.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 using analysis::LineAmplitude;
@@ -231,4 +231,4 @@ Flag flag_of_line(const std::string& channel, const analysis::UnresolvedLine& li
                       to_string(ResultFlag::harmonic_not_separated))};
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -20,7 +20,7 @@
 #include "services/evaluation/result/channel_lines.hpp"
 #include "services/evaluation/result/step_result.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 // What a channel is in the evaluation.
 struct LineSubject {
@@ -49,4 +49,4 @@ void add_lines(std::vector<ChannelLines> lines, StepResult& result);
 // "dau/dos: hum at 50 Hz cannot be told from the excitation".
 [[nodiscard]] Flag flag_of_line(const std::string& channel, const analysis::UnresolvedLine& line);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -7,7 +7,7 @@
 #include "services/evaluation/method/sample_time_stamping.hpp"
 #include "services/evaluation/method/series_time_stamping.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 Expected<void> Method::check_time_scales(const RunRecords& /*records*/) const {
   return {};
@@ -40,4 +40,4 @@ std::unique_ptr<Method> make_method(std::shared_ptr<const Recipe> recipe) {
   return std::make_unique<SampleTimeStamping>(std::move(recipe));
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

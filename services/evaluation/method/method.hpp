@@ -24,7 +24,7 @@
 #include "services/evaluation/result/clock_report.hpp"
 #include "services/evaluation/result/step_result.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 // Asked to stop, one ends soon, with results that nobody should state as they are: their check by
 // Monte Carlo is missing.
@@ -74,4 +74,4 @@ protected:
 // Of the recipe's method. The recipe does not change any more.
 [[nodiscard]] std::unique_ptr<Method> make_method(std::shared_ptr<const Recipe> recipe);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -4,7 +4,7 @@
 
 #include "analysis/method/transfer_check.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 void add_monte_carlo_check(std::uint64_t max_trials, const analysis::TransferPoint& point,
                            std::span<const analysis::ChannelFit> link, const std::stop_token& stop,
@@ -40,4 +40,4 @@ void redo_monte_carlo_check(std::uint64_t max_trials, const std::stop_token& sto
                         fits.first(fits.size() - 1), stop, result);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

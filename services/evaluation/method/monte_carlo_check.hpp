@@ -13,7 +13,7 @@
 #include "analysis/method/transfer_point.hpp"
 #include "services/evaluation/result/step_result.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 // Nothing for 0 trials. The seed is fixed, so that the same samples give the same bits. `link` as
 // analysis::check_transfer() takes it.
@@ -25,4 +25,4 @@ void add_monte_carlo_check(std::uint64_t max_trials, const analysis::TransferPoi
 void redo_monte_carlo_check(std::uint64_t max_trials, const std::stop_token& stop,
                             StepResult& result);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -10,7 +10,7 @@
 #include "services/evaluation/method/step_task.hpp"
 #include "services/evaluation/recipe/reference_correction.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 struct StepChannels {
@@ -123,4 +123,4 @@ Evaluation OwnClockSampleStamping::evaluation(std::size_t step, const RunRecords
   };
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

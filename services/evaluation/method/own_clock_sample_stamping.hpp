@@ -7,7 +7,7 @@
 
 #include "services/evaluation/method/method.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 class OwnClockSampleStamping : public Method {
 public:
@@ -27,4 +27,4 @@ private:
   const SampleStampingRoles& roles_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

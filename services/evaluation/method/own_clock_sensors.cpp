@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 bool sensors_have_sent(const Recipe& recipe, const RunRecords& records, std::size_t search,
                        std::size_t step) {
@@ -75,4 +75,4 @@ Expected<void> check_one_time_scale(const Recipe& recipe, const RunRecords& reco
   return {};
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

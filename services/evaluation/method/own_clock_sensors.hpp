@@ -17,7 +17,7 @@
 #include "services/evaluation/method/step_task.hpp"
 #include "services/evaluation/record/run_records.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 // The samples of every sensor in the step's interval have come, or cannot come any more. `search`
 // finds their intervals; without one for the step there is nothing to wait for.
@@ -44,4 +44,4 @@ void flag_unknown_clock(const SelectedChannels& channels, std::vector<Flag>& fla
 [[nodiscard]] Expected<void> check_one_time_scale(const Recipe& recipe, const RunRecords& records,
                                                   const std::string& link);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

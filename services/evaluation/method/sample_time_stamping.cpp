@@ -8,7 +8,7 @@
 #include "services/evaluation/method/step_task.hpp"
 #include "services/evaluation/recipe/reference_correction.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 // The recipe's, or all of the DAU but sync, temperature and analogue inputs.
@@ -114,4 +114,4 @@ Evaluation SampleTimeStamping::evaluation(std::size_t step, const RunRecords& re
              const std::stop_token& stop) { return evaluate(task.until(stop), acs, dau); };
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

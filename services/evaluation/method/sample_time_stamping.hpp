@@ -10,7 +10,7 @@
 #include "analysis/base/error.hpp"
 #include "services/evaluation/method/method.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 class SampleTimeStamping : public Method {
 public:
@@ -28,4 +28,4 @@ private:
   const SampleStampingRoles& roles_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

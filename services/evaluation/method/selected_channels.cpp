@@ -10,7 +10,7 @@
 #include "services/contract/unit.hpp"
 #include "services/evaluation/method/signal_check.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 SelectedChannels::SelectedChannels(SourceInterval source, std::vector<ChannelName> names,
                                    std::span<const double> mains_hz)
@@ -139,4 +139,4 @@ std::string ratio_unit(const std::string& input, const std::string& output) {
                          : fmt::format("({})/({})", short_form(output), short_form(input));
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

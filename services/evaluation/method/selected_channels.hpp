@@ -18,7 +18,7 @@
 #include "services/evaluation/record/step_samples.hpp"
 #include "services/evaluation/result/step_result.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 class SelectedChannels {
 public:
@@ -69,4 +69,4 @@ private:
 // Output per input, as D-SI spells it: "\one" when both are the same, empty where one is not known.
 [[nodiscard]] std::string ratio_unit(const std::string& input, const std::string& output);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -14,7 +14,7 @@
 #include "analysis/uncertainty/found_resolution.hpp"
 #include "services/evaluation/method/line_check.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 constexpr double ppm = 1e6;
@@ -143,4 +143,4 @@ std::vector<Flag> flags_of_agreement(const analysis::SeriesChannelResult& channe
                        fmt::join(what, "; "))}};
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

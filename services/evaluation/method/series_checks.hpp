@@ -15,7 +15,7 @@
 #include "services/evaluation/record/source_record.hpp"
 #include "services/evaluation/result/channel_lines.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 struct CheckedShots {
   const StepTask& task;
@@ -41,4 +41,4 @@ struct CheckedShots {
 // A flag where the shots of a channel differ by more than their noise, or change within themselves.
 [[nodiscard]] std::vector<Flag> flags_of_agreement(const analysis::SeriesChannelResult& channel);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 ClockReport series_clock_report(const std::string& sensor, double u_acs_rate_rel,
                                 std::span<const analysis::NominalFrequency> rates) {
@@ -34,4 +34,4 @@ ClockReport series_clock_report(const std::string& sensor, double u_acs_rate_rel
   return report;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -12,10 +12,10 @@
 #include "analysis/method/nominal_frequency.hpp"
 #include "services/evaluation/result/clock_report.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 // `u_acs_rate_rel`: of the ACS's clock. REQUIRES: at least one rate.
 [[nodiscard]] ClockReport series_clock_report(const std::string& sensor, double u_acs_rate_rel,
                                               std::span<const analysis::NominalFrequency> rates);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

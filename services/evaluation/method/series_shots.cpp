@@ -9,7 +9,7 @@
 
 #include "services/contract/digest.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 std::vector<ShotRecord::Shot> shots_of_usual_length(const std::vector<ShotRecord::Shot>& shots,
                                                     std::size_t series_channels,
@@ -71,4 +71,4 @@ SourceSamples summary_of_shots(const SourceRecord& source,
   return summary;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

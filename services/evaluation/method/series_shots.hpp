@@ -15,7 +15,7 @@
 #include "services/evaluation/result/result_flag.hpp"
 #include "services/evaluation/result/step_result.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 // Those whose series have the length and the rate that most have, and whose records have the
 // channels; a flag names how many were left out.
@@ -33,4 +33,4 @@ shots_of_usual_length(const std::vector<ShotRecord::Shot>& shots, std::size_t se
                                              const TriggeredRecord* ShotRecord::Shot::*record,
                                              const ShotRecord::Loss& loss);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -16,7 +16,7 @@
 #include "services/evaluation/method/step_results.hpp"
 #include "services/evaluation/recipe/reference_correction.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 constexpr double any_phase = std::numbers::pi / std::numbers::sqrt3; // nothing is known of it
@@ -328,4 +328,4 @@ void add_shared_start(const analysis::SharedStartScatter& start, StepResult& res
   }
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

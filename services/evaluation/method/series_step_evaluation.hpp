@@ -25,7 +25,7 @@
 #include "services/evaluation/record/shot_record.hpp"
 #include "services/evaluation/result/step_result.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 struct SeriesStepInput {
   StepTask task;
@@ -51,4 +51,4 @@ struct SeriesStepOutput {
 // itself, unless that is undecided; and the flag where they show that it scatters.
 void add_shared_start(const analysis::SharedStartScatter& start, StepResult& result);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -12,7 +12,7 @@
 #include "services/evaluation/method/step_results.hpp"
 #include "services/evaluation/method/step_task.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 StepAttempt attempt_at(std::size_t step, const RunRecords& records) {
@@ -142,4 +142,4 @@ std::vector<ClockReport> SeriesTimeStamping::clock_reports() const {
   return {series_clock_report(roles_.dut.front().source, roles_.u_acs_rate_rel, rates)};
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

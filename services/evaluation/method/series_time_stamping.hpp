@@ -20,7 +20,7 @@
 #include "services/evaluation/method/method.hpp"
 #include "services/evaluation/record/shot_record.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 class SeriesTimeStamping : public Method {
 public:
@@ -54,4 +54,4 @@ private:
   std::map<std::string, std::map<std::uint32_t, analysis::StepBend>> bends_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -8,7 +8,7 @@
 
 #include "services/evaluation/method/step_results.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 constexpr double visible_error = 0.5;    // u of the magnitude, for bent peaks
@@ -159,4 +159,4 @@ void check_shape_of_shots(const analysis::ChannelFit& reference, const std::stri
   }
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -21,7 +21,7 @@
 #include "analysis/step/peak_shape.hpp"
 #include "services/evaluation/result/step_result.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 // `result` has its value and u. Channels without integrity are not judged.
 void check_shape(const analysis::ChannelFit& reference, const analysis::ChannelFit& sensor,
@@ -31,4 +31,4 @@ void check_shape(const analysis::ChannelFit& reference, const analysis::ChannelF
 void check_shape_of_shots(const analysis::ChannelFit& reference, const std::string& channel,
                           std::span<const analysis::SineShape> shots, StepResult& result);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

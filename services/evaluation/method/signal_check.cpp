@@ -6,7 +6,7 @@
 
 #include "analysis/step/signal_integrity.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 std::string percent(double part) {
@@ -95,4 +95,4 @@ analysis::SignalExpectation expectation_of(const drivers::ChannelDescription& de
   return expected;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -16,7 +16,7 @@
 #include "services/evaluation/result/channel_signal.hpp"
 #include "services/evaluation/result/result_flag.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 struct SignalCheck {
   ChannelSignal signal;
@@ -36,4 +36,4 @@ check_signal(const std::string& channel,
 [[nodiscard]] analysis::SignalExpectation
 expectation_of(const drivers::ChannelDescription& description);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -11,7 +11,7 @@
 #include "services/evaluation/method/shape_check.hpp"
 #include "services/evaluation/method/unstated_uncertainty.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 StepResult point_result(const StepTask& task, const ChannelName& channel,
@@ -202,4 +202,4 @@ std::vector<std::string> units_of(const SelectedChannels& acs, const SelectedCha
   return units;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

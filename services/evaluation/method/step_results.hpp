@@ -14,7 +14,7 @@
 #include "services/evaluation/method/step_task.hpp"
 #include "services/evaluation/result/step_result.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 // What the evaluation of a step gives: fits that are common to all channels, and one point a
 // channel.
@@ -69,4 +69,4 @@ void add_input(const StepTask& task, const StepInput& input, StepResult& result)
 [[nodiscard]] std::vector<std::string> units_of(const SelectedChannels& acs,
                                                 const SelectedChannels& dut, std::size_t first_dut);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -10,7 +10,7 @@
 #include "analysis/sine/sine_fit.hpp"
 #include "analysis/step/settling.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 // Of each settling column, in their order; the reason where there is none.
@@ -77,4 +77,4 @@ SettlingColumns sensor_columns(const SelectedChannels& sensor) {
   return columns;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -16,7 +16,7 @@
 #include "services/evaluation/recipe/recipe.hpp"
 #include "services/evaluation/result/result_flag.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 // The columns of one source: its sync, and those whose settling counts.
 struct SettlingColumns {
@@ -43,4 +43,4 @@ struct StepSettling {
 // All columns but the first, which is sync.
 [[nodiscard]] SettlingColumns sensor_columns(const SelectedChannels& sensor);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

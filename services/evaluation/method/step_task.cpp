@@ -11,7 +11,7 @@
 
 #include "services/evaluation/record/shown_sine.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 constexpr double max_distrusted_part = 0.2; // of the stamps: with more they are the likely reason
@@ -163,4 +163,4 @@ std::string no_sine(const Recipe& recipe, const RunRecords& records, std::size_t
                      records.planned(step).frequency_text_hz, sync.text(), when, cause);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

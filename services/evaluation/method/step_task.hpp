@@ -13,7 +13,7 @@
 #include "services/evaluation/record/run_records.hpp"
 #include "services/evaluation/result/result_flag.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 struct StepTask {
   std::shared_ptr<const Recipe> recipe;
@@ -40,4 +40,4 @@ struct StepTask {
 [[nodiscard]] std::string no_sine(const Recipe& recipe, const RunRecords& records, std::size_t step,
                                   const ChannelName& sync);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

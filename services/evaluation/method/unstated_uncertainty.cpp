@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 namespace {
 
@@ -46,4 +46,4 @@ std::vector<Flag> flags_of_unstated(const Recipe& recipe) {
   return flags;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

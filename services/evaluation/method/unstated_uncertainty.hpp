@@ -13,8 +13,8 @@
 #include "services/evaluation/recipe/recipe.hpp"
 #include "services/evaluation/result/result_flag.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 [[nodiscard]] std::vector<Flag> flags_of_unstated(const Recipe& recipe);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -6,7 +6,7 @@
 
 #include "services/evaluation/recipe/reference_correction.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 // Of a value; all of them are held while it is drawn, 16 bytes each.
@@ -176,4 +176,4 @@ Expected<void> check_recipe(const Recipe& recipe) {
   return {};
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

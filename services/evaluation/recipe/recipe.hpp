@@ -24,7 +24,7 @@
 #include "services/contract/evaluation_method.hpp"
 #include "services/contract/role_rules.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 struct RecipeStep {
   std::uint32_t step = 0;
@@ -133,4 +133,4 @@ struct Recipe {
 // calibrated.
 [[nodiscard]] Expected<void> check_recipe(const Recipe& recipe);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

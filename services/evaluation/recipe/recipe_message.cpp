@@ -4,7 +4,7 @@
 
 #include "services/contract/evaluation_method_message.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 tl::unexpected<Error> refuse(std::string sentence) {
@@ -242,4 +242,4 @@ Expected<Recipe> parse_recipe(const wire::Measurement& measurement) {
   return recipe;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

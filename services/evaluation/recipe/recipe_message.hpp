@@ -8,7 +8,7 @@
 #include "services/base/error.hpp"
 #include "services/evaluation/recipe/recipe.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 // Everything but state, time and message of the run.
 [[nodiscard]] wire::Measurement to_message(const Recipe& recipe);
@@ -17,4 +17,4 @@ namespace dyncal::services {
 // check_recipe() does.
 [[nodiscard]] Expected<Recipe> parse_recipe(const wire::Measurement& measurement);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -1,6 +1,6 @@
 #include "services/evaluation/recipe/reference_correction.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 analysis::Expected<analysis::ReferenceResponse> reference_response(const Recipe& recipe,
                                                                    const RecipeStep& step) {
@@ -11,4 +11,4 @@ analysis::Expected<analysis::ReferenceResponse> reference_response(const Recipe&
                                          step.level_m_s2);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -5,7 +5,7 @@
 
 #include "analysis/base/statistics.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 void add_newest(std::deque<std::int64_t>& values, std::int64_t value) {
@@ -87,4 +87,4 @@ std::optional<std::int64_t> AnnouncedInstants::offset_by_sent_blocks(const Sourc
   return offsets.empty() ? std::nullopt : std::optional(analysis::upper_median(offsets));
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -24,7 +24,7 @@
 
 #include "services/evaluation/record/sent_blocks.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 class AnnouncedInstants {
 public:
@@ -68,4 +68,4 @@ private:
   std::map<Sessions, std::deque<std::int64_t>> offsets_ns_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -4,7 +4,7 @@
 
 #include "analysis/sine/sine_fit.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 constexpr std::size_t min_samples = 16;
@@ -42,4 +42,4 @@ std::optional<double> level_in(const SourceRecord& record, std::size_t channel,
   return sine ? std::optional(sine->amplitude) : std::nullopt;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

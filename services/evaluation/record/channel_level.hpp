@@ -13,7 +13,7 @@
 #include "services/evaluation/record/source_record.hpp"
 #include "services/evaluation/record/time_interval.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 // How many seconds of samples show the amplitude at this frequency: four periods, 0.2 s at least.
 [[nodiscard]] double level_window_s(double frequency_hz);
@@ -34,4 +34,4 @@ struct SineOfPart {
                                              const TimeInterval& interval,
                                              const analysis::Frequency& frequency);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 // The search knows a frequency to 1.5e-3 of the planned one, in either clock.
@@ -269,4 +269,4 @@ std::optional<bool> levels_agree(const ExcitationInBoth& one, const ExcitationIn
   return std::abs(std::log(second / first)) <= level_tolerance_rel;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -19,7 +19,7 @@
 
 #include "services/evaluation/record/recorded_excitations.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 struct ExcitationInBoth {
   const FoundExcitation* first = nullptr;
@@ -63,4 +63,4 @@ phases_agree(const ExcitationInBoth& one, const ExcitationInBoth& other, const C
 [[nodiscard]] std::optional<bool> levels_agree(const ExcitationInBoth& one,
                                                const ExcitationInBoth& other);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

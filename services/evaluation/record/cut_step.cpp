@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 constexpr double margin_frames = 1.3;   // a frame at an edge counts when most of it is filled
@@ -65,4 +65,4 @@ std::optional<TimeInterval> evaluated_of_cut_step(const RecordedExcitations& rec
                       std::min(window.end_ns, since_begin(earliest_ns + planned_ns(step))) - 1};
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -18,7 +18,7 @@
 #include "services/evaluation/record/recorded_excitations.hpp"
 #include "services/evaluation/record/time_interval.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 // An excitation that begins with the record.
 [[nodiscard]] bool begins_with_record(const FoundExcitation& first, std::int64_t record_begin_ns);
@@ -28,4 +28,4 @@ namespace dyncal::services {
 [[nodiscard]] std::optional<TimeInterval>
 evaluated_of_cut_step(const RecordedExcitations& record, std::span<const RecipeStep* const> steps);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

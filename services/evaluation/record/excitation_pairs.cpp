@@ -9,7 +9,7 @@
 
 #include "services/evaluation/record/clock_comparison.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 // The search knows a frequency to 1.5e-3 (excitation_window.hpp), the fit through its phases less
@@ -295,4 +295,4 @@ join_excitations(std::span<const RecipeStep* const> plan, const RecordedExcitati
              : std::nullopt;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

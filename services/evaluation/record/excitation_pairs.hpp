@@ -25,7 +25,7 @@
 #include "services/evaluation/recipe/recipe.hpp"
 #include "services/evaluation/record/recorded_excitations.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 // Places in the lists of the records; at least one of them.
 struct JoinedExcitation {
@@ -40,4 +40,4 @@ struct JoinedExcitation {
 join_excitations(std::span<const RecipeStep* const> plan, const RecordedExcitations& first,
                  const RecordedExcitations& second);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

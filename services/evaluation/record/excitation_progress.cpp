@@ -4,7 +4,7 @@
 
 #include "idl/dyncal.h"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 StepAnnouncement::State state_of(wire::ExcitationState state) {
@@ -68,4 +68,4 @@ std::optional<std::size_t> ExcitationProgress::excited_step() const {
   return steps_announced_ - 1;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -20,7 +20,7 @@ namespace dyncal::wire {
 class Excitation;
 }
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 struct StepAnnouncement {
   enum class State { excited, done, aborted };
@@ -75,4 +75,4 @@ private:
   bool cut_short_ = false;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

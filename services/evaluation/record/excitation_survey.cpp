@@ -10,7 +10,7 @@
 #include "services/evaluation/record/channel_level.hpp"
 #include "services/evaluation/record/good_samples.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 constexpr double cut_frames = 1.2; // a frame at an edge counts when most of it is filled
@@ -231,4 +231,4 @@ RecordedExcitations ExcitationSurvey::result() const {
   return result;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -21,7 +21,7 @@
 #include "services/evaluation/record/recorded_excitations.hpp"
 #include "services/evaluation/record/source_record.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 class ExcitationSurvey {
 public:
@@ -64,4 +64,4 @@ private:
   RecordedExcitations result_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -1,6 +1,6 @@
 #include "services/evaluation/record/good_samples.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 void push_good_samples(const SourceRecord& record, std::size_t channel, const SampleRange& range,
                        analysis::ExcitationWindowFinder& finder) {
@@ -22,4 +22,4 @@ void push_good_samples(const SourceRecord& record, std::size_t channel, const Sa
   }
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

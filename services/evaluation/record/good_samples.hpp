@@ -9,7 +9,7 @@
 #include "analysis/step/excitation_window.hpp"
 #include "services/evaluation/record/source_record.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 struct SampleRange {
   std::size_t first = 0; // of those that the record holds
@@ -20,4 +20,4 @@ struct SampleRange {
 void push_good_samples(const SourceRecord& record, std::size_t channel, const SampleRange& range,
                        analysis::ExcitationWindowFinder& finder);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

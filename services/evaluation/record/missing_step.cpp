@@ -6,7 +6,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 using Plan = std::span<const RecipeStep* const>;
@@ -156,4 +156,4 @@ std::string why_missing(Plan plan, const std::vector<RecordedExcitations>& recor
                      where_none_shows_it(plan, shown, step), which);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -10,7 +10,7 @@
 #include "services/evaluation/record/excitation_pairs.hpp"
 #include "services/evaluation/record/recorded_excitations.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 // One sentence; empty where every record shows the step, or none shows any. `shown`: by step of the
 // plan, what the records show of it.
@@ -18,4 +18,4 @@ namespace dyncal::services {
                                       const std::vector<RecordedExcitations>& records,
                                       const std::vector<JoinedExcitation>& shown, std::size_t step);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -12,7 +12,7 @@
 #include "analysis/step/excitation_window.hpp"
 #include "services/evaluation/record/time_interval.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 struct FoundExcitation {
   analysis::ExcitationWindow window{};
@@ -41,4 +41,4 @@ struct RecordedExcitations {
   double length_s = 0.0;       // of the record by the number of its samples, trusted or not
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

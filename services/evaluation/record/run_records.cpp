@@ -6,7 +6,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 RunRecords::RunRecords(const Recipe& recipe, const std::vector<SearchedChannel>& searched,
                        std::size_t capacity, bool behind,
@@ -399,4 +399,4 @@ void RunRecords::forget_before_step(std::size_t next_step) {
   }
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -26,7 +26,7 @@
 #include "services/evaluation/record/step_search.hpp"
 #include "services/evaluation/record/time_interval.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 // A channel that steps are found in, and the sources whose samples are selected by what it finds.
 struct SearchedChannel {
@@ -177,4 +177,4 @@ private:
   bool copies_ = false;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -10,7 +10,7 @@
 
 #include "services/evaluation/record/time_interval.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 struct ScheduledStep {
   std::int64_t search_from_ns = 0; // end of the excitation before it in this record
@@ -35,4 +35,4 @@ struct RunSchedule {
   }
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 void SentBlocks::add(const SourceBlock& block, const BlockTimes& times) {
   // Of all sessions: the first blocks of a source that was started again may all come late.
@@ -45,4 +45,4 @@ std::optional<SourceInstant> SentBlocks::at(std::int64_t heard_ns) const {
                        std::llround(part * static_cast<double>(next->last_ns - before.last_ns))};
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

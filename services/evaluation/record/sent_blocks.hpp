@@ -20,7 +20,7 @@
 
 #include "services/contract/source_block.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 struct BlockTimes {
   std::int64_t sent_ns = 0;  // by the clock of the source's host
@@ -55,4 +55,4 @@ private:
   std::deque<Sent> blocks_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

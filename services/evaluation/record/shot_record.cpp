@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 bool is_usable(const TriggeredRecord& record) {
@@ -68,4 +68,4 @@ void ShotRecord::forget_step(StepAttempt step) {
   lost_.erase(step);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -15,7 +15,7 @@
 
 #include "services/contract/triggered_record.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 struct StepAttempt {
   std::uint32_t step = 0; // as the recipe numbers it
@@ -61,4 +61,4 @@ private:
   std::map<StepAttempt, Losses> lost_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

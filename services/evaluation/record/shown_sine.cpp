@@ -5,7 +5,7 @@
 
 #include "services/evaluation/record/good_samples.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 constexpr double beside_mains_rel = 0.01; // of the frequency: mains are within it
@@ -45,4 +45,4 @@ ShownSine shown_sine(const Recipe& recipe, const RunRecords& records, std::size_
                                                                      : ShownSine::shown;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

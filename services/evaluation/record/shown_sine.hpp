@@ -11,7 +11,7 @@
 #include "services/evaluation/recipe/recipe.hpp"
 #include "services/evaluation/record/run_records.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 enum class ShownSine {
   shown,
@@ -22,4 +22,4 @@ enum class ShownSine {
 [[nodiscard]] ShownSine shown_sine(const Recipe& recipe, const RunRecords& records,
                                    std::size_t step, const ChannelName& channel);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -4,7 +4,7 @@
 #include <iterator>
 #include <limits>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 // Memory is given back once this many forgotten samples lead the buffers, and half of them.
@@ -293,4 +293,4 @@ SampleLoss SourceRecord::lost_in(const TimeInterval& interval) const {
   return lost;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

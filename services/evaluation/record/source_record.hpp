@@ -28,7 +28,7 @@
 #include "services/contract/source_block.hpp"
 #include "services/evaluation/record/time_interval.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 struct SampleLoss {
   std::uint64_t missing = 0;    // did not come
@@ -159,4 +159,4 @@ private:
   bool ended_ = false;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

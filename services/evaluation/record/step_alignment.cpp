@@ -11,7 +11,7 @@
 #include "services/evaluation/record/missing_step.hpp"
 #include "services/evaluation/record/step_places.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 using Plan = std::span<const RecipeStep* const>;
@@ -207,4 +207,4 @@ RunSchedule align_steps(Plan plan, const std::vector<RecordedExcitations>& recor
   return schedule;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -21,10 +21,10 @@
 #include "services/evaluation/record/recorded_excitations.hpp"
 #include "services/evaluation/record/run_schedule.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 // `plan`: the steps in the order of their excitation.
 [[nodiscard]] RunSchedule align_steps(std::span<const RecipeStep* const> plan,
                                       const std::vector<RecordedExcitations>& records);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

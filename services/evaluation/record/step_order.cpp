@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 std::size_t StepOrder::index(std::size_t place) const {
   const std::size_t planned = recipe_.steps.size();
@@ -51,4 +51,4 @@ void StepOrder::repeat(std::uint32_t step, std::uint32_t attempt) {
   }
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -12,7 +12,7 @@
 
 #include "services/evaluation/recipe/recipe.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 class StepOrder {
 public:
@@ -46,4 +46,4 @@ private:
   std::vector<Repeat> repeats_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -7,7 +7,7 @@
 #include "analysis/base/statistics.hpp"
 #include "services/evaluation/record/excitation_pairs.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 constexpr double worth_of_a_pair = 1e6; // more than all costs of a plan together
@@ -172,4 +172,4 @@ place_excitations(std::span<const RecipeStep* const> plan,
   return Places(plan, excitations, begins_late).best();
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -18,7 +18,7 @@
 #include "services/evaluation/recipe/recipe.hpp"
 #include "services/evaluation/record/recorded_excitations.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 struct ExcitationInRun {
   const FoundExcitation* shown = nullptr;
@@ -31,4 +31,4 @@ struct ExcitationInRun {
 place_excitations(std::span<const RecipeStep* const> plan,
                   std::span<const ExcitationInRun> excitations, bool begins_late);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

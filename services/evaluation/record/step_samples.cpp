@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 struct IndexRun { // of samples that follow one another
@@ -148,4 +148,4 @@ StepSamples select_samples(const SourceRecord& record, const TimeInterval& inter
   return Selection(record, interval, channels).samples();
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

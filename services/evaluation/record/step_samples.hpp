@@ -19,7 +19,7 @@
 #include "services/evaluation/record/source_record.hpp"
 #include "services/evaluation/record/time_interval.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 struct StepSamples {
   struct Copies {
@@ -37,4 +37,4 @@ struct StepSamples {
 [[nodiscard]] StepSamples select_samples(const SourceRecord& record, const TimeInterval& interval,
                                          const std::vector<std::size_t>& channels);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

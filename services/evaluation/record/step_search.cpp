@@ -7,7 +7,7 @@
 #include "services/evaluation/record/cut_step.hpp"
 #include "services/evaluation/record/good_samples.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 constexpr double ns_per_s = 1e9;
@@ -318,4 +318,4 @@ std::optional<std::int64_t> StepSearch::needed_for(std::size_t step) const {
   return first.begin_ns;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -33,7 +33,7 @@
 #include "services/evaluation/record/step_order.hpp"
 #include "services/evaluation/record/time_interval.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 class StepSearch {
 public:
@@ -127,4 +127,4 @@ private:
   std::int64_t expected_until_ns_; // newest stamp up to which this need not be looked at again
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 StepSnapshot::StepSnapshot(const RunRecords& records, std::size_t step)
     : step_(step), broken_off_(records.excitation().is_broken_off(step)) {
@@ -47,4 +47,4 @@ bool StepSnapshot::still_holds(const RunRecords& records) {
   });
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -13,7 +13,7 @@
 
 #include "services/evaluation/record/run_records.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 class StepSnapshot {
 public:
@@ -43,4 +43,4 @@ private:
   std::vector<Source> sources_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -4,7 +4,7 @@
 
 #include "services/evaluation/record/step_samples.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 constexpr double zero_degc_in_kelvin = 273.15;
@@ -40,4 +40,4 @@ std::optional<double> step_temperature_degc(const RunRecords& records, const Cha
          *offset;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -7,7 +7,7 @@
 #include "services/contract/channel_name.hpp"
 #include "services/evaluation/record/run_records.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 // Mean in degrees Celsius over the whole interval of the step, settling included; samples that are
 // not trusted or not measured are left out. Nothing without such samples, and where the channel's
@@ -15,4 +15,4 @@ namespace dyncal::services {
 [[nodiscard]] std::optional<double>
 step_temperature_degc(const RunRecords& records, const ChannelName& channel, std::size_t step);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

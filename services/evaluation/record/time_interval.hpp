@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 struct TimeInterval { // both ends included
   std::int64_t begin_ns = 0;
@@ -11,4 +11,4 @@ struct TimeInterval { // both ends included
   friend bool operator==(const TimeInterval&, const TimeInterval&) = default;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

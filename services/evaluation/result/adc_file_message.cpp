@@ -1,6 +1,6 @@
 #include "services/evaluation/result/adc_file_message.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 void add_adc_file(const std::optional<AdcFile>& file, wire::Measurement& measurement) {
   if (file) {
@@ -17,4 +17,4 @@ std::optional<AdcFile> adc_file_of(const wire::Measurement& measurement) {
                                      measurement.adc_file_sha256()});
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -9,9 +9,9 @@
 #include "idl/dyncal.h"
 #include "services/evaluation/result/run_outcome.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 void add_adc_file(const std::optional<AdcFile>& file, wire::Measurement& measurement);
 [[nodiscard]] std::optional<AdcFile> adc_file_of(const wire::Measurement& measurement);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

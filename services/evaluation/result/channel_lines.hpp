@@ -13,7 +13,7 @@
 #include "analysis/sine/unresolved_lines.hpp"
 #include "analysis/uncertainty/line_power.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 struct MeasuredLine {
   analysis::LineKind kind = analysis::LineKind::mains;
@@ -34,4 +34,4 @@ struct ChannelLines {
   std::vector<MeasuredLine> in_quiet{};
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

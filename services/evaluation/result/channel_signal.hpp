@@ -5,7 +5,7 @@
 #include <limits>
 #include <string>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 struct ChannelSignal {
   static constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
@@ -18,4 +18,4 @@ struct ChannelSignal {
   double over_noise = not_known; // the same over the white noise of neighbouring samples
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -12,7 +12,7 @@
 #include "analysis/clock/sample_clock.hpp"
 #include "services/evaluation/result/result_flag.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 // A block of a source.
 struct BlockPosition {
@@ -28,4 +28,4 @@ struct ClockReport {
   std::optional<BlockPosition> last_block{}; // that it covers
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

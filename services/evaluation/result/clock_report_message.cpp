@@ -4,7 +4,7 @@
 
 #include "services/base/version.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 void write_numbers(const analysis::SampleClockStatistics& clock, wire::SampleClockReport& report) {
@@ -164,4 +164,4 @@ ClockReport from_message(const wire::SampleClockReport& message) {
   return report;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

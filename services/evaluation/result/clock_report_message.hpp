@@ -6,11 +6,11 @@
 #include "services/evaluation/recipe/recipe.hpp"
 #include "services/evaluation/result/clock_report.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 [[nodiscard]] wire::SampleClockReport to_message(const Recipe& recipe, const ClockReport& report);
 // Without what the message does not carry: statistics without events, number and regularity of
 // pairs, untrusted samples.
 [[nodiscard]] ClockReport from_message(const wire::SampleClockReport& message);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -5,7 +5,7 @@
 #include <iterator>
 #include <utility>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 using analysis::ContributionKind;
@@ -93,4 +93,4 @@ analysis::Contribution from_message(const wire::BudgetContribution& message) {
           .u_lasting_magnitude_rel = message.u_lasting_magnitude_rel()};
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -9,9 +9,9 @@
 #include "analysis/uncertainty/contribution.hpp"
 #include "idl/dyncal.h"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 [[nodiscard]] wire::BudgetContribution to_message(const analysis::Contribution& row);
 [[nodiscard]] analysis::Contribution from_message(const wire::BudgetContribution& message);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

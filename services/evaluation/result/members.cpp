@@ -6,7 +6,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 constexpr std::int64_t second_ns = 1'000'000'000;
@@ -73,4 +73,4 @@ std::optional<TemperatureRange> temperature_range(const analysis::SampleClockSta
                           clock.over_temperature.back().temperature_degc};
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -28,7 +28,7 @@
 #include "analysis/uncertainty/contribution_identifier.hpp"
 #include "services/evaluation/result/run_outcome.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 // Constant where it is written, variable where it is read.
 template <class T, class Struct>
@@ -193,4 +193,4 @@ void members(auto& visit, Either<AdcFile> auto& one) {
   visit("sha256", one.sha256);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

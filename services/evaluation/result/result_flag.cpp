@@ -4,7 +4,7 @@
 #include <array>
 #include <iterator>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 struct Row {
@@ -235,4 +235,4 @@ std::vector<Flag> flags_from_message(const std::vector<std::string>& sentences,
   return flags;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

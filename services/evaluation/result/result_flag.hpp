@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 enum class ResultFlag {
   samples_lost,
@@ -89,4 +89,4 @@ struct Flag {
 [[nodiscard]] std::vector<Flag> flags_from_message(const std::vector<std::string>& sentences,
                                                    const std::vector<std::string>& names);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

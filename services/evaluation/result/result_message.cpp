@@ -6,7 +6,7 @@
 #include "services/base/version.hpp"
 #include "services/evaluation/result/contribution_message.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 wire::SineFit fit_message(const analysis::ChannelFit& fit) {
@@ -231,4 +231,4 @@ StepResult from_message(const wire::CalibrationResult& message) {
   return result;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -9,9 +9,9 @@
 #include "services/evaluation/recipe/recipe.hpp"
 #include "services/evaluation/result/step_result.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 [[nodiscard]] wire::CalibrationResult to_message(const Recipe& recipe, const StepResult& result);
 [[nodiscard]] StepResult from_message(const wire::CalibrationResult& message);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

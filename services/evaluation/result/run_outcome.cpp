@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 void sort_outcome(RunOutcome& outcome) {
   const auto sort_by = [](auto& all, auto key) {
@@ -35,4 +35,4 @@ RunOutcome outcome_of(const Recipe& recipe) {
   return outcome;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

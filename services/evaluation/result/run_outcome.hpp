@@ -17,7 +17,7 @@
 #include "services/evaluation/result/step_result.hpp"
 #include "services/evaluation/result/transfer_function.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 // A source of the run as it described itself.
 struct RunSource {
@@ -68,4 +68,4 @@ void sort_outcome(RunOutcome& outcome);
 // Of a run that has no results yet.
 [[nodiscard]] RunOutcome outcome_of(const Recipe& recipe);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

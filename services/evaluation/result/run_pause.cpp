@@ -1,6 +1,6 @@
 #include "services/evaluation/result/run_pause.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 bool is_open(const std::vector<RunPause>& pauses) {
@@ -32,4 +32,4 @@ void end_pause(std::vector<RunPause>& pauses, std::int64_t now_utc_ns) {
   }
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

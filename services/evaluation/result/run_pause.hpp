@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 // A time in which nothing was excited, for something was away or somebody asked for it.
 struct RunPause {
@@ -23,4 +23,4 @@ void note_pause(std::vector<RunPause>& pauses, std::int64_t now_utc_ns, const st
 // It goes on, if it has stood still.
 void end_pause(std::vector<RunPause>& pauses, std::int64_t now_utc_ns);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

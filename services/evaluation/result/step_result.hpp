@@ -22,7 +22,7 @@
 #include "services/evaluation/result/channel_signal.hpp"
 #include "services/evaluation/result/result_flag.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 // What one source contributed.
 struct SourceSamples {
@@ -82,4 +82,4 @@ struct StepResult {
   std::optional<analysis::BentPeaks> peaks;    // found or not
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

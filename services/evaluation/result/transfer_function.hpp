@@ -12,7 +12,7 @@
 #include "services/contract/evaluation_method.hpp"
 #include "services/evaluation/result/result_flag.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 struct FrequencyPoint {
   std::string frequency_text_hz;
@@ -33,4 +33,4 @@ struct TransferFunction {
   std::uint64_t lost = 0; // samples, over all valid results
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -5,7 +5,7 @@
 #include "services/base/version.hpp"
 #include "services/contract/evaluation_method_message.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 wire::TransferPoint point_message(const FrequencyPoint& point) {
@@ -124,4 +124,4 @@ TransferFunction from_message(const wire::TransferFunction& message) {
   return function;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

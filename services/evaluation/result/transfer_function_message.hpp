@@ -6,7 +6,7 @@
 #include "services/evaluation/recipe/recipe.hpp"
 #include "services/evaluation/result/transfer_function.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 
 [[nodiscard]] wire::TransferFunction to_message(const Recipe& recipe,
                                                 const TransferFunction& function);
@@ -14,4 +14,4 @@ namespace dyncal::services {
 // older writer, a mean has k = 2 with infinite degrees of freedom.
 [[nodiscard]] TransferFunction from_message(const wire::TransferFunction& message);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

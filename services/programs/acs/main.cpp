@@ -10,9 +10,9 @@
 
 namespace {
 
-using namespace dyncal::services;
+using namespace dyncal;
 using dyncal::fail;
-using dyncal::services::acs::PlayedSource;
+using dyncal::PlayedSource;
 
 using Sources = std::vector<RunnableSource<PlayedSource>>;
 
@@ -28,7 +28,7 @@ Expected<Sources> prepare(const std::vector<BenchFile>& benches, const std::stop
         return fail(source.error().code,
                     fmt::format("{}: {}", bench.path.string(), source.error().message));
       }
-      sources.push_back({std::move(*source), acs::options_of(bench, settings)});
+      sources.push_back({std::move(*source), options_of(bench, settings)});
     }
   }
   if (sources.empty()) {

@@ -7,7 +7,7 @@
 #include "services/base/version.hpp"
 #include "services/contract/topics.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 constexpr const char* all_benches = "*";
@@ -372,4 +372,4 @@ AnalysisFigures AnalysisService::figures() const {
   return figures;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -38,7 +38,7 @@
 #include "services/programs/analysis/other_analyses.hpp"
 #include "services/programs/analysis/run_session.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 class AnalysisService {
 public:
@@ -111,4 +111,4 @@ private:
   double evaluation_s_ = 0.0;  // that serve() has spent with runs
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <deque>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 class DescribedSessions {
 public:
@@ -29,4 +29,4 @@ private:
   std::deque<std::uint64_t> sessions_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 bool has_ended(const OtherAnalyses::Leader& leader) {
@@ -68,4 +68,4 @@ std::map<RunKey, FollowedRun>::value_type* FollowedRuns::deserted(Instant now) {
   return found == runs_.end() ? nullptr : &*found;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -17,7 +17,7 @@
 #include "idl/dyncal.h"
 #include "services/programs/analysis/other_analyses.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct FollowedRun {
   using Instant = bus::Clock::Instant;
@@ -62,4 +62,4 @@ private:
   std::uint64_t left_out_ = 0;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 KnownSource* KnownBenches::heard(const std::string& bench, const std::string& source, Instant now) {
   KnownBench* known = bench_of(bench);
@@ -69,4 +69,4 @@ std::size_t KnownBenches::sources() const {
       [](std::size_t sum, const auto& bench) { return sum + bench.second.sources.size(); });
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

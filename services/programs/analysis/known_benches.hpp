@@ -16,7 +16,7 @@
 #include "services/bus/clock.hpp"
 #include "services/contract/known_sources.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 class KnownBenches {
 public:
@@ -62,4 +62,4 @@ private:
   LeftOut left_out_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -1,6 +1,6 @@
 #include "services/programs/analysis/live_limits.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 // More trials take so long (milliseconds a channel) that reception and other benches must not wait
@@ -20,4 +20,4 @@ EvaluationLimits live_limits(const Recipe& recipe) {
   return limits;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -4,8 +4,8 @@
 
 #include "services/evaluation/run_evaluator.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 [[nodiscard]] EvaluationLimits live_limits(const Recipe& recipe);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

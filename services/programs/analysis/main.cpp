@@ -7,7 +7,7 @@
 
 namespace {
 
-using namespace dyncal::services;
+using namespace dyncal;
 using dyncal::fail;
 
 Expected<void> serve(Daemon& daemon) {

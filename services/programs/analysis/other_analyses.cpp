@@ -1,6 +1,6 @@
 #include "services/programs/analysis/other_analyses.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 void OtherAnalyses::add(const wire::ServiceStatus& status, Instant now) {
   if (status.run().to_string().empty() || !status.guarded_generator().empty()) {
@@ -53,4 +53,4 @@ bool OtherAnalyses::must_give_way(const RunKey& run, bool armed, Instant now) co
   return other_armed == armed ? other->service < own_service_ : other_armed;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

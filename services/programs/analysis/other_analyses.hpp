@@ -17,7 +17,7 @@
 #include "idl/dyncal.h"
 #include "services/bus/clock.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 using RunKey = std::pair<std::string, std::string>; // bench, run
 
@@ -60,4 +60,4 @@ private:
   std::map<RunKey, Leader> leaders_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -1,6 +1,6 @@
 #include "services/programs/analysis/pending_announcements.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 constexpr std::size_t max_steps = 4096;
@@ -26,4 +26,4 @@ bool PendingAnnouncements::hand_over(RunEvaluator& evaluator) {
   return aborted.has_value();
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -12,7 +12,7 @@
 #include "services/bus/clock.hpp"
 #include "services/evaluation/run_evaluator.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 class PendingAnnouncements {
 public:
@@ -28,4 +28,4 @@ private:
   std::optional<bool> ended_;                              // true: aborted
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

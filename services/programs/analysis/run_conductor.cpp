@@ -4,7 +4,7 @@
 
 #include <spdlog/spdlog.h>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 RunConductor::Claim RunConductor::judge(const wire::Measurement& measurement,
                                         std::chrono::nanoseconds unheard,
@@ -27,4 +27,4 @@ RunConductor::Claim RunConductor::judge(const wire::Measurement& measurement,
   return resumes && unheard > alive_limit ? Claim::resumes_wrongly : Claim::another_run;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -10,7 +10,7 @@
 
 #include "idl/dyncal.h"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 class RunConductor {
 public:
@@ -39,4 +39,4 @@ private:
   bool other_run_said_ = false;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

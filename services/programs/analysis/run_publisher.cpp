@@ -8,7 +8,7 @@
 #include "services/evaluation/result/result_message.hpp"
 #include "services/evaluation/result/transfer_function_message.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 constexpr std::chrono::seconds write_limit{10}; // longer than the lease of a reader that was killed
@@ -86,4 +86,4 @@ void RunPublisher::write(bus::Writer<Message>& writer, const Message& message) {
   }
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

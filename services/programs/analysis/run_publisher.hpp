@@ -15,7 +15,7 @@
 #include "services/bus/clock.hpp"
 #include "services/evaluation/run_evaluator.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 // The program that analyses.
 struct AnalysisIdentity {
@@ -68,4 +68,4 @@ private:
   std::uint64_t clock_reports_ = 0;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

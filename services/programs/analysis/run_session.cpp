@@ -11,7 +11,7 @@
 #include "services/programs/analysis/live_limits.hpp"
 #include "services/programs/analysis/session_sentences.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using namespace std::chrono_literals;
@@ -389,4 +389,4 @@ void RunSession::refuse(std::string message) {
   publish();
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

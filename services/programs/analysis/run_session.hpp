@@ -53,7 +53,7 @@
 #include "services/programs/analysis/source_requests.hpp"
 #include "services/programs/analysis/source_streams.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 // What all runs of a service share; outlives them.
 struct AnalysisContext {
@@ -159,4 +159,4 @@ private:
   Instant next_status_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

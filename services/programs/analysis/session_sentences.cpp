@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 using namespace std::chrono_literals;
 
@@ -25,4 +25,4 @@ std::string work_sentence(const RunEvaluator& evaluator, const SourceStreams& st
   return "";
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -7,7 +7,7 @@
 #include "services/evaluation/run_evaluator.hpp"
 #include "services/programs/analysis/source_streams.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 [[nodiscard]] std::string taking_over_sentence(const SourceStreams& streams);
 
@@ -16,4 +16,4 @@ namespace dyncal::services {
 [[nodiscard]] std::string work_sentence(const RunEvaluator& evaluator, const SourceStreams& streams,
                                         std::chrono::nanoseconds waited);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

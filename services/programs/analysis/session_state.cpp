@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 bool Arming::is_over(const SourceStreams::Missing& missing, bus::Clock::Instant now) {
   if (missing.is_there && now - since <= present_limit) {
@@ -42,4 +42,4 @@ bus::Clock::Instant waits_since(const SessionState& state, bus::Clock::Instant n
   return held != nullptr ? held->since : now;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -18,7 +18,7 @@
 #include "services/bus/clock.hpp"
 #include "services/programs/analysis/source_streams.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct Arming {
   static constexpr std::chrono::seconds limit{10};
@@ -57,4 +57,4 @@ using SessionState = std::variant<Arming, TakingOver, Attending, Held, Failed, E
 // Since when a source is away; `now` where none was.
 [[nodiscard]] bus::Clock::Instant waits_since(const SessionState& state, bus::Clock::Instant now);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -7,7 +7,7 @@
 
 #include "services/contract/topics.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 constexpr std::chrono::milliseconds write_limit{50};
@@ -65,4 +65,4 @@ void SourceRequests::write(bus::Writer<Message>& writer, const Message& message,
   }
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

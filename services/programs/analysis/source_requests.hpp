@@ -15,7 +15,7 @@
 #include "services/bus/bus.hpp"
 #include "services/programs/analysis/stream_follower.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 class SourceRequests {
 public:
@@ -44,4 +44,4 @@ private:
   bus::Writer<wire::CatchUpRequest> catch_up_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

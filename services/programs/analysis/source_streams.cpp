@@ -12,7 +12,7 @@
 #include "services/contract/topics.hpp"
 #include "services/contract/triggered_record.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 SourceStreams::SourceStreams(bus::Participant& participant, std::shared_ptr<bus::WakeUp> wake_up,
                              std::string bench, std::string run, RunEvaluator& evaluator,
                              Begin begin)
@@ -67,7 +67,7 @@ Expected<void> SourceStreams::describe(const std::string& name, Stream& stream,
     return accepted;
   }
   take_description(stream, description);
-  const bool triggered = services::is_triggered(from_wire(description.kind()));
+  const bool triggered = contract::is_triggered(from_wire(description.kind()));
   if (!stream.follower) {
     stream.follower.emplace(make_follower(name, triggered));
     if (begin_ == Begin::behind) {
@@ -395,4 +395,4 @@ std::optional<LostSource> SourceStreams::lost_source(Instant now, Instant watche
   return std::nullopt;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -32,7 +32,7 @@
 #include "services/programs/analysis/stream_follower.hpp"
 #include "services/programs/analysis/waiting_blocks.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 // Why a run cannot go on now.
 struct LostSource {
@@ -163,4 +163,4 @@ private:
   std::optional<AnswerReaders> answer_readers_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

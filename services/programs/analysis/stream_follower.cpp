@@ -6,7 +6,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 constexpr std::size_t max_left_sessions = 64;
@@ -181,4 +181,4 @@ std::optional<CatchUp> StreamFollower<Message>::due(Instant now) {
 template class StreamFollower<wire::SampleBlock>;
 template class StreamFollower<wire::TriggeredRecord>;
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

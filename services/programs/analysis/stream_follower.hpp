@@ -26,7 +26,7 @@
 #include "idl/dyncal.h"
 #include "services/bus/clock.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 // That a block takes in memory.
 [[nodiscard]] std::size_t bytes_of(const wire::SampleBlock& block);
@@ -119,4 +119,4 @@ private:
   std::size_t held_bytes_ = 0;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

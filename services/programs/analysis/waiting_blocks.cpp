@@ -2,7 +2,7 @@
 
 #include "services/programs/analysis/stream_follower.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 void WaitingBlocks::add(const wire::SampleBlock& block) {
   blocks_.push_back(block);
@@ -25,4 +25,4 @@ void WaitingBlocks::leave_out_session(std::uint64_t session) {
   });
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

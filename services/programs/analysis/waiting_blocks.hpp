@@ -10,7 +10,7 @@
 
 #include "idl/dyncal.h"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 class WaitingBlocks {
 public:
@@ -30,4 +30,4 @@ private:
   std::size_t bytes_ = 0;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -12,7 +12,7 @@
 #include "services/programs/can/can_status.hpp"
 #include "services/stream/play_of_run.hpp"
 
-namespace dyncal::services::can {
+namespace dyncal::inline programs::can {
 
 namespace {
 
@@ -157,4 +157,4 @@ Expected<void> CanSource::receive(SourcePublisher& publisher, const std::stop_to
   return {};
 }
 
-} // namespace dyncal::services::can
+} // namespace dyncal::inline programs::can

@@ -21,7 +21,7 @@
 #include "services/instruments/stream_settings.hpp"
 #include "services/stream/source_publisher.hpp"
 
-namespace dyncal::services::can {
+namespace dyncal::inline programs::can {
 
 // Where the frames of a source come from: its interface or its log.
 [[nodiscard]] std::unique_ptr<drivers::can::FrameSource>
@@ -68,4 +68,4 @@ private:
   std::vector<std::string> warnings_;
 };
 
-} // namespace dyncal::services::can
+} // namespace dyncal::inline programs::can

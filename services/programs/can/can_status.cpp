@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services::can {
+namespace dyncal::inline programs::can {
 
 using drivers::can::BusState;
 
@@ -60,4 +60,4 @@ std::string to_message(const drivers::can::SensorStream& stream,
   return "";
 }
 
-} // namespace dyncal::services::can
+} // namespace dyncal::inline programs::can

@@ -7,10 +7,10 @@
 
 #include "drivers/can/sensor_stream.hpp"
 
-namespace dyncal::services::can {
+namespace dyncal::inline programs::can {
 
 // "" when the bus is as it should be. `listened`: for how long frames have been waited for.
 [[nodiscard]] std::string to_message(const drivers::can::SensorStream& stream,
                                      std::chrono::nanoseconds listened);
 
-} // namespace dyncal::services::can
+} // namespace dyncal::inline programs::can

@@ -11,7 +11,7 @@
 
 namespace {
 
-using namespace dyncal::services;
+using namespace dyncal;
 using dyncal::fail;
 
 using Sources = std::vector<RunnableSource<can::CanSource>>;

@@ -19,7 +19,7 @@
 #include "services/run/run_plan.hpp"
 #include "services/views/report/show_outcome.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 // At once, one a processor: a step takes longer than reading the next; each holds its samples.
@@ -32,7 +32,7 @@ SourceKind kind_of(const BenchFile& bench, const std::string& name) {
   if (source.is<OscilloscopeSourceSettings>()) {
     return SourceKind::dso;
   }
-  return source.is<SeriesSourceSettings>() ? SourceKind::tss : acs::kind_of(bench.method, name);
+  return source.is<SeriesSourceSettings>() ? SourceKind::tss : kind_of(bench.method, name);
 }
 
 void add_source(const BenchFile& bench, const std::string& name,
@@ -233,4 +233,4 @@ int run_analyse(const AnalyseCommand& command, const std::stop_token& stop) {
   return conclude(*outcome);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

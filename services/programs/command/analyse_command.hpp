@@ -13,7 +13,7 @@
 
 #include "services/views/report/run_figures.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct AnalyseCommand {
   std::filesystem::path bench_file; // or a run folder (services/records/run_folder), or a recording
@@ -26,4 +26,4 @@ struct AnalyseCommand {
 
 [[nodiscard]] int run_analyse(const AnalyseCommand& command, const std::stop_token& stop);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

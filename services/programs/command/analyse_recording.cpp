@@ -8,7 +8,7 @@
 #include "services/records/replay/recorded_run.hpp"
 #include "services/run/run_plan.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 struct OtherRecipe {
@@ -49,4 +49,4 @@ Expected<RunOutcome> analyse_recording(const AnalyseCommand& command, const std:
   return std::move(evaluated.outcome);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

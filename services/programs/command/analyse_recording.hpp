@@ -10,11 +10,11 @@
 #include "services/evaluation/result/run_outcome.hpp"
 #include "services/programs/command/analyse_command.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 // Counts steps and results. Prints what is damaged or missing on standard error.
 [[nodiscard]] Expected<RunOutcome> analyse_recording(const AnalyseCommand& command,
                                                      const std::stop_token& stop,
                                                      const SharedWorkCount& count);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

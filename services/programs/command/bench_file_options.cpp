@@ -2,7 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 void add_check(CLI::App& app, CheckCommand& check) {
@@ -113,4 +113,4 @@ std::optional<int> run_bench_file_command(const CLI::App& app, const BenchFileCo
   return std::nullopt;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

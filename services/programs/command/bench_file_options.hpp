@@ -11,7 +11,7 @@ namespace CLI { // NOLINT(readability-identifier-naming): of the library
 class App;
 }
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct BenchFileCommands {
   CheckCommand check;
@@ -24,4 +24,4 @@ void add_bench_files(CLI::App& app, BenchFileCommands& commands);
 [[nodiscard]] std::optional<int> run_bench_file_command(const CLI::App& app,
                                                         const BenchFileCommands& commands);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -21,7 +21,7 @@
 #include "services/programs/command/run_command.hpp"
 #include "services/views/report/show_outcome.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using namespace std::chrono_literals;
@@ -335,4 +335,4 @@ int run_calibrate_adc(const CalibrateAdcCommand& command, const std::stop_token&
   return 0;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -20,7 +20,7 @@
 #include "services/bench/file/bench_file.hpp"
 #include "services/daemon/program/program.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct CalibrateAdcCommand {
   std::filesystem::path bench_file;
@@ -41,4 +41,4 @@ struct CalibrateAdcCommand {
 [[nodiscard]] BenchFile bench_of_adc_pass(const BenchFile& bench,
                                           std::optional<double> amplitude_vpp);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -20,7 +20,7 @@
 #include "services/daemon/program/program.hpp"
 #include "services/run/output_guard.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using drivers::generator::ScpiGenerator;
@@ -227,4 +227,4 @@ int run_calibrate_dso_delay(const CalibrateDsoDelayCommand& command, const std::
   return written ? 0 : report_error(written.error());
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

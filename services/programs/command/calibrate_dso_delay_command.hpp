@@ -13,7 +13,7 @@
 #include <stop_token>
 #include <string>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct CalibrateDsoDelayCommand {
   std::string oscilloscope;     // address, see drivers/link/scpi_transport.hpp
@@ -33,4 +33,4 @@ struct CalibrateDsoDelayCommand {
 [[nodiscard]] int run_calibrate_dso_delay(const CalibrateDsoDelayCommand& command,
                                           const std::stop_token& stop);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

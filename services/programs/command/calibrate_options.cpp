@@ -2,7 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 void add_dso_delay(CLI::App& calibrate, CalibrateDsoDelayCommand& delay) {
@@ -125,4 +125,4 @@ int run_calibrate(const CLI::App& app, const CalibrateCommands& commands,
   return run_calibrate_time(commands.time);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -12,7 +12,7 @@ namespace CLI { // NOLINT(readability-identifier-naming): of the library
 class App;
 }
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct CalibrateCommands {
   CalibrateAdcCommand adc;
@@ -27,4 +27,4 @@ void add_calibrate(CLI::App& app, CalibrateCommands& commands);
 [[nodiscard]] int run_calibrate(const CLI::App& app, const CalibrateCommands& commands,
                                 const std::stop_token& stop);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

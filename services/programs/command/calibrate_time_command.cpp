@@ -13,7 +13,7 @@
 #include "services/programs/command/pulse_file.hpp"
 #include "services/views/figures/stamp_deviation.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using analysis::PulseFault;
@@ -294,4 +294,4 @@ int run_calibrate_time(const CalibrateTimeCommand& command) {
   return written ? 0 : report_error(written.error());
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

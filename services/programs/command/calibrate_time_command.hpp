@@ -12,7 +12,7 @@
 #include <optional>
 #include <vector>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct CalibrateTimeCommand {
   std::vector<std::filesystem::path> files;
@@ -24,4 +24,4 @@ struct CalibrateTimeCommand {
 
 [[nodiscard]] int run_calibrate_time(const CalibrateTimeCommand& command);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

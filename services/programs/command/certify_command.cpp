@@ -6,7 +6,7 @@
 #include "services/programs/command/work_progress.hpp"
 #include "services/views/certificate/certificate_file.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 std::filesystem::path output_of(const CertifyCommand& command) {
@@ -63,4 +63,4 @@ int run_certify(const CertifyCommand& command) {
   return 0;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct CertifyCommand {
   std::filesystem::path run;
@@ -27,4 +27,4 @@ struct CertifyCommand {
 
 [[nodiscard]] int run_certify(const CertifyCommand& command);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -11,7 +11,7 @@
 #include "services/checks/bench_check/report.hpp"
 #include "services/programs/command/work_progress.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 namespace {
 
@@ -59,4 +59,4 @@ int run_check(const CheckCommand& command) {
   return bench_check::exit_status(findings);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct CheckCommand {
   std::vector<std::filesystem::path> bench_files;
@@ -16,4 +16,4 @@ struct CheckCommand {
 
 [[nodiscard]] int run_check(const CheckCommand& command);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -4,7 +4,7 @@
 
 #include "services/base/rounding.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 std::string clock_offset_text(const ClockOffset& clock) {
   const RoundedValue offset = round_by_uncertainty(clock.offset_s, clock.bound_s);
@@ -12,4 +12,4 @@ std::string clock_offset_text(const ClockOffset& clock) {
                      offset.value, offset.u);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

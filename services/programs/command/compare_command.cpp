@@ -16,7 +16,7 @@
 #include "services/programs/command/work_progress.hpp"
 #include "services/views/report/result_file.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -144,4 +144,4 @@ int run_compare(const CompareCommand& command) {
   return 0;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -12,7 +12,7 @@
 #include <filesystem>
 #include <string>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct CompareCommand {
   std::filesystem::path first;
@@ -26,4 +26,4 @@ struct CompareCommand {
 
 [[nodiscard]] int run_compare(const CompareCommand& command);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -21,7 +21,7 @@
 #include "services/programs/demo/truth_check.hpp"
 #include "services/programs/demo/vendor_assignment.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using namespace std::chrono_literals;
@@ -299,4 +299,4 @@ int run_demo(const DemoCommand& command, const std::stop_token& stop) {
   return status != 0 ? status : compare_with_truth(*outcome, *demo);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

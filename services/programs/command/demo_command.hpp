@@ -16,7 +16,7 @@
 
 #include "services/programs/command/kept_run.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct DemoCommand {
   std::string preset = "mpu9250-paper";
@@ -42,4 +42,4 @@ struct DemoCommand {
 // uncertainties.
 [[nodiscard]] int run_demo(const DemoCommand& command, const std::stop_token& stop);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

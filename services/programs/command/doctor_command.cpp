@@ -13,7 +13,7 @@
 #include "services/daemon/program/bench_program.hpp"
 #include "services/programs/command/laboratory_look.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using doctor::Findings;
@@ -77,4 +77,4 @@ int run_doctor(const DoctorCommand& command, const std::stop_token& stop) {
   return could_not_look(looked.error());
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -10,7 +10,7 @@
 
 #include "services/daemon/program/program.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct DoctorCommand {
   std::string bench_file; // empty: none to compare with
@@ -23,4 +23,4 @@ struct DoctorCommand {
 // it ends the process.
 [[nodiscard]] int run_doctor(const DoctorCommand& command, const std::stop_token& stop);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -5,7 +5,7 @@
 #include "services/programs/command/keep_options.hpp"
 #include "services/views/lab_file/contact_table.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 void add_report(CLI::App& app, ReportCommand& report) {
@@ -96,4 +96,4 @@ int run_document_command(const CLI::App& app, const DocumentCommands& commands) 
   return app.got_subcommand("verify") ? run_verify(commands.verify) : run_report(commands.report);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

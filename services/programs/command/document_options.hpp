@@ -9,7 +9,7 @@ namespace CLI { // NOLINT(readability-identifier-naming): of the library
 class App;
 }
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct DocumentCommands {
   ReportCommand report;
@@ -26,4 +26,4 @@ void add_documents(CLI::App& app, DocumentCommands& commands);
 // REQUIRES: has_document_command(app).
 [[nodiscard]] int run_document_command(const CLI::App& app, const DocumentCommands& commands);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

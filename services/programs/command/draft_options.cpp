@@ -5,7 +5,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using bench_draft::BenchDraft;
@@ -139,4 +139,4 @@ std::string sentence_with_options(const BenchDraft& draft, const std::string& ke
                 : fmt::format("key '{}' {}", key, sentence);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

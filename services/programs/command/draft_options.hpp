@@ -7,7 +7,7 @@
 
 #include "services/bench/draft/bench_draft.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 // "--level" for "excitation.level"; nothing: no option does.
 [[nodiscard]] std::optional<std::string> option_of(const bench_draft::BenchDraft& draft,
@@ -18,4 +18,4 @@ namespace dyncal::services {
 [[nodiscard]] std::string sentence_with_options(const bench_draft::BenchDraft& draft,
                                                 const std::string& key, std::string sentence);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

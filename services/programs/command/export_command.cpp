@@ -11,7 +11,7 @@
 #include "services/programs/command/work_progress.hpp"
 #include "services/records/exchange/export_recording.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 void print(const ExportedFigures& figures, const std::filesystem::path& to) {
@@ -66,4 +66,4 @@ int run_export(const ExportCommand& command, const std::stop_token& stop) {
   return 0;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

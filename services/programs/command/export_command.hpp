@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct ExportCommand {
   std::filesystem::path recording; // or run folder, or HDF5 export
@@ -18,4 +18,4 @@ struct ExportCommand {
 
 [[nodiscard]] int run_export(const ExportCommand& command, const std::stop_token& stop);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

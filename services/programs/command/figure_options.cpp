@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using figures::ErrorBars;
@@ -32,4 +32,4 @@ void add_figure_options(CLI::App& command, FigureFiles& files) {
       ->needs(folder);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -5,9 +5,9 @@
 
 #include "services/views/report/run_figures.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 // `files` must live until the command line has been parsed.
 void add_figure_options(CLI::App& command, FigureFiles& files);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

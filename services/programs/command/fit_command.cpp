@@ -23,7 +23,7 @@
 #include "services/programs/command/work_progress.hpp"
 #include "services/records/replay/series_file.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 // The estimate is good to this many bins 1/T (analysis/sine/frequency_estimate.hpp).
@@ -282,4 +282,4 @@ int run_fit(const FitCommand& command) {
   return 0;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct FitCommand {
   std::filesystem::path file;
@@ -27,4 +27,4 @@ struct FitCommand {
 
 [[nodiscard]] int run_fit(const FitCommand& command);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

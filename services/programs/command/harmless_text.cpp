@@ -5,7 +5,7 @@
 
 #include "services/base/printable_text.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 bool is_continuation(char byte) {
@@ -66,4 +66,4 @@ std::string in_columns(const std::string& text, std::size_t columns) {
   return shown + end;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 // One line (printable_text.hpp), and '?' in place of letters that are not one column wide.
 [[nodiscard]] std::string harmless(std::string_view text);
@@ -18,4 +18,4 @@ namespace dyncal::services {
 // How many columns a text that harmless() made takes.
 [[nodiscard]] std::size_t columns_of(std::string_view text);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -18,7 +18,7 @@
 #include "services/records/store/history.hpp"
 #include "services/views/figures/drift.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -216,4 +216,4 @@ int run_history(const HistoryCommand& command) {
   return 0;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -8,7 +8,7 @@
 
 #include "services/programs/command/store_command.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct HistoryCommand {
   StoreOptions store;
@@ -22,4 +22,4 @@ struct HistoryCommand {
 // Returns the exit status.
 [[nodiscard]] int run_history(const HistoryCommand& command);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -12,7 +12,7 @@
 #include "services/programs/command/work_progress.hpp"
 #include "services/records/replay/series_file.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -173,4 +173,4 @@ int run_intervals(const IntervalsCommand& command) {
   return 0;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

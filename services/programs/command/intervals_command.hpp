@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct IntervalsCommand {
   std::filesystem::path file;
@@ -18,4 +18,4 @@ struct IntervalsCommand {
 
 [[nodiscard]] int run_intervals(const IntervalsCommand& command);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -4,7 +4,7 @@
 
 #include "services/records/run_folder/run_folder.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 constexpr const char* folder_help =
@@ -89,4 +89,4 @@ std::optional<int> run_store(const CLI::App& app, const StoreCommands& commands)
   return std::nullopt;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

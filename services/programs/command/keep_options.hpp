@@ -11,7 +11,7 @@ class App;
 class Option;
 } // namespace CLI
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 // --folder, --store
 void add_keep_options(CLI::App& command, KeepOptions& keep);
@@ -31,4 +31,4 @@ void add_store(CLI::App& app, StoreCommands& commands);
 // Nothing when the command line has none of them.
 [[nodiscard]] std::optional<int> run_store(const CLI::App& app, const StoreCommands& commands);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -11,7 +11,7 @@
 #include "services/views/report/show_outcome.hpp"
 #include "services/views/report/stored_result.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 Expected<std::unique_ptr<RunFolder>> folder_of(const std::filesystem::path& root,
@@ -255,4 +255,4 @@ void KeptRun::discard() {
   }
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

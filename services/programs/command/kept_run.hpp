@@ -20,7 +20,7 @@
 #include "services/records/run_folder/run_folder.hpp"
 #include "services/run/run_controller.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct KeepOptions {
   std::optional<std::filesystem::path> folder; // of all runs; nothing: no run folder
@@ -95,4 +95,4 @@ private:
   bool is_recorded_whole_ = false;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -9,7 +9,7 @@
 #include "services/programs/command/clock_offset_text.hpp"
 #include "services/programs/command/harmless_text.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using Lines = std::map<std::string, std::string>;
@@ -18,7 +18,7 @@ std::string with_message(const std::string& line, const std::string& message) {
   return message.empty() ? line : line + " | " + message;
 }
 
-std::string source_line(const live::Bench& bench, const live::Source& source) {
+std::string source_line(const network::Bench& bench, const network::Source& source) {
   const drivers::SampleCounts& counts = source.counts;
   return with_message(
       fmt::format("{}/{}: {}, {:.1f} S/s, {} received, {} lost in the device, {} lost on the way, "
@@ -76,7 +76,7 @@ std::string clock_line(const std::string& place, const ClockReport& report, Line
                      flags_text(report.flags, lines));
 }
 
-void add_run(const live::Bench& bench, const live::Run& run, Lines& lines) {
+void add_run(const network::Bench& bench, const network::Run& run, Lines& lines) {
   const std::string place = fmt::format("{} {}", bench.name, run.name);
   if (run.analysis) {
     lines.emplace("2 " + place,
@@ -90,7 +90,7 @@ void add_run(const live::Bench& bench, const live::Run& run, Lines& lines) {
         with_message(fmt::format("{}: {}", place, to_string(*run.announced)), run.message));
   }
   if (run.now) {
-    const live::Step& step = run.now->step;
+    const network::Step& step = run.now->step;
     const std::string attempt = step.attempt > 1 ? fmt::format(", attempt {}", step.attempt) : "";
     lines.emplace("4 " + place, fmt::format("{}: step {}, {} Hz, {} m/s^2, {}{}", place, step.step,
                                             step.frequency_text_hz, step.level_m_s2,
@@ -110,7 +110,7 @@ void add_run(const live::Bench& bench, const live::Run& run, Lines& lines) {
   }
 }
 
-void add_bench(const live::Bench& bench, Lines& lines) {
+void add_bench(const network::Bench& bench, Lines& lines) {
   for (const auto& [name, source] : bench.sources) {
     lines.emplace(fmt::format("1 {}/{}", bench.name, name), source_line(bench, source));
   }
@@ -134,7 +134,7 @@ void add_bench(const live::Bench& bench, Lines& lines) {
 
 } // namespace
 
-std::map<std::string, std::string> laboratory_lines(const live::Laboratory& laboratory) {
+std::map<std::string, std::string> laboratory_lines(const network::Laboratory& laboratory) {
   Lines lines;
   for (const auto& [name, bench] : laboratory.benches()) {
     add_bench(bench, lines);
@@ -149,4 +149,4 @@ std::map<std::string, std::string> laboratory_lines(const live::Laboratory& labo
   return lines;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

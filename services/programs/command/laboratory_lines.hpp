@@ -8,9 +8,9 @@
 
 #include "services/network/laboratory.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 [[nodiscard]] std::map<std::string, std::string>
-laboratory_lines(const live::Laboratory& laboratory);
+laboratory_lines(const network::Laboratory& laboratory);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -9,7 +9,7 @@
 #include "services/checks/doctor/laboratory_watch.hpp"
 #include "services/checks/doctor/unheard_analysis.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using doctor::Severity;
@@ -89,4 +89,4 @@ Expected<void> look_at_laboratory(const NetworkOptions& network, double seconds,
   return {};
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

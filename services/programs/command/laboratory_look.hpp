@@ -10,7 +10,7 @@
 #include "services/checks/doctor/laboratory_view.hpp"
 #include "services/daemon/program/program.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct LaboratoryLook {
   doctor::LaboratoryView view;
@@ -24,4 +24,4 @@ struct LaboratoryLook {
 look_at_laboratory(const NetworkOptions& network, double seconds, const std::stop_token& stop,
                    const std::function<void(const LaboratoryLook&)>& judge);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -2,7 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 void add_watch(CLI::App& app, WatchCommand& watch) {
@@ -69,4 +69,4 @@ std::optional<int> run_laboratory_command(const CLI::App& app, const LaboratoryC
   return std::nullopt;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

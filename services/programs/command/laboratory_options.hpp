@@ -10,7 +10,7 @@
 #include "services/programs/command/list_command.hpp"
 #include "services/programs/command/watch_command.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct LaboratoryCommands {
   WatchCommand watch;
@@ -25,4 +25,4 @@ void add_laboratory(CLI::App& app, LaboratoryCommands& commands);
                                                         const LaboratoryCommands& commands,
                                                         const std::stop_token& stop);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

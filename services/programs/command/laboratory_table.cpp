@@ -14,14 +14,14 @@
 #include "services/programs/command/clock_offset_text.hpp"
 #include "services/programs/command/harmless_text.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using bus::Clock;
-using live::Bench;
-using live::BenchState;
-using live::Run;
-using live::Severity;
+using network::Bench;
+using network::BenchState;
+using network::Run;
+using network::Severity;
 
 constexpr std::size_t min_columns = 20;
 
@@ -73,7 +73,7 @@ std::string run_text(const Run& run, Clock::Instant now) {
 }
 
 Line bench_line(const Bench& bench, Clock::Instant now) {
-  const live::Condition condition = condition_of(bench, now);
+  const network::Condition condition = condition_of(bench, now);
   const BenchState state = state_of(bench, now);
   std::string text =
       fmt::format("{} {:<8}", in_columns(harmless(bench.name), 12), to_string(state));
@@ -86,9 +86,9 @@ Line bench_line(const Bench& bench, Clock::Instant now) {
   return {Rank::always, condition.severity, std::move(text)};
 }
 
-Line source_line(const live::Source& source, BenchState state, Clock::Instant now) {
-  const live::Condition condition = condition_of(source, now);
-  const bool silent = source.is_silent && source.state != live::SourceState::ended;
+Line source_line(const network::Source& source, BenchState state, Clock::Instant now) {
+  const network::Condition condition = condition_of(source, now);
+  const bool silent = source.is_silent && source.state != network::SourceState::ended;
   std::string text =
       fmt::format("  {} {:<8} {:>9.1f} S/s {:>6} lost", // state and figures
                   in_columns(harmless(source.name), 10),
@@ -146,7 +146,7 @@ bool is_shown(const ChannelSummary& channel, const TableLayout& layout) {
 }
 
 // Of the names of channels: as wide as the widest, as long as there is room for values beside it.
-std::size_t name_columns(const live::Laboratory& laboratory, Clock::Instant now,
+std::size_t name_columns(const network::Laboratory& laboratory, Clock::Instant now,
                          const TableLayout& layout) {
   std::size_t widest = 0;
   for (const auto& [bench_name, bench] : laboratory.benches()) {
@@ -293,7 +293,7 @@ Line clock_line(const HostClock& host, std::size_t columns) {
 }
 
 // Of hosts whose clock is off, with `all` of each that is not ours.
-void add_clocks(const live::Laboratory& laboratory, Table& table) {
+void add_clocks(const network::Laboratory& laboratory, Table& table) {
   for (const HostClock& host : laboratory.clocks()) {
     if (table.layout.all || is_notable(host.clock)) {
       table.lines.push_back(clock_line(host, table.layout.columns));
@@ -301,7 +301,7 @@ void add_clocks(const live::Laboratory& laboratory, Table& table) {
   }
 }
 
-std::string head(const live::Laboratory& laboratory) {
+std::string head(const network::Laboratory& laboratory) {
   std::size_t running = 0;
   const Clock::Instant now = laboratory.clock().now();
   for (const auto& [name, bench] : laboratory.benches()) {
@@ -354,7 +354,7 @@ void leave_out(std::vector<Line>& lines, std::size_t rows) {
 
 } // namespace
 
-std::vector<std::string> laboratory_table(const live::Laboratory& laboratory,
+std::vector<std::string> laboratory_table(const network::Laboratory& laboratory,
                                           const TableLayout& wanted) {
   TableLayout layout = wanted;
   layout.columns = std::max(layout.columns, min_columns);
@@ -386,4 +386,4 @@ std::vector<std::string> laboratory_table(const live::Laboratory& laboratory,
   return table;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

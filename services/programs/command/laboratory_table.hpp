@@ -14,7 +14,7 @@
 
 #include "services/network/laboratory.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct TableLayout {
   std::size_t columns = 80;
@@ -26,7 +26,7 @@ struct TableLayout {
 };
 
 // One text a line, without line ends.
-[[nodiscard]] std::vector<std::string> laboratory_table(const live::Laboratory& laboratory,
+[[nodiscard]] std::vector<std::string> laboratory_table(const network::Laboratory& laboratory,
                                                         const TableLayout& layout);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -12,7 +12,7 @@
 #include "services/programs/command/watched_laboratory.hpp"
 #include "services/views/live/laboratory_json.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using namespace std::chrono_literals;
@@ -21,7 +21,7 @@ using Clock = std::chrono::steady_clock;
 // Programs are matched, and tell what they keep for late listeners, within this.
 constexpr auto quiet_time = 1s;
 
-std::string source_text(const live::Source& source) {
+std::string source_text(const network::Source& source) {
   std::string device = source.description ? source.description->device : "";
   if (source.description && !source.description->serial.empty()) {
     device += (device.empty() ? "" : " ") + source.description->serial;
@@ -32,16 +32,16 @@ std::string source_text(const live::Source& source) {
                      channels, harmless(device), harmless(source.host));
 }
 
-std::string run_text(const live::Run& run) {
+std::string run_text(const network::Run& run) {
   return fmt::format("  run {}  {}  {} results{}", harmless(RunIdentity::parse(run.name).name),
                      to_string(run.state()), run.results.size(),
                      run.message.empty() ? "" : "  " + harmless(run.message));
 }
 
-void print_text(const live::Laboratory& laboratory) {
+void print_text(const network::Laboratory& laboratory) {
   const auto now = laboratory.clock().now();
   for (const auto& [name, bench] : laboratory.benches()) {
-    const live::Condition condition = condition_of(bench, now);
+    const network::Condition condition = condition_of(bench, now);
     fmt::print("bench {}  {}{}\n", harmless(name), to_string(state_of(bench, now)),
                condition.what.empty() ? "" : "  " + harmless(condition.what));
     for (const auto& [source_name, source] : bench.sources) {
@@ -69,7 +69,7 @@ int run_list(const ListCommand& command, const std::stop_token& stop) {
   if (!watched) {
     return report_error(watched.error());
   }
-  const live::Laboratory& laboratory = (*watched)->laboratory();
+  const network::Laboratory& laboratory = (*watched)->laboratory();
   const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                            std::chrono::duration<double>(command.seconds));
   auto number_of_things = std::size_t{0};
@@ -94,4 +94,4 @@ int run_list(const ListCommand& command, const std::stop_token& stop) {
   return heard ? 0 : report_error(heard.error());
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

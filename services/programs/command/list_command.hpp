@@ -7,7 +7,7 @@
 
 #include "services/daemon/program/program.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct ListCommand {
   std::string bench = "*";
@@ -18,4 +18,4 @@ struct ListCommand {
 
 [[nodiscard]] int run_list(const ListCommand& command, const std::stop_token& stop);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

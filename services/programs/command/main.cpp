@@ -26,7 +26,7 @@
 
 namespace {
 
-using namespace dyncal::services;
+using namespace dyncal;
 
 void add_run(CLI::App& app, RunCommand& run) {
   CLI::App* command =

@@ -14,7 +14,7 @@
 #include "services/views/model/model_table.hpp"
 #include "services/views/report/result_json.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 ModelRequest request_of(const ModelCommand& command) {
@@ -104,4 +104,4 @@ int run_model(const ModelCommand& command) {
   return 0;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

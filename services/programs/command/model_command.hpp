@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct ModelCommand {
   std::vector<std::filesystem::path> results;
@@ -32,4 +32,4 @@ struct ModelCommand {
 
 [[nodiscard]] int run_model(const ModelCommand& command);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

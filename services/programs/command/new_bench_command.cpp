@@ -16,7 +16,7 @@
 #include "services/daemon/program/program.hpp"
 #include "services/programs/command/draft_options.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using bench_draft::BenchDraft;
@@ -202,4 +202,4 @@ int run_new_bench(const NewBenchCommand& command) {
   return conclude(write_draft(draft, path), path);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

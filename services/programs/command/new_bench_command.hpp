@@ -8,7 +8,7 @@
 
 #include "services/bench/draft/bench_draft.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct NewBenchCommand {
   bench_draft::BenchDraft draft; // without a name: it is asked for
@@ -20,4 +20,4 @@ struct NewBenchCommand {
 
 [[nodiscard]] int run_new_bench(const NewBenchCommand& command);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

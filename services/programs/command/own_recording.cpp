@@ -11,7 +11,7 @@
 #include "services/records/exchange/opened_recording.hpp"
 #include "services/records/replay/recorded_run.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -112,4 +112,4 @@ OwnRecordingCheck check_own_recording(const RunOutcome& outcome,
                       agreement.values - agreement.missing, took_s, rest)};
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -17,7 +17,7 @@
 
 #include "services/evaluation/result/run_outcome.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct OwnRecordingCheck {
   std::string sentence; // one line, whatever came out
@@ -34,4 +34,4 @@ inline constexpr std::chrono::seconds least_limit{10}; // a short run may be bus
 // Of a run that is not held against its recording.
 [[nodiscard]] std::string not_held(const std::string& reason);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

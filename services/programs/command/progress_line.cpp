@@ -8,7 +8,7 @@
 
 #include "services/base/printable_text.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 std::string describe(const RunProgress& progress) {
   if (progress.step == 0) {
@@ -68,4 +68,4 @@ void ProgressLine::end() {
   }
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -7,7 +7,7 @@
 
 #include "services/run/run_controller.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 // "step 7 of 51, 40 Hz, settling, 38 s left"
 [[nodiscard]] std::string describe(const RunProgress& progress);
@@ -31,4 +31,4 @@ private:
   std::string last_text_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

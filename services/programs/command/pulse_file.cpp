@@ -7,7 +7,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using analysis::PulseEdge;
@@ -100,4 +100,4 @@ Expected<PulseRecord> read_pulse_files(std::span<const std::filesystem::path> fi
   return record;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -22,7 +22,7 @@
 #include "analysis/instrument/pulse_edges.hpp"
 #include "services/base/error.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct PulseRecord {
   std::vector<analysis::PulseEdge> edges;
@@ -40,4 +40,4 @@ struct PulseRecord {
 
 [[nodiscard]] Expected<PulseRecord> read_pulse_files(std::span<const std::filesystem::path> files);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -14,7 +14,7 @@
 #include "services/records/mcap/recording_reader.hpp"
 #include "services/records/mcap/repair.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 void print_findings(const recording::ScanReport& report, const std::filesystem::path& path) {
@@ -148,4 +148,4 @@ int run_recording_info(const RecordingCommand& command) {
   return 0;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

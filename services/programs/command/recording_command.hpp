@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct RecordingCommand {
   std::filesystem::path file;
@@ -17,4 +17,4 @@ struct RecordingCommand {
 [[nodiscard]] int run_recording_repair(const RecordingCommand& command);
 [[nodiscard]] int run_recording_info(const RecordingCommand& command);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -4,7 +4,7 @@
 
 #include "services/programs/command/keep_options.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 void add_recording(CLI::App& app, RecordingCommand& recording) {
@@ -74,4 +74,4 @@ std::optional<int> run_recording(const CLI::App& app, const RecordingCommands& c
                                          : run_recording_check(commands.recording);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

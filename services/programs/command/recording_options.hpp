@@ -13,7 +13,7 @@ namespace CLI { // NOLINT(readability-identifier-naming): of the library
 class App;
 }
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct RecordingCommands {
   RecordingCommand recording;
@@ -28,4 +28,4 @@ void add_recordings(CLI::App& app, RecordingCommands& commands);
 [[nodiscard]] std::optional<int> run_recording(const CLI::App& app,
                                                const RecordingCommands& commands);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -7,7 +7,7 @@
 #include "services/base/printable_text.hpp"
 #include "services/daemon/program/watched_network.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 Expected<double> parse_speed(const std::string& text) {
@@ -56,4 +56,4 @@ int run_replay(const ReplayCommand& command, const std::stop_token& stop) {
                                                    "the network"});
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -8,7 +8,7 @@
 #include "services/daemon/program/program.hpp"
 #include "services/records/replay/recording_player.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct ReplayCommand {
   ReplayOptions wish;
@@ -19,4 +19,4 @@ struct ReplayCommand {
 
 [[nodiscard]] int run_replay(const ReplayCommand& command, const std::stop_token& stop);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

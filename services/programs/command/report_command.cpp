@@ -8,7 +8,7 @@
 #include "services/views/document/pdf.hpp"
 #include "services/views/document/report_document.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 std::filesystem::path stem_of(const ReportCommand& command) {
@@ -64,4 +64,4 @@ int run_report(const ReportCommand& command) {
   return made ? 0 : report_error(made.error());
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

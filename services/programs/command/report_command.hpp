@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct ReportCommand {
   std::filesystem::path run;
@@ -23,4 +23,4 @@ struct ReportCommand {
 
 [[nodiscard]] int run_report(const ReportCommand& command);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -6,7 +6,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 std::vector<std::string> own_arguments() {
@@ -58,4 +58,4 @@ void run_again(const std::string& why, const std::string& resume) {
   execv("/proc/self/exe", pointers.data());
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 // `own`: as the program was called, its name first. `resume`: the run to go on with; empty: none.
 [[nodiscard]] std::vector<std::string> arguments_again(const std::vector<std::string>& own,
@@ -18,4 +18,4 @@ namespace dyncal::services {
 // refuses.
 void run_again(const std::string& why, const std::string& resume);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

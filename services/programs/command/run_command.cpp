@@ -25,7 +25,7 @@
 #include "services/run/run_plan.hpp"
 #include "services/views/report/show_outcome.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 std::string run_from_time() {
   return time_name(utc_now_ns());
@@ -278,4 +278,4 @@ int conclude(const RunOutcome& outcome) {
   return complete ? 0 : report_error(complete.error());
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -14,7 +14,7 @@
 #include "services/run/run_controller.hpp"
 #include "services/views/report/run_figures.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct RunCommand {
   std::filesystem::path bench_file;
@@ -42,4 +42,4 @@ read_adc_calibration(const BenchFile& bench);
 // The exit status and, unless 0, one line on standard error.
 [[nodiscard]] int conclude(const RunOutcome& outcome);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

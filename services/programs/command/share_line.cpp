@@ -5,7 +5,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 constexpr std::chrono::seconds patience{2};
@@ -28,4 +28,4 @@ void ShareLine::show(double share) {
   std::fflush(stream_);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <cstdio>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 class ShareLine {
 public:
@@ -25,4 +25,4 @@ private:
   Clock::time_point next_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -9,7 +9,7 @@
 #include "services/daemon/program/program.hpp"
 #include "services/programs/command/work_progress.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -122,4 +122,4 @@ int run_runs(const RunsCommand& command) {
   return 0;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

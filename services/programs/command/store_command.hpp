@@ -8,7 +8,7 @@
 
 #include "services/records/store/store.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 // Where the store is.
 struct StoreOptions {
@@ -32,4 +32,4 @@ struct RunsCommand {
 
 [[nodiscard]] int run_runs(const RunsCommand& command);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -17,7 +17,7 @@
 #include "services/programs/command/work_progress.hpp"
 #include "services/views/report/result_file.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -317,4 +317,4 @@ int run_triaxial(const TriaxialCommand& command) {
   return 0;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -20,7 +20,7 @@
 #include <string>
 #include <vector>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct TriaxialCommand {
   std::array<std::filesystem::path, 3> results; // by direction of excitation; empty: not measured
@@ -34,4 +34,4 @@ struct TriaxialCommand {
 
 [[nodiscard]] int run_triaxial(const TriaxialCommand& command);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

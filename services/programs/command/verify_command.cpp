@@ -9,7 +9,7 @@
 #include "services/programs/command/work_progress.hpp"
 #include "services/views/certificate/verification.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 int run_verify(const VerifyCommand& command) {
   const auto findings = [&] {
@@ -36,4 +36,4 @@ int run_verify(const VerifyCommand& command) {
   return static_cast<int>(first->question);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -9,7 +9,7 @@
 
 #include <filesystem>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct VerifyCommand {
   std::filesystem::path certificate;
@@ -20,4 +20,4 @@ struct VerifyCommand {
 
 [[nodiscard]] int run_verify(const VerifyCommand& command);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -13,7 +13,7 @@
 
 #include "services/daemon/program/program.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct WatchCommand {
   std::string bench = "*";
@@ -26,4 +26,4 @@ struct WatchCommand {
 
 [[nodiscard]] int run_watch(const WatchCommand& command, const std::stop_token& stop);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

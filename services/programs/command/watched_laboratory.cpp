@@ -3,7 +3,7 @@
 #include "services/base/version.hpp"
 #include "services/bus/host_clocks/clock_messages.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 Expected<std::unique_ptr<WatchedLaboratory>> WatchedLaboratory::open(const NetworkOptions& network,
                                                                      const std::string& program,
@@ -12,10 +12,10 @@ Expected<std::unique_ptr<WatchedLaboratory>> WatchedLaboratory::open(const Netwo
   DYNCAL_TRY(auto joined, WatchedNetwork::join(network, program, asked));
   std::unique_ptr<WatchedLaboratory> watched(
       new WatchedLaboratory(std::move(joined), std::make_shared<bus::WakeUp>()));
-  DYNCAL_TRY(auto readers,
-             live::LaboratoryReaders::open(watched->network_->participant, bench,
-                                           this_program(program, software_version(), network.dds),
-                                           bus::system_clock(), watched->wake_up_));
+  DYNCAL_TRY(auto readers, network::LaboratoryReaders::open(
+                               watched->network_->participant, bench,
+                               this_program(program, software_version(), network.dds),
+                               bus::system_clock(), watched->wake_up_));
   watched->readers_.emplace(std::move(readers));
   return watched;
 }
@@ -26,4 +26,4 @@ void WatchedLaboratory::work(std::chrono::steady_clock::time_point until) {
   laboratory_.work();
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -9,7 +9,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 constexpr std::chrono::milliseconds pace{250};
@@ -127,4 +127,4 @@ void WorkProgress::run(const std::stop_token& stop) {
   }
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

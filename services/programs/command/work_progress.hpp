@@ -19,7 +19,7 @@
 
 #include "services/base/work_count.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 // "evaluating: 12 of 51 steps, 38 s left"; without a total "evaluating: 14 s".
 [[nodiscard]] std::string progress_text(const WorkCount::State& state, double passed_s);
@@ -55,4 +55,4 @@ private:
   std::jthread thread_;                    // the last member: it ends before what it uses
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -8,7 +8,7 @@
 
 #include "drivers/smartup/sensor_id.hpp"
 
-namespace dyncal::services::dau {
+namespace dyncal::inline programs::dau {
 
 namespace {
 
@@ -127,4 +127,4 @@ void EndpointWatch::watch(Source& source) {
   source.silent = silent;
 }
 
-} // namespace dyncal::services::dau
+} // namespace dyncal::inline programs::dau

@@ -14,7 +14,7 @@
 #include "services/instruments/listening_plan.hpp"
 #include "services/stream/source_publisher.hpp"
 
-namespace dyncal::services::dau {
+namespace dyncal::inline programs::dau {
 
 class EndpointWatch : public drivers::smartup::ReceptionObserver {
 public:
@@ -48,4 +48,4 @@ private:
   std::map<std::uint32_t, int> unknown_;
 };
 
-} // namespace dyncal::services::dau
+} // namespace dyncal::inline programs::dau

@@ -12,7 +12,7 @@
 #include "services/stream/source_service.hpp"
 #include "services/stream/supervised.hpp"
 
-namespace dyncal::services::dau {
+namespace dyncal::inline programs::dau {
 namespace {
 
 constexpr int wanted_receive_buffer = 4 << 20; // bytes; about half a second of sixteen units
@@ -82,10 +82,10 @@ Expected<void> serve(const std::vector<BenchFile>& benches, Daemon& daemon) {
 }
 
 } // namespace
-} // namespace dyncal::services::dau
+} // namespace dyncal::inline programs::dau
 
 int main(int argc, char** argv) {
-  using namespace dyncal::services;
+  using namespace dyncal;
   return run_bench_program(
       argc, argv,
       {.name = "dyncal-dau",

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 std::vector<std::string> quoted(const std::vector<std::string>& texts) {
@@ -235,4 +235,4 @@ acs_rate_rel = {u_rate}
                preset.can == DemoPreset::CanLink::absolute_time ? "" : "acs_delay_s = 1e-8\n"));
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

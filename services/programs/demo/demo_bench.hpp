@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct DemoPreset {
   std::string name;  // of the virtual bench's preset
@@ -52,4 +52,4 @@ struct DemoUncertainty {
                                           const DemoAddresses& addresses,
                                           const DemoUncertainty& uncertainty);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -7,7 +7,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 struct TruePoint {
@@ -103,4 +103,4 @@ Expected<TruthCheck> check_truth(const RunOutcome& outcome,
   return check;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

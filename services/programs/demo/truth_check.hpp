@@ -11,7 +11,7 @@
 #include "services/base/error.hpp"
 #include "services/evaluation/result/run_outcome.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct TruthCheck {
   std::size_t points = 0;  // transfer function values compared, magnitude and phase each counted
@@ -24,4 +24,4 @@ struct TruthCheck {
 [[nodiscard]] Expected<TruthCheck> check_truth(const RunOutcome& outcome,
                                                const std::filesystem::path& truth_file);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -6,7 +6,7 @@
 
 #include "services/bus/bus.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 Expected<std::map<std::string, std::string>> parse_vendor_assignment(const std::string& text) {
   const auto vendors = bus::vendors_in_this_build();
@@ -36,4 +36,4 @@ Expected<std::map<std::string, std::string>> parse_vendor_assignment(const std::
   return words;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

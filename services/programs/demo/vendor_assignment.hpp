@@ -8,11 +8,11 @@
 
 #include "services/base/error.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 // The implementation for each of "dau", "acs", "analysis" and "run". Fails (bad_argument) for other
 // names.
 [[nodiscard]] Expected<std::map<std::string, std::string>>
 parse_vendor_assignment(const std::string& text);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -11,7 +11,7 @@
 
 namespace {
 
-using namespace dyncal::services;
+using namespace dyncal;
 using dyncal::fail;
 
 Expected<void> serve(const std::vector<BenchFile>& files, Daemon& daemon) {

@@ -13,7 +13,7 @@
 #include "services/contract/topics.hpp"
 #include "services/instruments/series_channels.hpp"
 
-namespace dyncal::services::dso {
+namespace dyncal::inline programs::dso {
 namespace {
 
 using namespace std::chrono_literals;
@@ -286,4 +286,4 @@ bool TriggeredBench::publish(ShotPair pair, const Step& step) {
   return trace_taken && series_taken;
 }
 
-} // namespace dyncal::services::dso
+} // namespace dyncal::inline programs::dso

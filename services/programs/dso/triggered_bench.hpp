@@ -34,7 +34,7 @@
 
 #include "idl/dyncal.h"
 
-namespace dyncal::services::dso {
+namespace dyncal::inline programs::dso {
 
 class TriggeredBench {
 public:
@@ -97,4 +97,4 @@ private:
   std::string shot_problem_; // the last one of this step
 };
 
-} // namespace dyncal::services::dso
+} // namespace dyncal::inline programs::dso

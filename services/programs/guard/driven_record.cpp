@@ -9,7 +9,7 @@
 #include "services/base/json_text.hpp"
 #include "services/base/output_file.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using nlohmann::json;
@@ -98,4 +98,4 @@ Expected<void> DrivenRecord::write(const DrivenRun& run) const {
                                                  {"settings", std::move(settings)}}));
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -14,7 +14,7 @@
 
 #include "services/programs/guard/exciter_watch.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 [[nodiscard]] std::filesystem::path guard_state_folder();
 
@@ -32,4 +32,4 @@ private:
   std::string generator_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -9,7 +9,7 @@
 #include "services/bus/names.hpp"
 #include "services/contract/topics.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using State = ExciterWatch::State;
@@ -281,4 +281,4 @@ void ExciterGuard::report() {
   publish();
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -35,7 +35,7 @@
 #include "services/programs/guard/guarded_output.hpp"
 #include "services/programs/guard/reference_watch.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct GuardedExciter {
   std::string bench;
@@ -110,4 +110,4 @@ private:
   std::uint64_t times_switched_off_ = 0;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

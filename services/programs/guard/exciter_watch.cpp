@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 constexpr double rounding_rel = 1e-3; // of a generator to its resolution
@@ -237,4 +237,4 @@ ExciterWatch::Action ExciterWatch::due(Instant now) {
   return Action::ask;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

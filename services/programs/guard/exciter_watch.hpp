@@ -35,7 +35,7 @@
 #include "services/base/error.hpp"
 #include "services/bus/clock.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 using drivers::generator::OutputReading;
 using drivers::generator::OutputSettings;
@@ -122,4 +122,4 @@ private:
   Instant next_attempt_{};
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -4,7 +4,7 @@
 
 #include "services/base/device_error.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 using drivers::generator::OutputReading;
 
@@ -45,4 +45,4 @@ std::optional<Expected<OutputReading>> GeneratorOutput::answer() {
   return std::exchange(is_outdated_, false) ? std::nullopt : std::move(taken);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -14,7 +14,7 @@
 #include "drivers/generator/generator_output.hpp"
 #include "services/base/error.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 class GuardedOutput {
 public:
@@ -48,4 +48,4 @@ private:
   std::jthread thread_; // the last member: it uses the others
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -11,7 +11,7 @@
 #include "services/daemon/program/bench_program.hpp"
 #include "services/programs/guard/exciter_guard.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 constexpr std::chrono::milliseconds unattended_limit{2000};
@@ -76,13 +76,13 @@ Expected<void> serve(const std::vector<BenchFile>& benches, Daemon& daemon) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline programs
 
 int main(int argc, char** argv) {
-  return dyncal::services::run_bench_program(
+  return dyncal::daemon::run_bench_program(
       argc, argv,
       {"dyncal-guard",
        "Switches the exciter of a bench off when nobody attends its run any more; runs on the "
        "bench's side, where the generator can be reached.",
-       dyncal::services::serve});
+       dyncal::serve});
 }

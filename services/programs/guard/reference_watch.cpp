@@ -12,7 +12,7 @@
 #include "services/evaluation/record/channel_level.hpp"
 #include "services/run/level_settling.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 constexpr double agreement_rel = 0.05;  // of the halves of a window: steady
@@ -195,4 +195,4 @@ void ReferenceWatch::judge(const LevelReading& reading, const analysis::Frequenc
   }
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -34,7 +34,7 @@
 #include "services/contract/channel_name.hpp"
 #include "services/run/level_meter.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 class ReferenceWatch {
 public:
@@ -95,4 +95,4 @@ private:
   std::string still_driven_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -6,7 +6,7 @@
 #include "services/contract/time_name.hpp"
 #include "services/programs/recorder/recording_name.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 constexpr const char* all_benches = "*";
@@ -213,4 +213,4 @@ Expected<void> BenchRecordings::stop() {
   return outcome;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -27,7 +27,7 @@
 #include "services/daemon/supervision/daemon_metrics.hpp"
 #include "services/records/capture/recorder.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 struct RecordingPlan {
   std::filesystem::path folder;
@@ -98,4 +98,4 @@ private:
   std::set<std::pair<std::string, std::string>> over_; // bench and run: not to be begun again
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

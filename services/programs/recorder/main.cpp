@@ -5,7 +5,7 @@
 #include "services/daemon/program/daemon.hpp"
 #include "services/programs/recorder/bench_recordings.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 struct RecorderOptions {
@@ -55,10 +55,10 @@ Expected<void> serve(RecorderOptions& options, Daemon& daemon) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline programs
 
 int main(int argc, char** argv) {
-  using namespace dyncal::services;
+  using namespace dyncal;
   RecorderOptions options;
   return run_daemon(
       argc, argv,

@@ -4,7 +4,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 std::string portable(std::string name) {
@@ -32,4 +32,4 @@ std::filesystem::path recording_name(const std::filesystem::path& folder, const 
   return path;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

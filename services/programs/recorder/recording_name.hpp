@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 // One that is not there yet: "-2" and so on where the name is taken. Other characters than letters,
 // digits and ". _ - +" become "_", as does a dot at the beginning.
@@ -13,4 +13,4 @@ namespace dyncal::services {
                                                    const std::string& bench,
                                                    const std::string& name);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

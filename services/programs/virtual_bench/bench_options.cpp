@@ -11,7 +11,7 @@
 #include "services/daemon/program/command_line.hpp"
 #include "services/programs/virtual_bench/fault_option.hpp"
 
-namespace dyncal::services::virtual_bench {
+namespace dyncal::inline programs::virtual_bench {
 namespace {
 
 namespace device = dyncal::drivers::virtual_bench;
@@ -353,7 +353,7 @@ Expected<std::optional<BenchOptions>> parse_command_line(int argc, char** argv) 
   Words words;
   BenchOptions options;
   add_options(app, words, options);
-  DYNCAL_TRY(const auto parsed, services::parse_command_line(app, argc, argv));
+  DYNCAL_TRY(const auto parsed, dyncal::parse_command_line(app, argc, argv));
   if (!parsed) {
     return std::nullopt;
   }
@@ -361,4 +361,4 @@ Expected<std::optional<BenchOptions>> parse_command_line(int argc, char** argv) 
   return options;
 }
 
-} // namespace dyncal::services::virtual_bench
+} // namespace dyncal::inline programs::virtual_bench

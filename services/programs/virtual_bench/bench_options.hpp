@@ -12,7 +12,7 @@
 #include "drivers/virtual_bench/wire/bench_server.hpp"
 #include "services/base/error.hpp"
 
-namespace dyncal::services::virtual_bench {
+namespace dyncal::inline programs::virtual_bench {
 
 struct BenchOptions {
   drivers::virtual_bench::BenchSettings bench;
@@ -33,4 +33,4 @@ struct BenchOptions {
 // (bad_argument).
 [[nodiscard]] Expected<std::optional<BenchOptions>> parse_command_line(int argc, char** argv);
 
-} // namespace dyncal::services::virtual_bench
+} // namespace dyncal::inline programs::virtual_bench

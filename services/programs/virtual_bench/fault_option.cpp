@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace dyncal::services::virtual_bench {
+namespace dyncal::inline programs::virtual_bench {
 namespace {
 
 namespace device = dyncal::drivers::virtual_bench;
@@ -356,4 +356,4 @@ Expected<void> read_fault(const std::string& text, BenchFaults& faults) {
   return read(fault, faults).and_then([&] { return fault.nothing_left(); });
 }
 
-} // namespace dyncal::services::virtual_bench
+} // namespace dyncal::inline programs::virtual_bench

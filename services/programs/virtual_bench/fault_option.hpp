@@ -30,7 +30,7 @@
 #include "drivers/virtual_bench/model/bench_faults.hpp"
 #include "services/base/error.hpp"
 
-namespace dyncal::services::virtual_bench {
+namespace dyncal::inline programs::virtual_bench {
 
 [[nodiscard]] Expected<void> read_fault(const std::string& text,
                                         drivers::virtual_bench::BenchFaults& faults);
@@ -38,4 +38,4 @@ namespace dyncal::services::virtual_bench {
 // What can be written, for --help.
 [[nodiscard]] std::string fault_help();
 
-} // namespace dyncal::services::virtual_bench
+} // namespace dyncal::inline programs::virtual_bench

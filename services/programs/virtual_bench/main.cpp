@@ -21,11 +21,11 @@ namespace {
 
 namespace device = dyncal::drivers::virtual_bench;
 using dyncal::fail;
-using dyncal::services::Error;
-using dyncal::services::ErrorCode;
-using dyncal::services::Expected;
-using dyncal::services::json_text;
-using dyncal::services::virtual_bench::BenchOptions;
+using dyncal::base::Error;
+using dyncal::base::ErrorCode;
+using dyncal::base::Expected;
+using dyncal::base::json_text;
+using dyncal::virtual_bench::BenchOptions;
 
 dyncal::drivers::StopSignal& stop_signal() {
   static dyncal::drivers::StopSignal signal;
@@ -45,7 +45,7 @@ void stop_on_signals() {
 }
 
 Expected<void> write_if_named(const std::filesystem::path& path, const std::string& text) {
-  return path.empty() ? Expected<void>{} : dyncal::services::write_output_file(path, text);
+  return path.empty() ? Expected<void>{} : dyncal::base::write_output_file(path, text);
 }
 
 Expected<void> record(device::VirtualBench& bench, const BenchOptions& options) {
@@ -152,14 +152,14 @@ Expected<void> run(BenchOptions options) {
 
 int main(int argc, char** argv) {
   stop_on_signals();
-  const auto options = dyncal::services::virtual_bench::parse_command_line(argc, argv);
+  const auto options = dyncal::virtual_bench::parse_command_line(argc, argv);
   if (options && !options->has_value()) {
     return EXIT_SUCCESS;
   }
   const Expected<void> done = options ? run(**options) : fail(options.error());
   if (!done) {
     fmt::print(stderr, "dyncal-virtual-bench: {}\n", done.error().message);
-    return options ? EXIT_FAILURE : dyncal::services::wrong_command_line;
+    return options ? EXIT_FAILURE : dyncal::daemon::wrong_command_line;
   }
   return EXIT_SUCCESS;
 }

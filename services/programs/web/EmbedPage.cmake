@@ -19,7 +19,7 @@ endforeach()
 file(WRITE ${FILE}.new "// Made by EmbedPage.cmake.
 #include \"services/programs/web/page_files.hpp\"
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 namespace {
 
 ${arrays}
@@ -30,6 +30,6 @@ std::vector<PageFile> page_files() {
 ${rows}  };
 }
 
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web
 ")
 file(COPY_FILE ${FILE}.new ${FILE} ONLY_IF_DIFFERENT)

@@ -12,7 +12,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 
 Expected<std::string> read_token(const std::filesystem::path& path) {
   struct stat status {};
@@ -104,4 +104,4 @@ void AccessToken::count_wrong(const std::string& address, bus::Clock::Instant no
   wrong_[address].push_back(now);
 }
 
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

@@ -21,7 +21,7 @@
 #include "services/base/error.hpp"
 #include "services/bus/clock.hpp"
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 
 [[nodiscard]] Expected<std::string> read_token(const std::filesystem::path& path);
 
@@ -62,4 +62,4 @@ private:
   std::map<std::string, Wrong> wrong_; // by address; none is empty
 };
 
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

@@ -14,7 +14,7 @@
 #include "services/contract/topics.hpp"
 #include "services/programs/web/laboratory_answers.hpp"
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -77,16 +77,16 @@ std::vector<std::string> run_arguments(const NetworkOptions& network, const fs::
 }
 
 // The one that is commanded; null: it is not the bench's run now.
-const live::Run* run_of(const live::Laboratory& laboratory, const wire::Command& command) {
-  const live::Bench* bench = laboratory.bench(command.bench().to_string());
-  const live::Run* run = bench == nullptr ? nullptr : bench->current_run();
+const network::Run* run_of(const network::Laboratory& laboratory, const wire::Command& command) {
+  const network::Bench* bench = laboratory.bench(command.bench().to_string());
+  const network::Run* run = bench == nullptr ? nullptr : bench->current_run();
   return run != nullptr && run->name == command.run() ? run : nullptr;
 }
 
 // Nothing: no conductor runs it.
-std::optional<std::string> conductor_of(const live::Laboratory& laboratory,
+std::optional<std::string> conductor_of(const network::Laboratory& laboratory,
                                         const wire::Command& command, bus::Clock::Instant now) {
-  const live::Run* run = run_of(laboratory, command);
+  const network::Run* run = run_of(laboratory, command);
   if (run == nullptr || run->is_over() || !run->conductor_heard || run->is_left_alone(now)) {
     return std::nullopt;
   }
@@ -198,7 +198,7 @@ void Actions::command(const std::string& bench, const Json& body, const httplib:
 
 void Actions::send(const wire::Command& command, const std::string& word,
                    httplib::Response& response) {
-  const auto conductor = cache_.look([&](const live::Laboratory& laboratory) {
+  const auto conductor = cache_.look([&](const network::Laboratory& laboratory) {
     return conductor_of(laboratory, command, clock_.now());
   });
   if (!conductor) {
@@ -241,8 +241,8 @@ std::optional<std::string> Actions::repeat_until_answered(const wire::Command& c
     if (!router_.wait_until(clock_.now() + command_interval)) {
       break;
     }
-    auto refusal = cache_.look([&](const live::Laboratory& laboratory) {
-      const live::Run* run = run_of(laboratory, command);
+    auto refusal = cache_.look([&](const network::Laboratory& laboratory) {
+      const network::Run* run = run_of(laboratory, command);
       return run != nullptr && run->answer.command == command.id()
                  ? std::optional(run->answer.refusal)
                  : std::nullopt;
@@ -300,4 +300,4 @@ void Actions::start_run(const std::string& name, httplib::Response& response) {
   answer_action(true, "dyncal run", started, response);
 }
 
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

@@ -25,7 +25,7 @@
 #include "services/programs/web/request_router.hpp"
 #include "services/programs/web/state_cache.hpp"
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 
 struct ActionOptions {
   std::optional<std::string> token; // nothing: no actions at all
@@ -70,4 +70,4 @@ private:
   std::map<std::string, ChildProcess> runs_; // by bench file
 };
 
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

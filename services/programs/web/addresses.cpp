@@ -5,7 +5,7 @@
 
 #include "services/programs/web/laboratory_answers.hpp"
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 namespace {
 
 constexpr std::array<std::string_view, 5> read_addresses{"/", "/events", "/api/laboratory",
@@ -42,4 +42,4 @@ bool allows(std::string_view methods, std::string_view method) {
   return false;
 }
 
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

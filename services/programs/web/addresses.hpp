@@ -5,7 +5,7 @@
 
 #include <string_view>
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 
 inline constexpr const char* reading_methods = "GET, HEAD, OPTIONS";
 inline constexpr const char* acting_methods = "POST, OPTIONS";
@@ -17,4 +17,4 @@ inline constexpr const char* all_methods = "GET, HEAD, POST, OPTIONS";
 // Whether `methods`, as above, has this one.
 [[nodiscard]] bool allows(std::string_view methods, std::string_view method);
 
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -97,4 +97,4 @@ bool EventStream::send_round(Listener& listener, httplib::DataSink& sink) const 
   return events.empty() || sink.write(events.data(), events.size());
 }
 
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

@@ -17,7 +17,7 @@
 #include "services/programs/web/request_router.hpp"
 #include "services/programs/web/state_cache.hpp"
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 
 class EventStream {
 public:
@@ -50,4 +50,4 @@ private:
   std::atomic<int> listeners_ = 0;
 };
 
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

@@ -14,7 +14,7 @@
 #include "services/views/report/json_members.hpp"
 #include "services/views/report/stored_members.hpp"
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -130,4 +130,4 @@ bool HistoryAnswers::answer(const httplib::Request& request, httplib::Response& 
   return true;
 }
 
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

@@ -11,7 +11,7 @@
 
 #include <httplib.h>
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 
 class HistoryAnswers {
 public:
@@ -30,4 +30,4 @@ private:
   std::timed_mutex mutex_; // of who asks the store
 };
 
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

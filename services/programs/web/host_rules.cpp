@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 namespace {
 
 // Without the port; of "[::1]:80" what is in the brackets. Empty: it is none.
@@ -47,4 +47,4 @@ bool is_own_origin(std::string_view origin, std::string_view host) {
   return false;
 }
 
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

@@ -10,11 +10,11 @@
 #include <string_view>
 #include <vector>
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 
 // `host`: the header Host, "lab-1:8080". `own_names`: without port, in any case.
 [[nodiscard]] bool is_own_host(std::string_view host, const std::vector<std::string>& own_names);
 // `origin`: the header Origin, "http://lab-1:8080"; empty: there is none.
 [[nodiscard]] bool is_own_origin(std::string_view origin, std::string_view host);
 
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

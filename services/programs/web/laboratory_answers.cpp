@@ -10,7 +10,7 @@
 #include "services/programs/web/request_router.hpp"
 #include "services/views/report/json_members.hpp"
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -129,18 +129,18 @@ void LaboratoryAnswers::answer_figures(const std::string& bench, const httplib::
 void LaboratoryAnswers::answer_budget(const std::string& name, const httplib::Request& request,
                                       httplib::Response& response) const {
   const std::string run_name = request.get_param_value("run");
-  const live::Run::ResultKey key{number_of(request.get_param_value("step")),
-                                 number_of(request.get_param_value("repetition")),
-                                 request.get_param_value("channel")};
-  const auto json = cache_.look([&](const live::Laboratory& laboratory) -> std::optional<Json> {
-    const live::Bench* bench = laboratory.bench(name);
+  const network::Run::ResultKey key{number_of(request.get_param_value("step")),
+                                    number_of(request.get_param_value("repetition")),
+                                    request.get_param_value("channel")};
+  const auto json = cache_.look([&](const network::Laboratory& laboratory) -> std::optional<Json> {
+    const network::Bench* bench = laboratory.bench(name);
     if (bench == nullptr) {
       return std::nullopt;
     }
     const auto named = bench->runs.find(run_name);
-    const live::Run* run = run_name.empty()             ? bench->current_run()
-                           : named == bench->runs.end() ? nullptr
-                                                        : &named->second;
+    const network::Run* run = run_name.empty()             ? bench->current_run()
+                              : named == bench->runs.end() ? nullptr
+                                                           : &named->second;
     if (run == nullptr || !run->results.contains(key)) {
       return std::nullopt;
     }
@@ -179,4 +179,4 @@ bool LaboratoryAnswers::answer_file(const httplib::Request& request,
   return true;
 }
 
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

@@ -11,7 +11,7 @@
 #include "services/programs/web/run_files.hpp"
 #include "services/programs/web/state_cache.hpp"
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 
 // "/api/bench/acc-1/run" is {"acc-1", "run"}, "/api/bench/acc-1" is {"acc-1", ""}; of a name that
 // has a slash the last one divides. Nothing: another address. `parts`: what may follow a name.
@@ -43,4 +43,4 @@ private:
   const RunFiles& files_;
 };
 
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

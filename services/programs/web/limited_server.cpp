@@ -17,7 +17,7 @@
 #include "services/programs/web/limited_stream.hpp"
 #include "services/programs/web/request_router.hpp"
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 namespace {
 
 using namespace std::chrono_literals;
@@ -332,4 +332,4 @@ bool LimitedServer::answer(Connection& connection) {
   return was_served && !is_closed && connection.requests < max_requests;
 }
 
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

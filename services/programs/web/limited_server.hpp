@@ -34,7 +34,7 @@
 #include "services/programs/web/refusals.hpp"
 #include "services/programs/web/request_head.hpp"
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 
 class LimitedServer final : public httplib::Server {
 public:
@@ -108,4 +108,4 @@ private:
   std::vector<std::thread> threads_;
 };
 
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

@@ -9,7 +9,7 @@
 #include <array>
 #include <cstring>
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 namespace {
 
 using namespace std::chrono_literals;
@@ -99,4 +99,4 @@ std::string visitor_of(socket_t socket) {
   return ip;
 }
 
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

@@ -13,7 +13,7 @@
 
 #include <httplib.h>
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 
 class LimitedStream final : public httplib::Stream {
 public:
@@ -50,4 +50,4 @@ private:
 // "192.0.2.7"; empty: it is not connected any more.
 [[nodiscard]] std::string visitor_of(socket_t socket);
 
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

@@ -11,7 +11,7 @@
 #include "services/daemon/program/daemon.hpp"
 #include "services/programs/web/web_service.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 // Of glibc, which gives one to every thread that asks while others are busy, up to eight a core:
@@ -68,10 +68,10 @@ Expected<void> serve(WebProgram& program, Daemon& daemon) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline programs
 
 int main(int argc, char** argv) { // NOLINT(bugprone-exception-escape): ends the program
-  using namespace dyncal::services;
+  using namespace dyncal;
   mallopt(M_ARENA_MAX, malloc_arenas);
   WebProgram program;
   return run_daemon(argc, argv,

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 
 struct PageFile {
   std::string name; // "index.html"
@@ -16,4 +16,4 @@ struct PageFile {
 
 [[nodiscard]] std::vector<PageFile> page_files();
 
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

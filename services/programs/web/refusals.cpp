@@ -1,6 +1,6 @@
 #include "services/programs/web/refusals.hpp"
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 
 const char* to_string(Refusal refusal) {
   switch (refusal) {
@@ -28,4 +28,4 @@ const char* to_string(Refusal refusal) {
   return "not_permitted";
 }
 
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 
 enum class Refusal {
   slow,               // it did not come within the time for a request
@@ -35,4 +35,4 @@ private:
   std::array<std::atomic<std::uint64_t>, refusal_count> counts_{};
 };
 
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 namespace {
 
 constexpr std::string_view line_end = "\r\n";
@@ -273,4 +273,4 @@ const char* reason_phrase(int status) {
   return "Error";
 }
 
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

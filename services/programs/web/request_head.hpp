@@ -20,7 +20,7 @@
 
 #include "services/programs/web/refusals.hpp"
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 
 inline constexpr std::size_t max_body_bytes = std::size_t{64} * 1024;
 inline constexpr std::size_t max_line_bytes = std::size_t{8} * 1024; // of which 1 kB is an address
@@ -51,4 +51,4 @@ struct RequestHead {
 // "Not Implemented"
 [[nodiscard]] const char* reason_phrase(int status);
 
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

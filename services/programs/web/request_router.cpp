@@ -19,7 +19,7 @@
 #include "services/programs/web/run_files.hpp"
 #include "services/programs/web/served_file.hpp"
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 namespace {
 
 using Outcome = httplib::Server::HandlerResponse;
@@ -269,4 +269,4 @@ void RequestRouter::complete_error(const httplib::Request& request, httplib::Res
          request, response);
 }
 
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

@@ -23,7 +23,7 @@
 #include "services/programs/web/limited_server.hpp"
 #include "services/programs/web/refusals.hpp"
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 
 // Sets status and JSON of an error.
 void answer_error(int status, const std::string& code, const std::string& message,
@@ -92,4 +92,4 @@ private:
   int port_ = 0;
 };
 
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

@@ -8,7 +8,7 @@
 
 #include "services/records/run_folder/run_folder.hpp"
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 namespace {
 
 namespace fs = std::filesystem;
@@ -105,4 +105,4 @@ std::string media_type(const std::string& name) {
   return "application/octet-stream";
 }
 
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

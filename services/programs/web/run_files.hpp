@@ -13,7 +13,7 @@
 
 #include "services/programs/web/served_file.hpp"
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 
 struct RunFile {
   std::string name; // "result.json", "figures/magnitude.svg"
@@ -46,4 +46,4 @@ private:
 // By the end of its name; "application/octet-stream" otherwise.
 [[nodiscard]] std::string media_type(const std::string& name);
 
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

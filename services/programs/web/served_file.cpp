@@ -15,7 +15,7 @@
 #include "services/programs/web/request_head.hpp"
 #include "services/programs/web/request_router.hpp"
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 namespace {
 
 using drivers::FileDescriptor;
@@ -135,4 +135,4 @@ void answer_with(const ServedFile& file, const std::string& media_type,
       });
 }
 
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

@@ -18,7 +18,7 @@
 
 #include "drivers/link/file_descriptor.hpp"
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 
 enum class Links { none, within };
 
@@ -45,4 +45,4 @@ struct ByteRange {
 void answer_with(const ServedFile& file, const std::string& media_type,
                  const httplib::Request& request, httplib::Response& response);
 
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

@@ -20,7 +20,7 @@
 #include "services/views/signals/spectrum.hpp"
 #include "services/views/signals/trace.hpp"
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -120,9 +120,9 @@ SignalAnswers::Question SignalAnswers::question_of(const std::string& bench,
 }
 
 std::optional<SignalAnswers::Found> SignalAnswers::find(const Question& question) const {
-  return cache_.look([&](const live::Laboratory& laboratory) -> std::optional<Found> {
-    const live::Bench* bench = laboratory.bench(question.bench);
-    const auto source = bench == nullptr ? std::map<std::string, live::Source>::const_iterator()
+  return cache_.look([&](const network::Laboratory& laboratory) -> std::optional<Found> {
+    const network::Bench* bench = laboratory.bench(question.bench);
+    const auto source = bench == nullptr ? std::map<std::string, network::Source>::const_iterator()
                                          : bench->sources.find(question.source);
     if (bench == nullptr || source == bench->sources.end() || !source->second.description) {
       return std::nullopt;
@@ -229,21 +229,21 @@ struct SignalAnswers::ExcitedStep {
   std::string frequency_hz;
   bus::Clock::Instant announced;
   std::optional<bus::Clock::Instant> steady; // nothing: it is settling
-  live::Plan plan;
+  network::Plan plan;
 };
 
 // The one that is excited now, by what was announced last; nothing: no run is under way.
 std::optional<SignalAnswers::ExcitedStep>
 SignalAnswers::excited_step(const std::string& bench_name) const {
-  return cache_.look([&](const live::Laboratory& laboratory) -> std::optional<ExcitedStep> {
-    const live::Bench* bench = laboratory.bench(bench_name);
-    const live::Run* run = bench == nullptr ? nullptr : bench->current_run();
+  return cache_.look([&](const network::Laboratory& laboratory) -> std::optional<ExcitedStep> {
+    const network::Bench* bench = laboratory.bench(bench_name);
+    const network::Run* run = bench == nullptr ? nullptr : bench->current_run();
     if (run == nullptr || !run->plan || !run->now || run->is_over()) {
       return std::nullopt;
     }
-    const live::Excitation& now = *run->now;
-    const bool is_steady = now.step.state == live::StepState::steady;
-    ExcitedStep step{is_steady || now.step.state == live::StepState::settling,
+    const network::Excitation& now = *run->now;
+    const bool is_steady = now.step.state == network::StepState::steady;
+    ExcitedStep step{is_steady || now.step.state == network::StepState::settling,
                      now.step.step,
                      now.step.attempt,
                      now.step.frequency_text_hz,
@@ -338,4 +338,4 @@ bool SignalAnswers::answer(const httplib::Request& request, httplib::Response& r
   return true;
 }
 
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

@@ -13,7 +13,7 @@
 #include "services/programs/web/state_cache.hpp"
 #include "services/views/signals/signal_tap.hpp"
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 
 class SignalAnswers {
 public:
@@ -66,4 +66,4 @@ private:
   std::map<std::string, Made> texts_;
 };
 
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

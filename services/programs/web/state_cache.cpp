@@ -10,12 +10,12 @@
 #include "services/views/live/run_json.hpp"
 #include "services/views/report/picture_json.hpp"
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-const live::Run* find_run(const live::Bench& bench, const std::string& run) {
+const network::Run* find_run(const network::Bench& bench, const std::string& run) {
   if (run.empty()) {
     return bench.current_run();
   }
@@ -23,15 +23,15 @@ const live::Run* find_run(const live::Bench& bench, const std::string& run) {
   return found == bench.runs.end() ? nullptr : &found->second;
 }
 
-std::string bars_name(services::figures::ErrorBars bars) {
-  return bars == services::figures::ErrorBars::none ? "none" : symbol_of(bars);
+std::string bars_name(dyncal::figures::ErrorBars bars) {
+  return bars == dyncal::figures::ErrorBars::none ? "none" : symbol_of(bars);
 }
 
 Json milliseconds(std::int64_t utc_ns) {
   return utc_ns == 0 ? Json(nullptr) : Json(static_cast<double>(utc_ns) / 1e6);
 }
 
-Json runs_json(const live::Bench& bench) {
+Json runs_json(const network::Bench& bench) {
   Json runs = Json::array();
   for (const auto& [name, run] : bench.runs) {
     runs.push_back({{"run", name},
@@ -84,7 +84,7 @@ void StateCache::drop_what_is_not_shown() {
     if (now - made.asked >= forgotten_after) {
       return true;
     }
-    const live::Bench* bench = key.run.empty() ? nullptr : laboratory_.bench(key.bench);
+    const network::Bench* bench = key.run.empty() ? nullptr : laboratory_.bench(key.bench);
     return !key.run.empty() && (bench == nullptr || find_run(*bench, key.run) == nullptr);
   });
 }
@@ -115,7 +115,7 @@ Text StateCache::laboratory() {
 
 Text StateCache::bench(const std::string& name) {
   const std::lock_guard lock(mutex_);
-  const live::Bench* bench = laboratory_.bench(name);
+  const network::Bench* bench = laboratory_.bench(name);
   if (bench == nullptr) {
     return nullptr;
   }
@@ -129,8 +129,8 @@ Text StateCache::bench(const std::string& name) {
 Text StateCache::results(const std::string& name, const std::string& run_name,
                          const AddFiles& add_files) {
   const std::lock_guard lock(mutex_);
-  const live::Bench* bench = laboratory_.bench(name);
-  const live::Run* run = bench == nullptr ? nullptr : find_run(*bench, run_name);
+  const network::Bench* bench = laboratory_.bench(name);
+  const network::Run* run = bench == nullptr ? nullptr : find_run(*bench, run_name);
   if (run == nullptr) {
     return nullptr;
   }
@@ -151,10 +151,10 @@ Text StateCache::results(const std::string& name, const std::string& run_name,
 }
 
 Text StateCache::figures(const std::string& name, const std::string& run_name,
-                         const std::string& channel, services::figures::ErrorBars error_bars) {
+                         const std::string& channel, dyncal::figures::ErrorBars error_bars) {
   const std::lock_guard lock(mutex_);
-  const live::Bench* bench = laboratory_.bench(name);
-  const live::Run* run = bench == nullptr ? nullptr : find_run(*bench, run_name);
+  const network::Bench* bench = laboratory_.bench(name);
+  const network::Run* run = bench == nullptr ? nullptr : find_run(*bench, run_name);
   if (run == nullptr) {
     return nullptr;
   }
@@ -166,8 +166,7 @@ Text StateCache::figures(const std::string& name, const std::string& run_name,
     return made->text;
   }
   Json pictures = Json::array();
-  for (const services::figures::Figure& figure :
-       live::run_figures(name, *run, channel, error_bars)) {
+  for (const dyncal::figures::Figure& figure : live::run_figures(name, *run, channel, error_bars)) {
     pictures.push_back(picture_json(figure));
   }
   if (pictures.empty()) {
@@ -190,9 +189,9 @@ std::uint64_t StateCache::number() const {
 
 std::uint64_t StateCache::results_number(const std::string& name) const {
   const std::lock_guard lock(mutex_);
-  const live::Bench* bench = laboratory_.bench(name);
-  const live::Run* run = bench == nullptr ? nullptr : bench->current_run();
+  const network::Bench* bench = laboratory_.bench(name);
+  const network::Run* run = bench == nullptr ? nullptr : bench->current_run();
   return run == nullptr ? 0 : run->results_number; // a new run has another
 }
 
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

@@ -24,7 +24,7 @@
 #include "services/network/laboratory.hpp"
 #include "services/views/figures/transfer_function.hpp"
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 
 using Text = std::shared_ptr<const std::string>;
 
@@ -64,7 +64,7 @@ public:
                              const AddFiles& add_files);
   // The pictures of one channel of that run; null also: it has no result of this channel.
   [[nodiscard]] Text figures(const std::string& bench, const std::string& run,
-                             const std::string& channel, services::figures::ErrorBars error_bars);
+                             const std::string& channel, dyncal::figures::ErrorBars error_bars);
   // Of the laboratory, or of the results of the current run of a bench.
   [[nodiscard]] std::uint64_t number() const;
   [[nodiscard]] std::uint64_t results_number(const std::string& bench) const;
@@ -102,9 +102,9 @@ private:
   [[nodiscard]] std::size_t bytes() const;
 
   mutable std::mutex mutex_;
-  live::Laboratory laboratory_;
+  network::Laboratory laboratory_;
   AddDaemon add_daemon_;
   std::map<TextKey, Made> texts_;
 };
 
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

@@ -17,7 +17,7 @@
 #include "services/records/store/store.hpp"
 #include "services/views/signals/signal_tap.hpp"
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 namespace {
 
 constexpr const char* all_benches = "*";
@@ -69,7 +69,7 @@ struct WebService::Parts {
   const ProgramIdentity& identity = daemon.identity();
   WebOptions options;
   std::shared_ptr<bus::WakeUp> wake_up = std::make_shared<bus::WakeUp>();
-  std::optional<live::LaboratoryReaders> readers;
+  std::optional<network::LaboratoryReaders> readers;
   StateCache cache;
   RunFiles files;
   RequestRouter router;
@@ -109,8 +109,8 @@ void WebService::Parts::report() {
     const auto reason = static_cast<Refusal>(i);
     figures.refused.emplace_back(to_string(reason), router.refusals().of(reason));
   }
-  cache.look([&](const live::Laboratory& laboratory) {
-    const live::LeftOut& out = laboratory.left_out();
+  cache.look([&](const network::Laboratory& laboratory) {
+    const network::LeftOut& out = laboratory.left_out();
     figures.benches = laboratory.benches().size();
     figures.left_out = out.benches + out.sources + out.services + out.runs + out.results;
   });
@@ -133,8 +133,8 @@ Expected<std::unique_ptr<WebService>> WebService::create(Daemon& daemon,
   }
   auto parts = std::make_unique<Parts>(daemon, options, std::move(actions));
   DYNCAL_TRY(auto readers,
-             live::LaboratoryReaders::open(parts->participant, all_benches, parts->identity,
-                                           parts->clock, parts->wake_up));
+             network::LaboratoryReaders::open(parts->participant, all_benches, parts->identity,
+                                              parts->clock, parts->wake_up));
   parts->readers.emplace(std::move(readers));
   return std::unique_ptr<WebService>(new WebService(std::move(parts)));
 }
@@ -156,7 +156,7 @@ Expected<void> WebService::serve() {
   spdlog::info("web ready ({}), page at http://{}/", parts.identity.dds, address);
   while (!stop.stop_requested()) {
     parts.clock.wait(*parts.wake_up, parts.clock.now() + max_wait);
-    parts.cache.change([&](live::Laboratory& laboratory) { parts.readers->work(laboratory); });
+    parts.cache.change([&](network::Laboratory& laboratory) { parts.readers->work(laboratory); });
     parts.report();
     parts.daemon.turned();
   }
@@ -164,4 +164,4 @@ Expected<void> WebService::serve() {
   return {};
 }
 
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

@@ -14,7 +14,7 @@
 #include "services/base/error.hpp"
 #include "services/daemon/program/daemon.hpp"
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 
 struct WebOptions {
   drivers::Address listen{"127.0.0.1", 8080}; // port 0: any free one
@@ -46,4 +46,4 @@ private:
   std::unique_ptr<Parts> parts_;
 };
 
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

@@ -9,10 +9,10 @@
 #include "services/contract/source_kind.hpp"
 #include "services/records/capture/recorded_topics.hpp"
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 namespace {
 
-using services::Expected;
+using base::Expected;
 
 constexpr std::chrono::milliseconds request_write_limit{50}; // it is repeated
 // Answers to the ARM command reach everybody about when the run begins.
@@ -63,7 +63,7 @@ BenchIntake::BenchIntake(bus::Participant& participant, bus::Clock& clock, std::
                          std::string run, std::shared_ptr<bus::WakeUp> wake_up, Sink sink)
     : participant_(participant), clock_(clock), bench_(std::move(bench)), only_run_(std::move(run)),
       reads_results_of_bench_(only_run_.empty()),
-      asker_(fmt::format("recorder/{:016x}", services::random_session())),
+      asker_(fmt::format("recorder/{:016x}", contract::random_session())),
       wake_up_(std::move(wake_up)), sink_(std::move(sink)) {}
 
 Expected<std::unique_ptr<BenchIntake>>
@@ -200,7 +200,7 @@ void BenchIntake::look_at(const wire::Measurement& measurement) {
 
 void BenchIntake::look_at(const wire::SourceDescription& description) {
   source(description.source().to_string()).channel =
-      &channel_of(services::sample_topic(services::from_wire(description.kind())));
+      &channel_of(contract::sample_topic(contract::from_wire(description.kind())));
 }
 
 void BenchIntake::look_at(const wire::ServiceStatus& status) {
@@ -252,7 +252,7 @@ bool BenchIntake::catches_up() const {
 Expected<void> BenchIntake::open_answer_readers() {
   auto blocks = participant_.reader(bus::topics::catch_up_samples, asker_, wake_up_);
   auto records = participant_.reader(bus::topics::catch_up_records, asker_, wake_up_);
-  if (const auto error = services::first_error(blocks, records)) {
+  if (const auto error = base::first_error(blocks, records)) {
     return fail(*error);
   }
   answers_.emplace(AnswerReaders{std::move(*blocks), std::move(*records)});
@@ -315,4 +315,4 @@ std::uint64_t BenchIntake::recovered() const {
   return recovered;
 }
 
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

@@ -25,7 +25,7 @@
 #include "services/records/capture/source_gaps.hpp"
 #include "services/records/mcap/mcap_record.hpp"
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 
 struct TakenMessage {
   const Channel& channel;
@@ -41,7 +41,7 @@ public:
   };
 
   // `participant` and `clock` outlive the object. Fails (network) as readers do.
-  [[nodiscard]] static services::Expected<std::unique_ptr<BenchIntake>>
+  [[nodiscard]] static base::Expected<std::unique_ptr<BenchIntake>>
   open(bus::Participant& participant, bus::Clock& clock, std::string bench, std::string run,
        std::shared_ptr<bus::WakeUp> wake_up, Sink sink);
   BenchIntake(const BenchIntake&) = delete;
@@ -51,7 +51,7 @@ public:
   void take();
   // Asks sources for what is missing, and reads where the analysis writes. Fails (network) as
   // readers do.
-  [[nodiscard]] services::Expected<void> ask();
+  [[nodiscard]] base::Expected<void> ask();
 
   // By source, as metadata "dyncal.losses" has it.
   [[nodiscard]] TextMap losses() const;
@@ -90,10 +90,10 @@ private:
 
   BenchIntake(bus::Participant& participant, bus::Clock& clock, std::string bench, std::string run,
               std::shared_ptr<bus::WakeUp> wake_up, Sink sink);
-  [[nodiscard]] services::Expected<void> open_readers();
+  [[nodiscard]] base::Expected<void> open_readers();
   template <class T>
-  [[nodiscard]] services::Expected<void> open_reader(const bus::Topic<T>& topic);
-  [[nodiscard]] services::Expected<void> read_results_of_bench();
+  [[nodiscard]] base::Expected<void> open_reader(const bus::Topic<T>& topic);
+  [[nodiscard]] base::Expected<void> read_results_of_bench();
   template <class T>
   void take(const Channel& channel, const T& message, std::string_view bytes);
   template <class T>
@@ -106,7 +106,7 @@ private:
   [[nodiscard]] Source& source(const std::string& name);
   void ask_for_beginnings(Instant now);
   [[nodiscard]] bool beginnings_are_asked_for() const;
-  [[nodiscard]] services::Expected<void> open_answer_readers();
+  [[nodiscard]] base::Expected<void> open_answer_readers();
 
   bus::Participant& participant_;
   bus::Clock& clock_;
@@ -126,4 +126,4 @@ private:
   std::map<std::uint16_t, std::uint32_t> counts_; // of messages without a number, by channel
 };
 
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

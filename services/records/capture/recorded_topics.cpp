@@ -4,7 +4,7 @@
 
 #include "services/records/mcap/text_crc.hpp"
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 namespace {
 
 template <class T>
@@ -56,4 +56,4 @@ const Channel& channel_of(std::string_view topic) {
   return first_with_name(recorded_channels(), topic, &Channel::topic);
 }
 
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

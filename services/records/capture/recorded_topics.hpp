@@ -16,7 +16,7 @@
 #include "services/contract/topics.hpp"
 #include "services/records/mcap/mcap_record.hpp"
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 
 // The contract, idl/dyncal.idl.
 [[nodiscard]] std::string_view idl_text();
@@ -87,4 +87,4 @@ template <class T>
 inline constexpr bool is_of_source =
     std::is_same_v<T, wire::SampleBlock> || std::is_same_v<T, wire::TriggeredRecord>;
 
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

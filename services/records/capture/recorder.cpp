@@ -16,11 +16,11 @@
 #include "services/records/capture/recorded_topics.hpp"
 #include "services/records/capture/recording_thread.hpp"
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 namespace {
 
 using namespace std::chrono_literals;
-using services::Expected;
+using base::Expected;
 using Instant = bus::Clock::Instant;
 
 constexpr std::size_t chunk_bytes = std::size_t{1} << 20U;
@@ -31,7 +31,7 @@ constexpr auto status_write_limit = 50ms; // it is repeated
 
 Metadata beginning_of(const RecorderOptions& options, std::int64_t now_ns) {
   return {"dyncal.recording",
-          {{"software", services::software_version()},
+          {{"software", base::software_version()},
            {"dds", options.dds},
            {"domain", fmt::format("{}", options.domain)},
            {"host", bus::host_name()},
@@ -39,7 +39,7 @@ Metadata beginning_of(const RecorderOptions& options, std::int64_t now_ns) {
            {"run", options.run},
            {"began_utc_ns", fmt::format("{}", now_ns)},
            {"contract_version", fmt::format("{}", wire::CONTRACT_VERSION)},
-           {"idl_sha256", services::sha256_hex(idl_text())}}};
+           {"idl_sha256", contract::sha256_hex(idl_text())}}};
 }
 
 } // namespace
@@ -175,7 +175,7 @@ private:
                         ? fmt::format("{}: {} messages could not be stored: the disk is too slow",
                                       options_.path.string(), now.not_stored)
                         : "");
-    message.software(services::software_version());
+    message.software(base::software_version());
     message.dds(options_.dds);
     message.host(bus::host_name());
     message.process_id(static_cast<std::uint32_t>(::getpid()));
@@ -213,7 +213,7 @@ Recorder::~Recorder() = default;
 Expected<std::unique_ptr<Recorder>> Recorder::start(bus::Participant& participant,
                                                     RecorderOptions options) {
   DYNCAL_TRY(auto writer,
-             RecordingWriter::create(options.path, {.library = services::software_version(),
+             RecordingWriter::create(options.path, {.library = base::software_version(),
                                                     .schemas = recorded_schemas(),
                                                     .channels = recorded_channels(),
                                                     .compression = options.compression}));
@@ -235,4 +235,4 @@ Expected<RecorderStatus> Recorder::stop() {
   return work_->stop();
 }
 
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

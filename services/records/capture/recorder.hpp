@@ -25,7 +25,7 @@
 #include "services/bus/bus.hpp"
 #include "services/records/mcap/chunk_codec.hpp"
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 
 struct RecorderOptions {
   std::filesystem::path path; // of the file, which must not be there yet
@@ -54,7 +54,7 @@ struct RecorderStatus {
 class Recorder {
 public:
   // `participant` outlives the object.
-  [[nodiscard]] static services::Expected<std::unique_ptr<Recorder>>
+  [[nodiscard]] static base::Expected<std::unique_ptr<Recorder>>
   start(bus::Participant& participant, RecorderOptions options);
   ~Recorder(); // stops
   Recorder(const Recorder&) = delete;
@@ -64,7 +64,7 @@ public:
   [[nodiscard]] const std::filesystem::path& path() const;
   // Stores what has come, and ends the file in order. Fails (bad_file) when that was not possible;
   // what counts as stored is stored all the same.
-  services::Expected<RecorderStatus> stop();
+  base::Expected<RecorderStatus> stop();
 
 private:
   class Work;
@@ -74,4 +74,4 @@ private:
   std::unique_ptr<Work> work_;
 };
 
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

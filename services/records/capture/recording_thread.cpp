@@ -6,10 +6,10 @@
 #include <fmt/core.h>
 #include <spdlog/spdlog.h>
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 namespace {
 
-using services::Expected;
+using base::Expected;
 using std::chrono::steady_clock;
 
 constexpr std::chrono::seconds synchronise_interval{1};
@@ -162,4 +162,4 @@ void RecordingThread::end(std::string problem) {
   figures_.file_bytes = writer_.bytes();
 }
 
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

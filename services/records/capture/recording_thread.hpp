@@ -18,7 +18,7 @@
 
 #include "services/records/mcap/recording_writer.hpp"
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 
 struct RecordingFigures {
   std::uint64_t stored = 0;     // messages that are in the file
@@ -45,7 +45,7 @@ public:
   // What is to stand in the file as its losses when it ends; the newest counts.
   void note_losses(Metadata losses);
   // Writes what is queued and ends the file. Fails (bad_file) when the file has no end in order.
-  services::Expected<void> close();
+  base::Expected<void> close();
 
   [[nodiscard]] RecordingFigures figures() const;
 
@@ -70,8 +70,8 @@ private:
   bool closed_ = false;
   Metadata losses_;
   RecordingFigures figures_;
-  services::Expected<void> outcome_;
+  base::Expected<void> outcome_;
   std::jthread thread_; // the last member: it ends before what it uses
 };
 
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

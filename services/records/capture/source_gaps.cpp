@@ -5,7 +5,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 namespace {
 
 constexpr std::size_t max_waiting = 16; // requests; an answer goes up to the newest message
@@ -112,4 +112,4 @@ std::uint64_t SourceGaps::missing() const {
   return missing;
 }
 
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

@@ -18,7 +18,7 @@
 
 #include "services/bus/clock.hpp"
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 
 class SourceGaps {
 public:
@@ -78,4 +78,4 @@ private:
   std::uint64_t recovered_ = 0;
 };
 
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

@@ -6,7 +6,7 @@
 #include "services/base/output_stream.hpp"
 #include "services/records/exchange/row_formats.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 // A field of a line; quoted where it would be taken for several.
@@ -84,4 +84,4 @@ Expected<void> export_csv(const RowExport& wanted) {
   });
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

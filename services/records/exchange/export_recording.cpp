@@ -8,7 +8,7 @@
 #include "services/records/exchange/opened_recording.hpp"
 #include "services/records/exchange/row_formats.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 Expected<void> write(const ExportOptions& wish, const ExportedRecording& recording,
@@ -83,4 +83,4 @@ Expected<ExportedFigures> export_recording(const ExportOptions& wish,
   });
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

@@ -12,7 +12,7 @@
 
 #include "services/records/exchange/exported_recording.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 enum class ExportFormat { hdf5, npz, csv, mcap_rows };
 
@@ -46,4 +46,4 @@ struct ExportedFigures {
 [[nodiscard]] Expected<ExportedFigures> export_recording(const ExportOptions& wish,
                                                          const ExportProgress& progress);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

@@ -10,7 +10,7 @@
 #include "services/records/capture/recorded_topics.hpp"
 #include "services/records/replay/recorded_messages.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 std::vector<std::string> names_of(const std::vector<drivers::ChannelDescription>& channels) {
@@ -284,4 +284,4 @@ std::uint64_t ExportedRecording::samples() const {
   return samples;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

@@ -20,7 +20,7 @@
 #include "services/base/error.hpp"
 #include "services/records/replay/recording_index.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 // What goes on meanwhile: a share of 0 to 1 is done; false: stop.
 using ExportProgress = std::function<bool(double share)>;
@@ -92,4 +92,4 @@ private:
 [[nodiscard]] bool is_usable(const wire::SampleBlock& block, std::size_t channels);
 [[nodiscard]] bool is_usable(const wire::TriggeredRecord& record, std::size_t channels);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

@@ -13,7 +13,7 @@
 #include "services/records/capture/recorded_topics.hpp"
 #include "services/views/report/json_number.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -187,4 +187,4 @@ std::string contents_json(const ExportedRecording& recording, const ExportedRuns
   return json_text(json, 2) + "\n";
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

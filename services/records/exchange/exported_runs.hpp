@@ -8,7 +8,7 @@
 
 #include "services/records/exchange/exported_recording.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 struct ExportedRuns {
   std::vector<wire::Excitation> excitations;    // the newest of every step and attempt
@@ -26,4 +26,4 @@ struct ExportedRuns {
 [[nodiscard]] std::string contents_json(const ExportedRecording& recording,
                                         const ExportedRuns& runs);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

@@ -10,7 +10,7 @@
 #include "services/base/version.hpp"
 #include "services/records/exchange/hdf5_samples.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 std::vector<std::string> run_names(const RecordingContents& contents) {
@@ -199,11 +199,11 @@ Expected<void> export_hdf5(const ExportedRecording& recording, const ExportedRun
   return output.finish();
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records
 
 #else
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 Expected<void> export_hdf5(const ExportedRecording& /*recording*/, const ExportedRuns& /*runs*/,
                            const std::filesystem::path& to, const ExportProgress& /*progress*/) {
@@ -212,6 +212,6 @@ Expected<void> export_hdf5(const ExportedRecording& /*recording*/, const Exporte
                             "mcap-rows");
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records
 
 #endif

@@ -11,10 +11,10 @@
 #include "services/records/exchange/exported_recording.hpp"
 #include "services/records/exchange/exported_runs.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 [[nodiscard]] Expected<void> export_hdf5(const ExportedRecording& recording,
                                          const ExportedRuns& runs, const std::filesystem::path& to,
                                          const ExportProgress& progress);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

@@ -11,7 +11,7 @@
 #include "services/base/version.hpp"
 #include "services/contract/source_block.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 constexpr std::size_t max_buffered = 65536; // columns
@@ -244,6 +244,6 @@ bool Hdf5Samples::flush() {
   return written;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records
 
 #endif

@@ -11,7 +11,7 @@
 #include "services/records/exchange/exported_recording.hpp"
 #include "services/records/exchange/hdf5_writing.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 // Channels that become the rows of one dataset, as the receiver's hierarchy has them:
 // acceleration_x, _y, _z of one unit are "Acceleration".
@@ -73,4 +73,4 @@ private:
   std::vector<Hdf5Shot> shots_waiting_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

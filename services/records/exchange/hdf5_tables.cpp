@@ -5,7 +5,7 @@
 #include <initializer_list>
 #include <type_traits>
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 template <class Number>
@@ -78,6 +78,6 @@ Hdf5Handle hdf5_type<Hdf5Result>() {
 
 #undef DYNCAL_MEMBER
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records
 
 #endif

@@ -7,7 +7,7 @@
 
 #include "drivers/files/hdf5_library.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 using drivers::files::Hdf5Handle;
 
@@ -64,4 +64,4 @@ struct Hdf5Result {
 template <class T>
 [[nodiscard]] Hdf5Handle hdf5_type();
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

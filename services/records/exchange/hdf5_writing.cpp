@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 constexpr hsize_t chunk_columns = 8192;
@@ -145,6 +145,6 @@ bool Hdf5List::append(const void* elements, std::uint64_t count) {
          H5Dwrite(dataset_.id(), type_.id(), memory.id(), space.id(), H5P_DEFAULT, elements) >= 0;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records
 
 #endif

@@ -13,7 +13,7 @@
 
 #include "services/records/exchange/hdf5_tables.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 [[nodiscard]] Hdf5Handle make_group(hid_t place, const std::string& name);
 [[nodiscard]] bool write_text(hid_t object, const char* name, const std::string& text);
@@ -58,4 +58,4 @@ private:
   std::uint64_t size_ = 0;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

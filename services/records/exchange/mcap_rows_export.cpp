@@ -14,7 +14,7 @@
 #include "services/records/mcap/recording_writer.hpp"
 #include "services/records/mcap/text_crc.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 constexpr std::size_t chunk_bytes = std::size_t{1} << 20U;
@@ -170,4 +170,4 @@ Expected<void> export_mcap_rows(const RowExport& wanted) {
   return done;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

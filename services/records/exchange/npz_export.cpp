@@ -7,7 +7,7 @@
 #include "services/records/exchange/row_formats.hpp"
 #include "services/records/exchange/zip_file.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "rows are written as they lie in memory");
@@ -81,4 +81,4 @@ Expected<void> export_npz(const RowExport& wanted) {
       .and_then([&] { return file.finish(); });
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

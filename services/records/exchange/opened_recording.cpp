@@ -7,7 +7,7 @@
 #include "services/records/capture/recorded_topics.hpp"
 #include "services/records/exchange/temporary_recording.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 // recording.mcap, recording-2.mcap, ... as far as they are there.
@@ -95,4 +95,4 @@ Expected<OpenedRecording> open_recording(const std::filesystem::path& path,
       });
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

@@ -13,7 +13,7 @@
 #include "services/base/work_count.hpp"
 #include "services/records/mcap/recording_reader.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 struct OpenedRecording {
   recording::RecordingReader reader;
@@ -29,4 +29,4 @@ struct OpenedRecording {
                                                        const SharedWorkCount& count = nullptr,
                                                        const std::stop_token& stop = {});
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

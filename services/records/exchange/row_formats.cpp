@@ -1,6 +1,6 @@
 #include "services/records/exchange/row_formats.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 RowProgress::RowProgress(const RowExport& wanted) : progress_(wanted.progress) {
   for (const RowTable& table : wanted.tables) {
@@ -19,4 +19,4 @@ Expected<void> RowProgress::for_each(const RowTable& table,
   });
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

@@ -16,7 +16,7 @@
 
 #include "services/records/exchange/row_table.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 struct RowExport {
   const std::vector<RowTable>& tables;
@@ -43,4 +43,4 @@ private:
   std::uint64_t done_ = 0;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

@@ -10,7 +10,7 @@
 
 #include "services/contract/source_block.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 const ColumnValues times = std::vector<std::int64_t>{};
@@ -152,4 +152,4 @@ Expected<std::vector<RowTable>> row_tables(const ExportedRecording& recording,
   return tables;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

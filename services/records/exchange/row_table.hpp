@@ -16,7 +16,7 @@
 
 #include "services/records/exchange/exported_recording.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 using ColumnValues =
     std::variant<std::vector<std::int64_t>, std::vector<std::uint64_t>, std::vector<double>>;
@@ -63,4 +63,4 @@ private:
 [[nodiscard]] Expected<std::vector<RowTable>> row_tables(const ExportedRecording& recording,
                                                          const std::vector<std::string>& channels);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

@@ -8,7 +8,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 constexpr std::size_t chunk_bytes = std::size_t{1} << 20U;
@@ -72,4 +72,4 @@ Expected<recording::RecordingReader> TemporaryRecording::read(const std::filesys
   return recording::RecordingReader::read(std::move(file), name);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

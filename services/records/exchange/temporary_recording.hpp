@@ -10,7 +10,7 @@
 #include "services/records/mcap/recording_reader.hpp"
 #include "services/records/mcap/recording_writer.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 class TemporaryRecording {
 public:
@@ -37,4 +37,4 @@ private:
   recording::Chunk chunk_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

@@ -2,7 +2,7 @@
 
 #include "services/records/mcap/mcap_record.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 using recording::append_number; // little-endian, as ZIP has it
@@ -126,4 +126,4 @@ Expected<void> ZipFile::finish() {
   return file_.write(directory).and_then([&] { return file_.finish(); });
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

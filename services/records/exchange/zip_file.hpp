@@ -13,7 +13,7 @@
 
 #include "services/base/output_stream.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 class ZipFile {
 public:
@@ -42,4 +42,4 @@ private:
   std::vector<Entry> entries_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

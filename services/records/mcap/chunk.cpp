@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string_view>
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 
 void Chunk::add(const Channel& channel, const Message& message) {
   const std::size_t begin = records_.size();
@@ -19,4 +19,4 @@ void Chunk::add(const Channel& channel, const Message& message) {
   ++messages_;
 }
 
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

@@ -12,7 +12,7 @@
 
 #include "services/records/mcap/mcap_record.hpp"
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 
 class Chunk {
 public:
@@ -40,4 +40,4 @@ private:
   std::uint64_t last_time_ = 0;
 };
 
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

@@ -11,11 +11,11 @@
 #include <zstd.h>
 #endif
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 namespace {
 
-using services::ErrorCode;
-using services::Expected;
+using base::ErrorCode;
+using base::Expected;
 
 #ifdef DYNCAL_HAVE_LZ4
 Expected<std::string> uncompress_lz4(std::string_view bytes, std::uint64_t size) {
@@ -132,4 +132,4 @@ Expected<std::string> uncompress(std::string_view bytes, const std::string& comp
               fmt::format("its compression '{}' is not known to this build", compression));
 }
 
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

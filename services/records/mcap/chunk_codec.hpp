@@ -10,12 +10,12 @@
 
 #include "services/base/error.hpp"
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 
 enum class Compression { none, zstd };
 
 // "none" or "zstd". Fails (bad_argument) on another name, and on zstd where the build has none.
-[[nodiscard]] services::Expected<Compression> parse_compression(const std::string& name);
+[[nodiscard]] base::Expected<Compression> parse_compression(const std::string& name);
 // As the file spells it: "" or "zstd".
 [[nodiscard]] const char* to_string(Compression compression);
 
@@ -30,7 +30,7 @@ inline constexpr std::uint64_t max_record_bytes = 2 * max_chunk_bytes; // longer
 [[nodiscard]] bool knows_compression(const std::string& compression);
 
 // Fails (bad_file) with a part of a sentence: what is wrong with the bytes.
-[[nodiscard]] services::Expected<std::string>
+[[nodiscard]] base::Expected<std::string>
 uncompress(std::string_view bytes, const std::string& compression, std::uint64_t size);
 
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

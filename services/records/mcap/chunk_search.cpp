@@ -4,9 +4,9 @@
 
 #include "services/records/mcap/chunk_codec.hpp"
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 
-using services::Expected;
+using base::Expected;
 
 namespace {
 
@@ -51,4 +51,4 @@ Expected<bool> ChunkSearch::is_whole(std::uint64_t offset) {
   return whole;
 }
 
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

@@ -11,27 +11,27 @@
 
 #include "services/records/mcap/recording_reader.hpp"
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 
 class ChunkSearch {
 public:
   static constexpr int max_failed_candidates = 100;
   static constexpr std::uint64_t window_bytes = std::uint64_t{1} << 20U;
   // Of so many bytes of the file that are behind; a failure stops the search.
-  using WalkTo = std::function<services::Expected<void>(std::uint64_t)>;
+  using WalkTo = std::function<base::Expected<void>(std::uint64_t)>;
 
   // `reader` outlives the object.
   explicit ChunkSearch(const RecordingReader& reader) : reader_(reader) {}
 
   // Where the first one from `offset` on begins; nothing: there is none.
-  [[nodiscard]] services::Expected<std::optional<std::uint64_t>> next(std::uint64_t offset,
-                                                                      const WalkTo& walk_to);
+  [[nodiscard]] base::Expected<std::optional<std::uint64_t>> next(std::uint64_t offset,
+                                                                  const WalkTo& walk_to);
 
 private:
-  [[nodiscard]] services::Expected<bool> is_whole(std::uint64_t offset);
+  [[nodiscard]] base::Expected<bool> is_whole(std::uint64_t offset);
 
   const RecordingReader& reader_;
   int failed_candidates_ = 0;
 };
 
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

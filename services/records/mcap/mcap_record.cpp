@@ -4,7 +4,7 @@
 
 #include <zlib.h>
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 namespace {
 
 void append_text(std::string& out, std::string_view text) {
@@ -368,4 +368,4 @@ std::optional<Footer> parse_footer(std::string_view content) {
   return if_fits(fields, footer);
 }
 
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

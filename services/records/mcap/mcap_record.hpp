@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 
 enum class Opcode : std::uint8_t {
   header = 0x01,
@@ -168,4 +168,4 @@ void append_footer(std::string& out, const Footer& footer);
 [[nodiscard]] std::optional<Metadata> parse_metadata(std::string_view content);
 [[nodiscard]] std::optional<Footer> parse_footer(std::string_view content);
 
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

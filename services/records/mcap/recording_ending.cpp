@@ -4,9 +4,9 @@
 
 #include "services/records/mcap/chunk_codec.hpp"
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 
-using services::Expected;
+using base::Expected;
 
 namespace {
 
@@ -56,4 +56,4 @@ Expected<Ending> ending_behind(const RecordingReader& reader, std::uint64_t begi
   return judge_ending(text, begin);
 }
 
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

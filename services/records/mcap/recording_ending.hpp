@@ -7,12 +7,12 @@
 
 #include "services/records/mcap/recording_reader.hpp"
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 
 enum class Ending { damaged, without_summary, with_summary };
 
 // `begin`: behind DataEnd.
-[[nodiscard]] services::Expected<Ending> ending_behind(const RecordingReader& reader,
-                                                       std::uint64_t begin);
+[[nodiscard]] base::Expected<Ending> ending_behind(const RecordingReader& reader,
+                                                   std::uint64_t begin);
 
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

@@ -12,11 +12,11 @@
 
 #include "services/records/mcap/mcap_record.hpp"
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 namespace {
 
-using services::ErrorCode;
-using services::Expected;
+using base::ErrorCode;
+using base::Expected;
 
 constexpr mode_t for_everybody = 0666; // less what the umask takes
 constexpr std::uint64_t page = 4096;
@@ -51,7 +51,7 @@ void synchronise_folder(const std::filesystem::path& path) {
 
 } // namespace
 
-tl::unexpected<services::Error> RecordingFile::not_written(int cause) const {
+tl::unexpected<base::Error> RecordingFile::not_written(int cause) const {
   return fail(ErrorCode::bad_file,
               fmt::format("{}: cannot be written ({}); choose another folder or make room",
                           path_.string(), std::strerror(cause)));
@@ -192,4 +192,4 @@ std::uint64_t RecordingFile::free_bytes() const {
              : 0;
 }
 
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

@@ -20,23 +20,23 @@
 #include "drivers/link/file_descriptor.hpp"
 #include "services/base/error.hpp"
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 
 class RecordingFile {
 public:
   // `beginning`: magic and header. The file takes its name when it is whole; fails when one of this
   // name is there.
-  [[nodiscard]] static services::Expected<RecordingFile> create(const std::filesystem::path& path,
-                                                                std::string_view beginning);
+  [[nodiscard]] static base::Expected<RecordingFile> create(const std::filesystem::path& path,
+                                                            std::string_view beginning);
 
   // Whole records in one piece or several, the first with at least a record's head. `crc`: of all
   // their bytes.
-  [[nodiscard]] services::Expected<void> append(std::span<const std::string_view> parts,
-                                                std::uint32_t crc);
+  [[nodiscard]] base::Expected<void> append(std::span<const std::string_view> parts,
+                                            std::uint32_t crc);
   // DataEnd, summary, Footer and magic; then everything is on the disk.
-  [[nodiscard]] services::Expected<void> finish(std::string_view ending);
+  [[nodiscard]] base::Expected<void> finish(std::string_view ending);
   // Returns when everything so far is on the disk.
-  [[nodiscard]] services::Expected<void> synchronise();
+  [[nodiscard]] base::Expected<void> synchronise();
 
   // Where the next record will stand: so many bytes are sound.
   [[nodiscard]] std::uint64_t end() const { return end_; }
@@ -49,11 +49,11 @@ public:
 private:
   RecordingFile(std::filesystem::path path, drivers::FileDescriptor file)
       : path_(std::move(path)), file_(std::move(file)) {}
-  [[nodiscard]] services::Expected<void> begin(std::string_view beginning);
-  [[nodiscard]] services::Expected<void> take_name(const std::filesystem::path& unfinished);
-  [[nodiscard]] services::Expected<void> extend(std::uint64_t needed);
-  [[nodiscard]] services::Expected<void> write(std::string_view bytes, std::uint64_t offset) const;
-  [[nodiscard]] tl::unexpected<services::Error> not_written(int cause) const;
+  [[nodiscard]] base::Expected<void> begin(std::string_view beginning);
+  [[nodiscard]] base::Expected<void> take_name(const std::filesystem::path& unfinished);
+  [[nodiscard]] base::Expected<void> extend(std::uint64_t needed);
+  [[nodiscard]] base::Expected<void> write(std::string_view bytes, std::uint64_t offset) const;
+  [[nodiscard]] tl::unexpected<base::Error> not_written(int cause) const;
 
   std::filesystem::path path_;
   drivers::FileDescriptor file_;
@@ -62,4 +62,4 @@ private:
   std::uint32_t crc_ = 0;
 };
 
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

@@ -11,10 +11,10 @@
 #include "services/records/mcap/chunk_codec.hpp"
 #include "services/records/mcap/scan.hpp"
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 
-using services::ErrorCode;
-using services::Expected;
+using base::ErrorCode;
+using base::Expected;
 
 std::string to_string(const Damage& damage, const std::filesystem::path& path) {
   return fmt::format("{}: at byte {} ({} bytes): {}", path.string(), damage.offset, damage.bytes,
@@ -113,4 +113,4 @@ Expected<ScanReport> RecordingReader::scan(const ScanEvents& events) {
   return Scan(*this, events).run();
 }
 
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

@@ -23,7 +23,7 @@
 #include "services/base/error.hpp"
 #include "services/records/mcap/mcap_record.hpp"
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 
 struct Damage {
   std::uint64_t offset = 0; // in the file
@@ -70,21 +70,20 @@ struct ScanReport {
 
 class RecordingReader {
 public:
-  [[nodiscard]] static services::Expected<RecordingReader> open(const std::filesystem::path& path);
+  [[nodiscard]] static base::Expected<RecordingReader> open(const std::filesystem::path& path);
   // Of a file that is open; `name` is for messages.
-  [[nodiscard]] static services::Expected<RecordingReader> read(drivers::FileDescriptor file,
-                                                                std::filesystem::path name);
+  [[nodiscard]] static base::Expected<RecordingReader> read(drivers::FileDescriptor file,
+                                                            std::filesystem::path name);
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   [[nodiscard]] std::uint64_t size_bytes() const { return size_; }
-  [[nodiscard]] services::Expected<ScanReport> scan(const ScanEvents& events);
+  [[nodiscard]] base::Expected<ScanReport> scan(const ScanEvents& events);
   // The records of the chunk at this offset, with the CRC checked, or the message outside chunks
   // that is there. Fails (bad_file) with a part of a sentence: what is wrong with it.
-  [[nodiscard]] services::Expected<std::string> chunk_records(std::uint64_t offset) const;
+  [[nodiscard]] base::Expected<std::string> chunk_records(std::uint64_t offset) const;
 
   // Exactly these, which the file has. Fails (bad_file) when they cannot be read.
-  [[nodiscard]] services::Expected<std::string> bytes(std::uint64_t offset,
-                                                      std::uint64_t count) const;
+  [[nodiscard]] base::Expected<std::string> bytes(std::uint64_t offset, std::uint64_t count) const;
 
 private:
   RecordingReader(std::filesystem::path path, drivers::FileDescriptor file, std::uint64_t size)
@@ -95,4 +94,4 @@ private:
   std::uint64_t size_ = 0;
 };
 
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

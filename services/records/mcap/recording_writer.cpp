@@ -5,10 +5,10 @@
 
 #include "services/records/mcap/text_crc.hpp"
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 namespace {
 
-using services::Expected;
+using base::Expected;
 
 template <class Record>
 const Record& by_id(const std::vector<Record>& records, std::uint16_t id) {
@@ -186,4 +186,4 @@ Expected<void> RecordingWriter::close() {
   return file_.finish(ending());
 }
 
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

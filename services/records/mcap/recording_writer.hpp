@@ -21,7 +21,7 @@
 #include "services/records/mcap/chunk_codec.hpp"
 #include "services/records/mcap/recording_file.hpp"
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 
 struct WriterOptions {
   std::string library; // name and version of the program
@@ -32,16 +32,16 @@ struct WriterOptions {
 
 class RecordingWriter {
 public:
-  [[nodiscard]] static services::Expected<RecordingWriter> create(const std::filesystem::path& path,
-                                                                  WriterOptions options);
+  [[nodiscard]] static base::Expected<RecordingWriter> create(const std::filesystem::path& path,
+                                                              WriterOptions options);
 
   // With its own CRC as entry "crc32", for the format has none.
-  [[nodiscard]] services::Expected<void> add_metadata(Metadata metadata);
-  [[nodiscard]] services::Expected<void> add_attachment(const Attachment& attachment);
+  [[nodiscard]] base::Expected<void> add_metadata(Metadata metadata);
+  [[nodiscard]] base::Expected<void> add_attachment(const Attachment& attachment);
   // REQUIRES: messages, of channels of the options.
-  [[nodiscard]] services::Expected<void> add_chunk(const Chunk& chunk);
-  [[nodiscard]] services::Expected<void> synchronise() { return file_.synchronise(); }
-  [[nodiscard]] services::Expected<void> close();
+  [[nodiscard]] base::Expected<void> add_chunk(const Chunk& chunk);
+  [[nodiscard]] base::Expected<void> synchronise() { return file_.synchronise(); }
+  [[nodiscard]] base::Expected<void> close();
 
   [[nodiscard]] std::uint64_t messages() const { return statistics_.messages; }
   [[nodiscard]] std::uint64_t bytes() const { return file_.end(); }
@@ -51,8 +51,8 @@ public:
 private:
   RecordingWriter(RecordingFile file, WriterOptions options)
       : file_(std::move(file)), options_(std::move(options)) {}
-  [[nodiscard]] services::Expected<void> append(const std::string& record);
-  [[nodiscard]] services::Expected<void> add_channels(const Chunk& chunk);
+  [[nodiscard]] base::Expected<void> append(const std::string& record);
+  [[nodiscard]] base::Expected<void> add_channels(const Chunk& chunk);
   void note_chunk(const Chunk& chunk, ChunkIndex index);
   [[nodiscard]] std::string ending() const;
 
@@ -66,4 +66,4 @@ private:
   std::string metadata_indexes_;
 };
 
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

@@ -9,10 +9,10 @@
 #include "services/base/output_stream.hpp"
 #include "services/records/mcap/recording_writer.hpp"
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 namespace {
 
-using services::Expected;
+using base::Expected;
 
 // The schemas and channels that messages need; of a channel that was changed in the file, the one
 // that stands in chunks.
@@ -106,9 +106,7 @@ public:
   Unfinished& operator=(const Unfinished&) = delete;
 
   [[nodiscard]] const std::filesystem::path& path() const { return unfinished_; }
-  [[nodiscard]] Expected<void> finish() const {
-    return services::take_output_name(unfinished_, path_);
-  }
+  [[nodiscard]] Expected<void> finish() const { return base::take_output_name(unfinished_, path_); }
 
 private:
   void remove() const {
@@ -124,10 +122,10 @@ private:
 
 Expected<ScanReport> repair(const std::filesystem::path& path,
                             const std::filesystem::path& repaired, const std::string& library,
-                            const services::SharedWorkCount& count) {
+                            const base::SharedWorkCount& count) {
   DYNCAL_TRY(auto reader, RecordingReader::open(path));
-  DYNCAL_TRY(services::check_new_output(repaired));
-  services::ByteCount read(count, "reading", reader.size_bytes());
+  DYNCAL_TRY(base::check_new_output(repaired));
+  base::ByteCount read(count, "reading", reader.size_bytes());
   Definitions definitions;
   auto report =
       reader.scan({.message = [&](const MessageInFile& message) { definitions.add(message); },
@@ -144,7 +142,7 @@ Expected<ScanReport> repair(const std::filesystem::path& path,
   const Unfinished file(repaired);
   DYNCAL_TRY(auto writer, RecordingWriter::create(file.path(), definitions.options(library)));
   Copy copy(writer, definitions);
-  services::ByteCount copied_bytes(count, "copying", reader.size_bytes());
+  base::ByteCount copied_bytes(count, "copying", reader.size_bytes());
   const auto copied =
       reader.scan({.message = [&](const MessageInFile& message) { copy.add(message); },
                    .attachment = [&](const Attachment& attachment) { copy.add(attachment); },
@@ -164,4 +162,4 @@ Expected<ScanReport> repair(const std::filesystem::path& path,
   return report;
 }
 
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

@@ -13,11 +13,12 @@
 #include "services/base/work_count.hpp"
 #include "services/records/mcap/recording_reader.hpp"
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 
 // Returns what was found in the old file. `count`: of its megabytes, read and then copied.
-[[nodiscard]] services::Expected<ScanReport>
-repair(const std::filesystem::path& path, const std::filesystem::path& repaired,
-       const std::string& library, const services::SharedWorkCount& count = nullptr);
+[[nodiscard]] base::Expected<ScanReport> repair(const std::filesystem::path& path,
+                                                const std::filesystem::path& repaired,
+                                                const std::string& library,
+                                                const base::SharedWorkCount& count = nullptr);
 
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

@@ -6,9 +6,9 @@
 #include "services/records/mcap/recording_ending.hpp"
 #include "services/records/mcap/text_crc.hpp"
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 
-using services::Expected;
+using base::Expected;
 
 namespace {
 
@@ -50,7 +50,7 @@ Expected<void> Scan::walk_to(std::uint64_t offset) const {
   if (!events_.walked || events_.walked(offset)) {
     return {};
   }
-  return fail(services::ErrorCode::interrupted,
+  return fail(base::ErrorCode::interrupted,
               fmt::format("{}: interrupted while it was read", reader_.path().string()));
 }
 
@@ -311,4 +311,4 @@ Expected<void> Scan::go_on_behind(std::uint64_t offset) {
   return {};
 }
 
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

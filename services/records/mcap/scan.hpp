@@ -8,20 +8,20 @@
 #include "services/records/mcap/chunk_search.hpp"
 #include "services/records/mcap/recording_reader.hpp"
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 
 class Scan {
 public:
   Scan(const RecordingReader& reader, const ScanEvents& events)
       : reader_(reader), events_(events), chunks_(reader) {}
 
-  [[nodiscard]] services::Expected<ScanReport> run();
+  [[nodiscard]] base::Expected<ScanReport> run();
 
 private:
   // What a record turned out to be.
   enum class Finding { sound, damaged, unreadable };
 
-  [[nodiscard]] services::Expected<bool> step(); // false: at the end
+  [[nodiscard]] base::Expected<bool> step(); // false: at the end
   [[nodiscard]] Finding take(Opcode opcode, const std::string& content);
   [[nodiscard]] Finding take_loose_message(std::string_view content);
   [[nodiscard]] Finding take_definition(Opcode opcode, std::string_view content);
@@ -30,10 +30,10 @@ private:
   void take_channel(Channel channel, bool has_crc);
   void take_message(std::string_view content, std::uint64_t position);
   void check_schema(const Channel& channel);
-  [[nodiscard]] services::Expected<void> take_end(std::uint32_t crc, std::uint64_t begin);
-  [[nodiscard]] services::Expected<void> go_on_behind(std::uint64_t offset);
+  [[nodiscard]] base::Expected<void> take_end(std::uint32_t crc, std::uint64_t begin);
+  [[nodiscard]] base::Expected<void> go_on_behind(std::uint64_t offset);
   // Fails (interrupted) if a stop was requested.
-  [[nodiscard]] services::Expected<void> walk_to(std::uint64_t offset) const;
+  [[nodiscard]] base::Expected<void> walk_to(std::uint64_t offset) const;
   void damage(std::uint64_t offset, std::uint64_t bytes, std::string what);
 
   const RecordingReader& reader_;
@@ -51,4 +51,4 @@ private:
   std::set<std::uint16_t> checked_; // channels whose schema was checked
 };
 
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

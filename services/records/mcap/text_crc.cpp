@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 
 std::string metadata_crc(const Metadata& metadata) {
   Metadata others = metadata;
@@ -18,4 +18,4 @@ std::string schema_crc(const Schema& schema) {
   return fmt::format("{:08x}", crc32_of(record));
 }
 
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

@@ -8,7 +8,7 @@
 
 #include "services/records/mcap/mcap_record.hpp"
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 
 inline constexpr const char* metadata_crc_key = "crc32";
 inline constexpr const char* schema_crc_key = "dyncal.schema_crc32";
@@ -17,4 +17,4 @@ inline constexpr const char* schema_crc_key = "dyncal.schema_crc32";
 [[nodiscard]] std::string metadata_crc(const Metadata& metadata);
 [[nodiscard]] std::string schema_crc(const Schema& schema);
 
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

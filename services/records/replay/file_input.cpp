@@ -8,7 +8,7 @@
 #include "services/instruments/played_source.hpp"
 #include "services/instruments/stream_settings.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 constexpr std::uint64_t session = 1; // a file is one session; nothing depends on its number
@@ -25,7 +25,7 @@ RingEntry entry_of(drivers::SampleBlock block) {
 
 Expected<std::unique_ptr<drivers::SampleSource>> driver_of(const SourceSettings& settings) {
   if (const auto* sensor = settings.as<CanSourceSettings>(); sensor && !sensor->log.empty()) {
-    return std::make_unique<drivers::can::LogPlayer>(can::stream_settings(settings), sensor->dbc,
+    return std::make_unique<drivers::can::LogPlayer>(stream_settings(settings), sensor->dbc,
                                                      sensor->log, sensor->interface_name);
   }
   if (!settings.is<FileSourceSettings>()) {
@@ -36,7 +36,7 @@ Expected<std::unique_ptr<drivers::SampleSource>> driver_of(const SourceSettings&
   }
   SourceSettings at_once = settings;
   std::get<FileSourceSettings>(at_once.driver).play_speed = 0.0;
-  return acs::make_driver(at_once);
+  return make_driver(at_once);
 }
 
 } // namespace
@@ -103,4 +103,4 @@ void FileInput::note_time(const SourceBlock& block) {
   }
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

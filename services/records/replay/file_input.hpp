@@ -19,7 +19,7 @@
 #include "services/contract/source_block.hpp"
 #include "services/stream/block_ring.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 // The next samples of a file, or the end of its stream without any.
 struct FileBlock {
@@ -71,4 +71,4 @@ private:
   std::jthread thread_;          // the last member: it ends before what it uses
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 Expected<recording::Message> RecordedMessages::at(const RecordedPlace& place) {
   if (!records_ || chunk_ != place.chunk) {
@@ -14,4 +14,4 @@ Expected<recording::Message> RecordedMessages::at(const RecordedPlace& place) {
   return *recording::parse_message(records.substr(place.position + recording::head_bytes, length));
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

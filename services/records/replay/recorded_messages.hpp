@@ -11,7 +11,7 @@
 #include "services/records/mcap/recording_reader.hpp"
 #include "services/records/replay/recording_index.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 class RecordedMessages {
 public:
@@ -27,4 +27,4 @@ private:
   std::uint64_t chunk_ = 0;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

@@ -13,7 +13,7 @@
 #include "services/records/replay/recorded_run_feed.hpp"
 #include "services/records/replay/recording_index.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 // At once, one a processor; each holds the samples of its step.
@@ -145,4 +145,4 @@ Expected<RecordedRunOutcome> evaluate_recording(recording::RecordingReader& read
   return result;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

@@ -23,7 +23,7 @@
 #include "services/evaluation/result/run_outcome.hpp"
 #include "services/records/mcap/recording_reader.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 struct RecordedRunOptions {
   std::string run;              // empty: the one that is there
@@ -43,4 +43,4 @@ struct RecordedRunOutcome {
                                                               const RecordedRunOptions& wish,
                                                               const std::stop_token& stop);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

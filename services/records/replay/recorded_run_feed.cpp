@@ -16,7 +16,7 @@
 #include "services/evaluation/result/transfer_function_message.hpp"
 #include "services/records/capture/recorded_topics.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 namespace topics = bus::topics;
@@ -253,4 +253,4 @@ void RecordedRunFeed::hand_over_waiting(const std::string& name, Source& source,
   }
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

@@ -26,7 +26,7 @@
 #include "services/records/replay/recording_index.hpp"
 #include "services/records/replay/waiting_announcements.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 class RecordedRunFeed {
 public:
@@ -84,4 +84,4 @@ private:
   Expected<void> outcome_of_walk_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

@@ -10,7 +10,7 @@
 #include "services/evaluation/result/run_pause.hpp"
 #include "services/records/capture/recorded_topics.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 // Everything that the first walk gathers, of all runs.
@@ -233,4 +233,4 @@ Expected<RecordedRunIndex> index_recording(recording::RecordingReader& reader,
   return index;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

@@ -26,7 +26,7 @@
 #include "services/evaluation/result/run_outcome.hpp"
 #include "services/records/mcap/recording_reader.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 // Where a message is in the file.
 struct RecordedPlace {
@@ -90,4 +90,4 @@ struct RecordingContents {
                                                          const SharedWorkCount& count = nullptr,
                                                          const std::stop_token& stop = {});
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

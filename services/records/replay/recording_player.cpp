@@ -11,7 +11,7 @@
 #include "services/bus/clock.hpp"
 #include "services/records/capture/recorded_topics.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 constexpr std::chrono::seconds listening_time{3}; // a state is repeated at least every 2 s
@@ -254,4 +254,4 @@ Expected<ReplayFigures> RecordingPlayer::play(const std::stop_token& stop) {
   return figures;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

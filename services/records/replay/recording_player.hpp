@@ -21,7 +21,7 @@
 #include "services/bus/bus.hpp"
 #include "services/records/mcap/recording_reader.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 struct ReplayOptions {
   std::filesystem::path recording;
@@ -56,4 +56,4 @@ private:
   recording::RecordingReader reader_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

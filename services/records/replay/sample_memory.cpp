@@ -6,7 +6,7 @@
 #include <memory>
 #include <sys/mman.h>
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 void keep_memory_for_samples() {
 #ifdef __GLIBC__
@@ -26,4 +26,4 @@ void keep_memory_for_samples() {
 #endif
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

@@ -5,7 +5,7 @@
 #include "drivers/files/file_source.hpp"
 #include "services/base/byte_count.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 class Collector : public drivers::SampleSink {
@@ -98,4 +98,4 @@ Expected<SeriesFile> read_series_file(const std::filesystem::path& path,
   return collector.series();
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

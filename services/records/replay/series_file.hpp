@@ -12,7 +12,7 @@
 #include "services/base/error.hpp"
 #include "services/base/work_count.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 struct SeriesFile {
   std::vector<std::string> names;
@@ -32,4 +32,4 @@ struct SeriesFile {
 read_series_file(const std::filesystem::path& path, const SharedWorkCount& count = nullptr,
                  std::optional<double> nominal_rate_hz = std::nullopt);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

@@ -14,7 +14,7 @@
 #include "services/evaluation/record/shot_record.hpp"
 #include "services/instruments/series_channels.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 constexpr std::uint64_t session = 1; // files are one session; nothing depends on its number
@@ -80,7 +80,7 @@ Expected<drivers::tss::Series> read_file(const std::filesystem::path& path,
   if (!series) {
     return bad_file(path, series.error().message);
   }
-  auto selected = dso::select_channels(std::move(*series), source.channels, wanted);
+  auto selected = select_channels(std::move(*series), source.channels, wanted);
   return selected ? std::move(selected) : bad_file(path, selected.error().message);
 }
 
@@ -152,4 +152,4 @@ Expected<ShotFiles> read_shot_files(const BenchFile& bench, const std::string& n
   return result;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

@@ -16,7 +16,7 @@
 #include "services/bench/file/bench_file.hpp"
 #include "services/contract/triggered_record.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 struct ShotFiles {
   drivers::SourceDescription description;
@@ -26,4 +26,4 @@ struct ShotFiles {
 // Of the source `name`: the oscilloscope's, or the sensor's, by its role in [method].
 [[nodiscard]] Expected<ShotFiles> read_shot_files(const BenchFile& bench, const std::string& name);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 void WaitingAnnouncements::reach(const std::string& source, std::uint64_t place,
                                  std::int64_t sent_ns, bool is_ended) {
@@ -29,4 +29,4 @@ bool WaitingAnnouncements::counts(const Instant& recorded) const {
   });
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

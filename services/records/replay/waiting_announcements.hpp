@@ -21,7 +21,7 @@
 #include "idl/dyncal.h"
 #include "services/evaluation/record/excitation_progress.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 class WaitingAnnouncements {
 public:
@@ -60,4 +60,4 @@ private:
   std::deque<Waiting> waiting_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

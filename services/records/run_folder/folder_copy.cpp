@@ -13,7 +13,7 @@
 #include "services/base/output_file.hpp"
 #include "services/bench/file/named_files.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 namespace fs = std::filesystem;
@@ -94,4 +94,4 @@ std::uint64_t bytes_of_bench(const BenchFile& bench) {
   return bytes;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

@@ -11,7 +11,7 @@
 #include "services/base/error.hpp"
 #include "services/bench/file/bench_file.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 [[nodiscard]] Expected<void> copy_bench(const BenchFile& bench,
                                         const std::filesystem::path& folder);
@@ -19,4 +19,4 @@ namespace dyncal::services {
 // What copy_bench() will write.
 [[nodiscard]] std::uint64_t bytes_of_bench(const BenchFile& bench);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

@@ -8,7 +8,7 @@
 #include "services/views/report/result_json.hpp"
 #include "services/views/report/show_outcome.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 constexpr const char* not_ended = "the run has not ended, or its program ended before it";
@@ -96,4 +96,4 @@ Expected<void> ResultKeeper::finish(const RunOutcome& outcome) {
   return written;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

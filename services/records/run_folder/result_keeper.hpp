@@ -19,7 +19,7 @@
 #include "services/base/error.hpp"
 #include "services/evaluation/result/run_outcome.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 class ResultKeeper {
 public:
@@ -54,4 +54,4 @@ private:
   std::jthread thread_; // the last member: it ends before what it uses
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

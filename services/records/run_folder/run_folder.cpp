@@ -23,7 +23,7 @@
 #include "services/records/run_folder/folder_copy.hpp"
 #include "services/views/report/run_figures.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 namespace fs = std::filesystem;
@@ -226,4 +226,4 @@ bool is_in_use(const std::filesystem::path& run_folder) {
   return folder.is_open() && ::flock(folder.number(), LOCK_SH | LOCK_NB) != 0;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

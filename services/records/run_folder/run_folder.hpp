@@ -21,7 +21,7 @@
 #include "services/records/run_folder/result_keeper.hpp"
 #include "services/records/run_folder/space_estimate.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 class RunFolder {
 public:
@@ -74,4 +74,4 @@ private:
 // Whether a program that conducts the run has the folder open now.
 [[nodiscard]] bool is_in_use(const std::filesystem::path& run_folder);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

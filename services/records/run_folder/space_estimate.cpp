@@ -6,7 +6,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 constexpr double unknown_rate_hz = 10'000.0;
@@ -85,4 +85,4 @@ std::string size_text(std::uint64_t bytes) {
                      : fmt::format("{:.0f} kB", size * 1e-3);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

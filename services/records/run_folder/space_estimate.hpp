@@ -17,7 +17,7 @@
 #include "services/bench/file/bench_file.hpp"
 #include "services/evaluation/result/run_outcome.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 struct SpaceEstimate {
   std::uint64_t recording_bytes = 0;
@@ -35,4 +35,4 @@ struct SpaceEstimate {
 // "1.3 GB"
 [[nodiscard]] std::string size_text(std::uint64_t bytes);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

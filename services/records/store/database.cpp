@@ -4,7 +4,7 @@
 #include <limits>
 #include <regex>
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 Expected<void> Database::transaction(const std::function<Expected<void>()>& write) {
   DYNCAL_TRY(begin_writing());
@@ -48,4 +48,4 @@ double number_of(const DatabaseValue& value) {
   return number != nullptr ? *number : std::numeric_limits<double>::quiet_NaN();
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

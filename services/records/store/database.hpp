@@ -17,7 +17,7 @@
 
 #include "services/base/error.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 using DatabaseValue = std::variant<std::monostate, std::int64_t, double, std::string>;
 using DatabaseRow = std::vector<DatabaseValue>;
@@ -59,4 +59,4 @@ private:
 [[nodiscard]] std::int64_t integer_of(const DatabaseValue& value);
 [[nodiscard]] double number_of(const DatabaseValue& value);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

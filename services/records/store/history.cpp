@@ -7,7 +7,7 @@
 
 #include "services/views/report/result_file.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 bool is_usable(const StoredValue& point) {
@@ -85,4 +85,4 @@ History history_of(std::string sensor, std::vector<Calibration> calibrations,
   return history;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

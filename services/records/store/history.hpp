@@ -17,7 +17,7 @@
 
 #include "services/records/store/store.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 struct HistoryValue {
   std::size_t calibration = 0; // index into History::calibrations
@@ -48,4 +48,4 @@ struct History {
                                  const std::string& channel = "",
                                  std::optional<double> frequency_hz = {});
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 using Change = std::vector<std::string>; // statements
@@ -77,4 +77,4 @@ Expected<void> migrate(Database& database, int version) {
   });
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

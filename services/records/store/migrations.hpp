@@ -8,11 +8,11 @@
 #include "services/base/error.hpp"
 #include "services/records/store/database.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 [[nodiscard]] int newest_store_version();
 
 // Brings the database to `version`; does nothing when it is there already.
 [[nodiscard]] Expected<void> migrate(Database& database, int version = newest_store_version());
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

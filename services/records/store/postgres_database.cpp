@@ -14,7 +14,7 @@
 #include "services/records/store/socket_deadline.hpp"
 #endif
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 #ifdef DYNCAL_HAVE_PQXX
 namespace {
@@ -180,4 +180,4 @@ Expected<std::unique_ptr<Database>> open_postgres(const std::string& place) {
 
 #endif
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

@@ -2,7 +2,7 @@
 
 #include <set>
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 // Of an evaluation of files, without a network (result.schema.json).
@@ -64,4 +64,4 @@ Expected<ResultRecord> read_result_record(const std::filesystem::path& path) {
   return record;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

@@ -12,7 +12,7 @@
 #include "services/base/error.hpp"
 #include "services/views/report/stored_result.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 enum class RunCompletion {
   complete,    // every planned step has a value
@@ -33,4 +33,4 @@ struct ResultRecord {
 
 [[nodiscard]] Expected<ResultRecord> read_result_record(const std::filesystem::path& path);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

@@ -5,7 +5,7 @@
 
 #include <sys/socket.h>
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 SocketDeadline::SocketDeadline(int socket, std::chrono::milliseconds limit)
     : watch_([this, socket, limit](const std::stop_token& stop) {
@@ -19,4 +19,4 @@ SocketDeadline::SocketDeadline(int socket, std::chrono::milliseconds limit)
         }
       }) {}
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

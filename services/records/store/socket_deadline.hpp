@@ -9,7 +9,7 @@
 #include <chrono>
 #include <thread>
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 class SocketDeadline {
 public:
@@ -22,4 +22,4 @@ private:
   std::jthread watch_; // the last member: it uses the others
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

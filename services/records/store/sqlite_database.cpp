@@ -6,7 +6,7 @@
 
 #include "services/records/store/database.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 constexpr int patience_ms = 10'000; // with another program that writes
@@ -116,4 +116,4 @@ Expected<std::unique_ptr<Database>> open_sqlite(const std::string& path) {
   return database;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

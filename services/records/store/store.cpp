@@ -10,7 +10,7 @@
 
 #include "services/records/store/migrations.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 // What `dyncal analyse` calls a run of files: the name says nothing, the time of the records does.
@@ -309,4 +309,4 @@ Expected<std::vector<Calibration>> Store::calibrations(const std::string& sensor
   return calibrations;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

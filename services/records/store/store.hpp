@@ -20,7 +20,7 @@
 #include "services/records/store/database.hpp"
 #include "services/records/store/result_record.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 // `option`: what the user gave, a place as is_server() knows it; "none": no store, returned as "";
 // "": dyncal.sqlite in the folder of all runs.
@@ -90,4 +90,4 @@ private:
   std::unique_ptr<Database> database_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

@@ -15,7 +15,7 @@
 #include "services/views/certificate/ratio_unit.hpp"
 #include "services/views/report/stated_value.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 tl::unexpected<Error> missing(const std::filesystem::path& file, const std::string& what,
@@ -246,4 +246,4 @@ Expected<CertificateContents> gather_certificate(const CertificateRequest& reque
   return contents;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

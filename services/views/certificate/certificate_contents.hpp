@@ -15,7 +15,7 @@
 #include "services/views/lab_file/sensor_file.hpp"
 #include "services/views/report/stored_result.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 struct CertificateRequest {
   std::filesystem::path run; // a run folder or a result file
@@ -59,4 +59,4 @@ struct CertificateContents {
 [[nodiscard]] Expected<std::vector<CertifiedChannel>>
 certified_channels(const StoredResult& result, const std::vector<std::string>& channels);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

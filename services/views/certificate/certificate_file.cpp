@@ -6,7 +6,7 @@
 #include "services/views/certificate/dcc.hpp"
 #include "services/views/certificate/schema.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 Expected<void> check_name(const std::filesystem::path& output) {
@@ -53,4 +53,4 @@ Expected<CertificateContents> write_certificate(const CertificateFileRequest& re
   return contents;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

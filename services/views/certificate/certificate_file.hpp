@@ -12,7 +12,7 @@
 #include "services/views/certificate/certificate_contents.hpp"
 #include "services/views/certificate/signature.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 struct CertificateFileRequest {
   CertificateRequest certificate;
@@ -25,4 +25,4 @@ struct CertificateFileRequest {
 [[nodiscard]] Expected<CertificateContents>
 write_certificate(const CertificateFileRequest& request);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 std::string single_line(std::string_view text, std::string_view otherwise) {
   std::string line;
@@ -48,4 +48,4 @@ XmlDocument dcc_of(const CertificateContents& contents) {
   return document;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -9,7 +9,7 @@
 #include "services/views/certificate/certificate_contents.hpp"
 #include "services/views/certificate/xml_document.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 [[nodiscard]] XmlDocument dcc_of(const CertificateContents& contents);
 
@@ -28,4 +28,4 @@ void add_contact(XmlElement contact, const Contact& from);
 // Single-spaced and never empty: what dcc:notEmptyStringType takes.
 [[nodiscard]] std::string single_line(std::string_view text, std::string_view otherwise = "-");
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

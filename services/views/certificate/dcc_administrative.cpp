@@ -4,7 +4,7 @@
 #include "services/views/certificate/dcc.hpp"
 #include "services/views/report/stated_value.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 // "dyncal 0.2.0 (1a2b3c4)": name and release.
@@ -150,4 +150,4 @@ void add_administrative_data(XmlElement root, const CertificateContents& content
   add_statements(data, contents);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -10,7 +10,7 @@
 #include "services/views/lab_file/embedded_picture.hpp"
 #include "services/views/report/stated_value.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 constexpr double kelvin_at_0_degc = 273.15;
@@ -254,4 +254,4 @@ void add_measurement_results(XmlElement root, const CertificateContents& content
   add_all_meta_data(result, contents);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

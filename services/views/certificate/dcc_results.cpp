@@ -7,7 +7,7 @@
 #include "services/views/certificate/dcc.hpp"
 #include "services/views/report/stated_value.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 using Values = std::vector<StoredValue>;
@@ -104,4 +104,4 @@ void add_results(XmlElement measurement_result, const std::vector<CertifiedChann
   }
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -2,7 +2,7 @@
 #include "services/views/certificate/certificate_file.hpp"
 #include "services/views/certificate/verification.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 tl::unexpected<Error> not_in_this_build() {
@@ -25,4 +25,4 @@ const char* to_string(Verification /*question*/) {
   return "certificate";
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

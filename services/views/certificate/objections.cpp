@@ -11,7 +11,7 @@
 #include "services/views/certificate/refusing_flags.hpp"
 #include "services/views/report/stated_value.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 // Which values have a flag, by its name; a flag of the whole channel stands at "all frequencies".
@@ -149,4 +149,4 @@ std::vector<std::string> stated_flags(const StoredResult& result,
   return sentences;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -9,7 +9,7 @@
 
 #include "services/views/report/stored_result.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 // Of these channels; none: the run may be certified.
 [[nodiscard]] std::vector<std::string> objections_to(const StoredResult& result,
@@ -19,4 +19,4 @@ namespace dyncal::services {
 [[nodiscard]] std::vector<std::string> stated_flags(const StoredResult& result,
                                                     const std::vector<std::string>& channels);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -4,7 +4,7 @@
 
 #include "services/contract/unit.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 constexpr std::string_view power = "\\tothe{";
@@ -58,4 +58,4 @@ std::optional<std::string> ratio_in_d_si(const std::string& unit) {
   return *input == "\\one" ? *output : (*output == "\\one" ? *inverse : *output + *inverse);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -5,9 +5,9 @@
 #include <optional>
 #include <string>
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 // \radian\second\tothe{-1}\metre\tothe{-1}\second\tothe{2}; nothing for what is not a unit.
 [[nodiscard]] std::optional<std::string> ratio_in_d_si(const std::string& unit);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

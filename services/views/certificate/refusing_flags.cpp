@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 struct Row {
@@ -98,4 +98,4 @@ FlagVerdict verdict_on(ResultFlag flag) {
   return {row.forbids, row.reason};
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

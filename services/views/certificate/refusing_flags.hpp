@@ -9,7 +9,7 @@
 
 #include "services/evaluation/result/result_flag.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 struct FlagVerdict {
   bool forbids = true;
@@ -18,4 +18,4 @@ struct FlagVerdict {
 
 [[nodiscard]] FlagVerdict verdict_on(ResultFlag flag);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -6,7 +6,7 @@
 
 #include "services/daemon/program/child_process.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 // The folder that libxml2 may open files of; empty: none.
@@ -109,4 +109,4 @@ Expected<void> DccSchema::validate(const XmlDocument& document, const std::strin
   return {};
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -15,7 +15,7 @@
 
 struct _xmlSchema; // NOLINT(readability-identifier-naming): of libxml2
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 class DccSchema {
 public:
@@ -37,4 +37,4 @@ private:
 // share/dyncal/dcc/v3.3.0/dcc.xsd beside the folder of the running program.
 [[nodiscard]] std::filesystem::path installed_schema();
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -20,7 +20,7 @@
 
 #include "services/views/certificate/x509_certificates.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 constexpr int min_rsa_bits = 2048;
@@ -371,4 +371,4 @@ tl::expected<void, SignatureFailure> check_signer(const XmlDocument& document,
   return {};
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -17,7 +17,7 @@
 #include "services/base/error.hpp"
 #include "services/views/certificate/xml_document.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 struct SigningKey {
   std::filesystem::path key;         // PEM; a password is asked for on the terminal
@@ -52,4 +52,4 @@ struct Signer {
 check_signer(const XmlDocument& document, const std::filesystem::path& trusted,
              const std::string& day_of_issue);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

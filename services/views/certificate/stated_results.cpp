@@ -5,7 +5,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 std::vector<std::string> items_of(const std::string& text) {
@@ -133,4 +133,4 @@ std::size_t count_of_values(const StatedResults& results) {
   return count;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

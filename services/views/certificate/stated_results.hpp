@@ -9,7 +9,7 @@
 
 #include "services/views/certificate/xml_document.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 // One si:realListXMLList: its lists by the names of their elements ("valueXMLList"), each in items.
 using StatedList = std::map<std::string, std::vector<std::string>>;
@@ -31,4 +31,4 @@ using StatedResults = std::map<std::string, std::vector<StatedQuantity>>;
 
 [[nodiscard]] std::size_t count_of_values(const StatedResults& results);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

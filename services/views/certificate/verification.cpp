@@ -12,7 +12,7 @@
 #include "services/views/certificate/stated_results.hpp"
 #include "services/views/report/stored_result.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 constexpr std::uintmax_t max_certificate_bytes = 64U << 20U;
@@ -176,4 +176,4 @@ Expected<std::vector<Finding>> verify(const VerificationRequest& request) {
   return findings;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

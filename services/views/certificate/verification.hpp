@@ -11,7 +11,7 @@
 
 #include "services/base/error.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 // The exit status of `dyncal verify` is that of the first failure.
 enum class Verification {
@@ -42,4 +42,4 @@ struct VerificationRequest {
 // For people: "schema".
 [[nodiscard]] const char* to_string(Verification question);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

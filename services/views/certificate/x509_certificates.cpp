@@ -8,7 +8,7 @@
 
 #include "services/base/whole_file.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 constexpr std::uintmax_t max_pem_bytes = 1U << 20U;
@@ -101,4 +101,4 @@ std::string end_of_validity(const X509* certificate) {
   return fmt::format("{:04}-{:02}-{:02}", end.tm_year + 1900, end.tm_mon + 1, end.tm_mday);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

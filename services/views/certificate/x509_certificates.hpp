@@ -12,7 +12,7 @@
 #include "services/base/error.hpp"
 #include "services/views/certificate/xml_document.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 struct FreeOpenSsl {
   void operator()(X509* certificate) const { X509_free(certificate); }
@@ -40,4 +40,4 @@ read_private_key(const std::filesystem::path& path);
 [[nodiscard]] std::string name_text(const X509_NAME* name);
 [[nodiscard]] std::string end_of_validity(const X509* certificate);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -9,7 +9,7 @@
 
 #include "services/views/figures/markup.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 constexpr std::size_t max_document_bytes = 64U << 20U;
@@ -225,4 +225,4 @@ std::string XmlDocument::text() const {
   return text;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -19,7 +19,7 @@
 struct _xmlDoc;  // NOLINT(readability-identifier-naming)
 struct _xmlNode; // NOLINT(readability-identifier-naming)
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 inline constexpr const char* dcc_namespace = "https://ptb.de/dcc";
 inline constexpr const char* si_namespace = "https://ptb.de/si";
@@ -75,4 +75,4 @@ private:
   std::unique_ptr<_xmlDoc, Free> document_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

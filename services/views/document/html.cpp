@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 std::string element(std::string_view name, std::string_view text, std::string_view css_class) {
   return css_class.empty()
@@ -53,4 +53,4 @@ std::string DefinitionTable::finish() const {
   return body_.empty() ? "" : "<table class=\"facts\"><tbody>\n" + body_ + "</tbody></table>\n";
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -8,7 +8,7 @@
 
 #include "services/views/figures/markup.hpp" // escaped(), for those who compose HTML
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 // "<h2>text</h2>" and the like, with its text escaped.
 [[nodiscard]] std::string element(std::string_view name, std::string_view text,
@@ -44,4 +44,4 @@ private:
   std::string body_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -14,7 +14,7 @@
 #include "services/base/whole_file.hpp"
 #include "services/daemon/program/child_process.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 constexpr std::chrono::minutes patience{2};
@@ -106,4 +106,4 @@ Expected<std::string> make_pdf(std::string_view html) {
   return pdf;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

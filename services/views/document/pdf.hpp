@@ -11,9 +11,9 @@
 
 #include "services/base/error.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 // The bytes of the PDF.
 [[nodiscard]] Expected<std::string> make_pdf(std::string_view html);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -9,7 +9,7 @@
 #include "services/views/lab_file/sensor_file.hpp"
 #include "services/views/report/stored_result.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 struct ReportContents {
   StoredResult result;
@@ -22,4 +22,4 @@ struct ReportContents {
   std::string software;                  // that makes the report
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -14,7 +14,7 @@
 #include "services/views/document/report_setup.hpp"
 #include "services/views/document/report_style.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 std::string today() {
@@ -148,4 +148,4 @@ std::string report_html(const ReportContents& contents) {
                      body_of(contents));
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -18,7 +18,7 @@
 #include "services/base/error.hpp"
 #include "services/views/document/report_contents.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 struct ReportRequest {
   std::filesystem::path run;         // a run folder or a result file
@@ -32,4 +32,4 @@ struct ReportRequest {
 
 [[nodiscard]] std::string report_html(const ReportContents& contents);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

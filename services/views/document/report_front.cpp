@@ -8,7 +8,7 @@
 #include "services/views/document/html.hpp"
 #include "services/views/report/stated_value.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 std::vector<std::string> address_lines(const Contact& contact) {
@@ -219,4 +219,4 @@ std::string signatures(const ReportContents& contents) {
   return html + "</div>\n</section>\n";
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

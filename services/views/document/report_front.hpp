@@ -6,7 +6,7 @@
 
 #include "services/views/document/report_contents.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 [[nodiscard]] std::string letterhead(const ReportContents& contents);
 // What a reader must know before any number: a run that was broken off, values that are missing.
@@ -20,4 +20,4 @@ namespace dyncal::services {
 // "Physics laboratory, Musterstadt", or the bench without a laboratory file.
 [[nodiscard]] std::string issuer_of(const ReportContents& contents);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

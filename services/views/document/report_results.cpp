@@ -13,7 +13,7 @@
 #include "services/views/figures/deviation.hpp"
 #include "services/views/report/stated_value.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
@@ -340,4 +340,4 @@ std::string single_results(const ReportContents& contents) {
   return html;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

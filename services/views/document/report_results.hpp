@@ -6,7 +6,7 @@
 
 #include "services/views/document/report_contents.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 // Table, figure, group delay and budget of one channel; `figure` numbers the SVG of the document.
 [[nodiscard]] std::string channel_section(const ReportContents& contents,
@@ -16,4 +16,4 @@ namespace dyncal::services {
 [[nodiscard]] std::string flag_section(const ReportContents& contents);
 [[nodiscard]] std::string single_results(const ReportContents& contents);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -12,7 +12,7 @@
 #include "services/views/document/html.hpp"
 #include "services/views/report/stated_value.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 std::string with_uncertainty(const MeasuredCondition& condition, const std::string& unit) {
@@ -236,4 +236,4 @@ std::string recipe_section(const ReportContents& contents) {
              : "<h2>Annex: recipe (bench file)</h2>\n<pre>" + escaped(recipe) + "</pre>\n";
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

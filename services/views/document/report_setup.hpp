@@ -6,7 +6,7 @@
 
 #include "services/views/document/report_contents.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 [[nodiscard]] std::string conditions_section(const ReportContents& contents);
 [[nodiscard]] std::string losses_section(const ReportContents& contents);
@@ -15,4 +15,4 @@ namespace dyncal::services {
 [[nodiscard]] std::string software_section(const ReportContents& contents);
 [[nodiscard]] std::string recipe_section(const ReportContents& contents);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -1,6 +1,6 @@
 #include "services/views/document/report_style.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 constexpr std::string_view style = R"(
@@ -91,4 +91,4 @@ std::string_view report_style() {
   return style;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

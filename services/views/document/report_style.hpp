@@ -3,8 +3,8 @@
 
 #include <string_view>
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 [[nodiscard]] std::string_view report_style();
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

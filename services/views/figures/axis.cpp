@@ -6,7 +6,7 @@
 
 #include <fmt/core.h>
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 namespace {
 
 bool showable(Scale scale, double value) {
@@ -173,4 +173,4 @@ std::string power_of_ten(int exponent) {
   return result;
 }
 
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 
 enum class Scale { linear, logarithmic };
 
@@ -59,4 +59,4 @@ private:
 // "10⁻⁴"
 [[nodiscard]] std::string power_of_ten(int exponent);
 
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

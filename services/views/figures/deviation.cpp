@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 namespace {
 
 constexpr double percent = 100.0;
@@ -157,4 +157,4 @@ Figure deviation_figure(const TransferFunctionData& data, const std::string& nam
   return {name, std::move(picture), csv_of(data, deviations)};
 }
 
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

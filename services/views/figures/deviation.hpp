@@ -12,8 +12,8 @@
 
 #include "services/views/figures/transfer_function.hpp"
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 
 [[nodiscard]] Figure deviation_figure(const TransferFunctionData& data, const std::string& name);
 
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

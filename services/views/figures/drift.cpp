@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 namespace {
 
 constexpr std::size_t max_lines = 6;
@@ -88,4 +88,4 @@ Figure drift_figure(const DriftData& data, const std::string& name) {
   return {name, std::move(picture), csv_of(data)};
 }
 
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

@@ -8,7 +8,7 @@
 
 #include "services/views/figures/figure.hpp"
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 
 struct DriftValue {
   std::string run;
@@ -36,4 +36,4 @@ struct DriftData {
 
 [[nodiscard]] Figure drift_figure(const DriftData& data, const std::string& name);
 
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

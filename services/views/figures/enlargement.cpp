@@ -5,7 +5,7 @@
 #include <optional>
 #include <set>
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 namespace {
 
 constexpr std::size_t min_frequencies = 3;
@@ -88,4 +88,4 @@ void draw_enlargement(Svg& svg, const Panel& panel, const Box& area) {
         place->height - 34});
 }
 
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

@@ -4,10 +4,10 @@
 
 #include "services/views/figures/panel.hpp"
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 
 // Draws nothing where the lower half of a logarithmic x axis has too few points to be worth a
 // closer look, or every corner has points.
 void draw_enlargement(Svg& svg, const Panel& panel, const Box& area);
 
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

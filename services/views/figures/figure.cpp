@@ -6,7 +6,7 @@
 
 #include "services/base/output_file.hpp"
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 
 Expected<std::vector<std::filesystem::path>> write(const Figure& figure,
                                                    const std::filesystem::path& folder) {
@@ -30,4 +30,4 @@ std::string csv_number(double value) {
   return fmt::format("{:.17g}", value);
 }
 
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

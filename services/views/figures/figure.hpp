@@ -11,7 +11,7 @@
 #include "services/base/error.hpp"
 #include "services/views/figures/picture.hpp"
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 
 struct Figure {
   std::string name; // of the files, without their endings
@@ -31,4 +31,4 @@ write(const Figure& figure, const std::filesystem::path& folder);
 // 17 significant digits; "nan" and "inf" where a value is not finite.
 [[nodiscard]] std::string csv_number(double value);
 
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

@@ -9,7 +9,7 @@
 #include "services/views/figures/regular_intervals.hpp"
 #include "services/views/figures/sample_clock.hpp"
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 namespace {
 
 constexpr double panel_height = 330;
@@ -155,4 +155,4 @@ Figure interval_histogram_figure(const PictureTitle& title,
   return {name, std::move(picture), csv_of(title, clock)};
 }
 
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

@@ -6,7 +6,7 @@
 #include "services/views/figures/regular_intervals.hpp"
 #include "services/views/figures/sample_clock.hpp"
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 namespace {
 
 constexpr double panel_height = 360;
@@ -80,4 +80,4 @@ Figure interval_over_temperature_figure(const PictureTitle& title,
   return {name, std::move(picture), csv_of(title, clock)};
 }
 
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

@@ -7,7 +7,7 @@
 #include "services/views/figures/regular_intervals.hpp"
 #include "services/views/figures/sample_clock.hpp"
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 namespace {
 
 constexpr double panel_height = 230;
@@ -119,4 +119,4 @@ Figure interval_over_time_figure(const PictureTitle& title,
   return {name, std::move(picture), csv_of(title, clock)};
 }
 
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

@@ -4,7 +4,7 @@
 
 #include "services/base/printable_text.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 constexpr std::string_view replacement = "\xef\xbf\xbd"; // U+FFFD
@@ -56,4 +56,4 @@ std::string escaped(std::string_view text) {
   return result;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

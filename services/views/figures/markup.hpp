@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 // U+FFFD in place of bytes that are not UTF-8, of control characters but tab and line feed, which
 // XML does not allow or a terminal obeys, and of letters that turn the order of a line, which would
@@ -15,4 +15,4 @@ namespace dyncal::services {
 // becomes markup.
 [[nodiscard]] std::string escaped(std::string_view text);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 namespace {
 
 constexpr double percent = 100.0;
@@ -127,4 +127,4 @@ Figure model_residual_figure(const ModelResidualData& data, const std::string& n
   return {name, std::move(picture), csv_of(data)};
 }
 
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

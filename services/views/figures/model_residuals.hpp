@@ -11,7 +11,7 @@
 
 #include "services/views/figures/figure.hpp"
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 
 struct ModelResidual { // measured - model
   double frequency_hz = 0.0;
@@ -34,4 +34,4 @@ struct ModelResidualData {
 
 [[nodiscard]] Figure model_residual_figure(const ModelResidualData& data, const std::string& name);
 
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 namespace {
 
 const Stroke frame_stroke{.colour = "#444444", .width = 1};
@@ -319,4 +319,4 @@ Marker series_marker(std::size_t index) {
   return markers[index % markers.size()];
 }
 
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

@@ -12,7 +12,7 @@
 #include "services/views/figures/axis.hpp"
 #include "services/views/figures/svg.hpp"
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 
 struct Point {
   double x;
@@ -87,4 +87,4 @@ double draw_header(Svg& svg, const std::string& title, const std::string& subtit
 [[nodiscard]] std::string series_colour(std::size_t index);
 [[nodiscard]] Marker series_marker(std::size_t index);
 
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

@@ -4,7 +4,7 @@
 
 #include "services/views/figures/enlargement.hpp"
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 namespace {
 
 // Rooms of labels, and between panels.
@@ -78,4 +78,4 @@ std::string svg_of(const Picture& picture) {
   return svg.finish();
 }
 
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

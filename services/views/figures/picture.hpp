@@ -13,7 +13,7 @@
 
 #include "services/views/figures/panel.hpp"
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 
 struct PictureTitle {
   std::string title{};
@@ -31,4 +31,4 @@ struct Picture {
 
 [[nodiscard]] std::string svg_of(const Picture& picture);
 
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 
 RegularIntervals::RegularIntervals(std::vector<WeightedInterval> intervals) {
   std::erase_if(intervals,
@@ -27,4 +27,4 @@ bool RegularIntervals::contain(double interval_ns) const {
   return std::abs(interval_ns - median_ns_) <= 0.5 * std::abs(median_ns_);
 }
 
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 
 struct WeightedInterval {
   double interval_ns;
@@ -21,4 +21,4 @@ private:
   double median_ns_ = 0;
 };
 
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

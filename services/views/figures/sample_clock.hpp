@@ -12,7 +12,7 @@
 #include "analysis/clock/sample_clock.hpp"
 #include "services/views/figures/figure.hpp"
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 
 // Counts on a logarithmic axis; a bin is a whole number of ticks, so that the lattice of the stamps
 // makes no comb. The subtitle is that of the numbers.
@@ -31,4 +31,4 @@ namespace dyncal::services::figures {
                                                const analysis::SampleClockStatistics& clock,
                                                const std::string& name);
 
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

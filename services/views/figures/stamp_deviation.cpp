@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 namespace {
 
 constexpr double panel_height = 210;
@@ -98,4 +98,4 @@ Figure stamp_deviation_figure(const StampDeviationData& data, const std::string&
   return {name, std::move(picture), csv_of(data)};
 }
 
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

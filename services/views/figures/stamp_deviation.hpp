@@ -9,7 +9,7 @@
 
 #include "services/views/figures/figure.hpp"
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 
 struct StampDeviationPoint {
   std::size_t session;
@@ -34,4 +34,4 @@ struct StampDeviationData {
 [[nodiscard]] Figure stamp_deviation_figure(const StampDeviationData& data,
                                             const std::string& name);
 
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

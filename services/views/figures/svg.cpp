@@ -6,7 +6,7 @@
 
 #include "services/views/figures/markup.hpp"
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 namespace {
 
 std::string attributes(const Stroke& stroke) {
@@ -173,4 +173,4 @@ std::vector<std::string> wrap_text(std::string_view text, double size, double ma
   return lines;
 }
 
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

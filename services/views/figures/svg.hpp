@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 
 struct Pixel {
   double x;
@@ -77,4 +77,4 @@ private:
 [[nodiscard]] std::vector<std::string> wrap_text(std::string_view text, double size,
                                                  double max_width);
 
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

@@ -11,7 +11,7 @@
 
 #include "services/base/rounding.hpp"
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 namespace {
 
 constexpr double panel_height = 270;
@@ -244,4 +244,4 @@ Figure transfer_function_figure(const TransferFunctionData& data, const std::str
   return {name, std::move(picture), csv_of(data)};
 }
 
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

@@ -20,7 +20,7 @@
 #include "analysis/response/group_delay.hpp"
 #include "services/views/figures/figure.hpp"
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 
 enum class ErrorBars {
   standard, // u
@@ -78,4 +78,4 @@ struct TransferFunctionData {
 [[nodiscard]] Figure transfer_function_figure(const TransferFunctionData& data,
                                               const std::string& name);
 
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

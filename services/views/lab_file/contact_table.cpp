@@ -7,7 +7,7 @@
 #include <fmt/core.h>
 #include <toml++/toml.h>
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 bool is_control(char c) {
@@ -172,4 +172,4 @@ Equipment read_equipment(TomlTable& table) {
           .serial = line_of(table, "serial")};
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -10,7 +10,7 @@
 
 #include "services/bench/file/toml_table.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 struct Contact {
   std::string name;
@@ -63,4 +63,4 @@ struct Equipment {
 [[nodiscard]] Conditions read_conditions(TomlTable& table);
 [[nodiscard]] Equipment read_equipment(TomlTable& table);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

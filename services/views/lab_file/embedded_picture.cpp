@@ -10,7 +10,7 @@
 
 #include "services/base/whole_file.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 constexpr std::uintmax_t max_picture_bytes = 4U << 20U;
@@ -112,4 +112,4 @@ Expected<EmbeddedPicture> read_picture(const std::filesystem::path& path) {
   return picture;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

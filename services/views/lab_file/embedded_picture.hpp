@@ -12,7 +12,7 @@
 
 #include "services/base/error.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 struct EmbeddedPicture {
   std::string file_name;
@@ -28,4 +28,4 @@ struct EmbeddedPicture {
 // Without line breaks.
 [[nodiscard]] std::string base64(std::string_view bytes);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

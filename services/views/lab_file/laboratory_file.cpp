@@ -6,7 +6,7 @@
 #include "services/base/whole_file.hpp"
 #include "services/bench/file/toml_text.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 constexpr std::uintmax_t max_file_bytes = 1U << 20U;
@@ -142,4 +142,4 @@ Expected<LaboratoryFile> read_laboratory_file(const std::filesystem::path& path)
   return parse_laboratory_file(text, path);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

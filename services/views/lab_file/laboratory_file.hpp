@@ -18,7 +18,7 @@
 #include "services/views/lab_file/contact_table.hpp"
 #include "services/views/lab_file/embedded_picture.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 struct Person {
   std::string name;
@@ -63,4 +63,4 @@ struct LaboratoryFile {
 [[nodiscard]] Expected<LaboratoryFile> parse_laboratory_file(std::string_view text,
                                                              const std::filesystem::path& path);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

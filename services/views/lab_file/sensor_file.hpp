@@ -12,7 +12,7 @@
 #include "services/base/error.hpp"
 #include "services/views/lab_file/contact_table.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 struct SensorFile {
   std::filesystem::path path;
@@ -32,4 +32,4 @@ struct SensorFile {
 [[nodiscard]] Expected<SensorFile> parse_sensor_file(std::string_view text,
                                                      const std::filesystem::path& path);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -9,7 +9,7 @@
 #include "services/views/report/json_number.hpp"
 #include "services/views/report/rounded_json.hpp"
 
-namespace dyncal::services::live {
+namespace dyncal::inline views::live {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -24,18 +24,18 @@ Json not_zero(double value) {
   return value == 0.0 ? Json(nullptr) : json_number(value);
 }
 
-Json condition_json(const Condition& condition) {
+Json condition_json(const network::Condition& condition) {
   return {{"severity", to_string(condition.severity)}, {"what", condition.what}};
 }
 
-Json event_json(const Event& event) {
+Json event_json(const network::Event& event) {
   return {{"utc_ms", milliseconds(event.utc_ns)},
           {"bench", event.bench},
           {"severity", to_string(event.severity)},
           {"text", event.text}};
 }
 
-Json last_result_json(const Run& run) {
+Json last_result_json(const network::Run& run) {
   const auto found = run.newest_result ? run.results.find(*run.newest_result) : run.results.end();
   if (found == run.results.end()) {
     return nullptr;
@@ -56,12 +56,12 @@ Json last_result_json(const Run& run) {
                                 result.u_phase_rad)}};
 }
 
-Json recording_json(const Bench& bench, Instant now) {
-  const Service* recorder = bench.recorder();
+Json recording_json(const network::Bench& bench, Instant now) {
+  const network::Service* recorder = bench.recorder();
   if (recorder == nullptr) {
     return nullptr;
   }
-  const bool is_heard = now - recorder->heard <= silence_limit;
+  const bool is_heard = now - recorder->heard <= network::silence_limit;
   return {{"state", is_heard ? "recording" : "silent"},
           {"file", recorder->recording},
           {"messages_stored", std::to_string(recorder->messages_stored)},
@@ -69,7 +69,7 @@ Json recording_json(const Bench& bench, Instant now) {
           {"message", recorder->message}};
 }
 
-void add_run(const Run& run, Instant now, Json& json) {
+void add_run(const network::Run& run, Instant now, Json& json) {
   json["run"] = run.name;
   json["message"] = run.message.empty() && run.analysis ? run.analysis->message : run.message;
   if (run.plan) {
@@ -93,7 +93,7 @@ void add_run(const Run& run, Instant now, Json& json) {
   json["last_result"] = last_result_json(run);
 }
 
-Json channels_json(const Source& source) {
+Json channels_json(const network::Source& source) {
   Json channels = Json::array();
   if (!source.description) {
     return channels;
@@ -109,7 +109,7 @@ Json channels_json(const Source& source) {
   return channels;
 }
 
-void add_description(const Source& source, Json& json) {
+void add_description(const network::Source& source, Json& json) {
   const auto text = [&](const auto member) {
     return source.description ? Json((*source.description).*member) : Json(nullptr);
   };
@@ -131,11 +131,12 @@ void add_description(const Source& source, Json& json) {
   }
 }
 
-Json source_json(const Source& source, Instant now) {
+Json source_json(const network::Source& source, Instant now) {
   Json json{{"source", source.name}};
   add_description(source, json);
-  json["state"] =
-      source.is_silent && source.state != SourceState::ended ? "gone" : to_string(source.state);
+  json["state"] = source.is_silent && source.state != network::SourceState::ended
+                      ? "gone"
+                      : to_string(source.state);
   json["worst"] = condition_json(condition_of(source, now));
   json["rate_hz"] = json_number(source.rate_hz);
   json["received"] = std::to_string(source.counts.received);
@@ -158,13 +159,13 @@ Json source_json(const Source& source, Instant now) {
   return json;
 }
 
-Json plan_json(const Run& run) {
+Json plan_json(const network::Run& run) {
   if (!run.plan) {
     return nullptr;
   }
-  const Plan& plan = *run.plan;
+  const network::Plan& plan = *run.plan;
   Json steps = Json::array();
-  for (const Step& step : plan.steps) {
+  for (const network::Step& step : plan.steps) {
     steps.push_back({{"step", step.step},
                      {"frequency_text_hz", step.frequency_text_hz},
                      {"level_m_s2", json_number(step.level_m_s2)},
@@ -189,15 +190,15 @@ Json plan_json(const Run& run) {
           {"steps", std::move(steps)}};
 }
 
-Json step_now_json(const Run& run, Instant now) {
+Json step_now_json(const network::Run& run, Instant now) {
   if (!run.now) {
     return nullptr;
   }
-  const Excitation& excitation = *run.now;
+  const network::Excitation& excitation = *run.now;
   const double whole_s = excitation.step.settling_s + excitation.step.duration_s;
   const double passed_s = std::chrono::duration<double>(now - excitation.began).count();
-  const bool is_driven =
-      excitation.step.state == StepState::settling || excitation.step.state == StepState::steady;
+  const bool is_driven = excitation.step.state == network::StepState::settling ||
+                         excitation.step.state == network::StepState::steady;
   return {{"step", excitation.step.step},
           {"state", to_string(excitation.step.state)},
           {"attempt", excitation.step.attempt},
@@ -218,7 +219,7 @@ struct ProgramNews {
   std::int64_t heard_utc_ns = 0;
 };
 
-void add_news(const std::string& bench, const Condition& condition, bool is_heard,
+void add_news(const std::string& bench, const network::Condition& condition, bool is_heard,
               std::int64_t heard_utc_ns, ProgramNews& news) {
   if (news.bench.find(bench) == std::string::npos && news.bench.size() < max_line_bytes) {
     news.bench += news.bench.empty() ? bench : ", " + bench;
@@ -231,7 +232,8 @@ void add_news(const std::string& bench, const Condition& condition, bool is_hear
   news.heard_utc_ns = std::max(news.heard_utc_ns, heard_utc_ns);
 }
 
-ProgramNews news_of(const Laboratory& laboratory, const ProgramIdentity& program, Instant now) {
+ProgramNews news_of(const network::Laboratory& laboratory, const ProgramIdentity& program,
+                    Instant now) {
   ProgramNews news;
   const auto is_of_it = [&](const std::string& host, std::uint32_t process_id) {
     return host == program.host && process_id == program.process_id;
@@ -244,9 +246,9 @@ ProgramNews news_of(const Laboratory& laboratory, const ProgramIdentity& program
     }
     for (const auto& [service_name, service] : bench.services) {
       if (is_of_it(service.host, service.process_id)) {
-        Condition condition;
-        if (service.health == Health::failed || !service.message.empty()) {
-          const bool has_failed = service.health == Health::failed;
+        network::Condition condition;
+        if (service.health == network::Health::failed || !service.message.empty()) {
+          const bool has_failed = service.health == network::Health::failed;
           condition.raise_severity(has_failed ? Severity::error : Severity::note, service.message);
         }
         add_news(name, condition, !bench.is_silent(service, now), service.heard_utc_ns, news);
@@ -256,7 +258,8 @@ ProgramNews news_of(const Laboratory& laboratory, const ProgramIdentity& program
   return news;
 }
 
-Json program_json(const Laboratory& laboratory, const DiscoveredProgram& program, Instant now) {
+Json program_json(const network::Laboratory& laboratory, const DiscoveredProgram& program,
+                  Instant now) {
   const ProgramNews news = news_of(laboratory, program.identity, now);
   const std::string& name = program.identity.program;
   constexpr std::string_view prefix = "dyncal-";
@@ -283,13 +286,13 @@ Json program_json(const Laboratory& laboratory, const DiscoveredProgram& program
   return json;
 }
 
-Json with_time(const Laboratory& laboratory, std::uint64_t number) {
+Json with_time(const network::Laboratory& laboratory, std::uint64_t number) {
   return {{"number", number}, {"now_utc_ms", milliseconds(laboratory.clock().utc_now_ns())}};
 }
 
 } // namespace
 
-Json bench_tile_json(const Laboratory& laboratory, const Bench& bench) {
+Json bench_tile_json(const network::Laboratory& laboratory, const network::Bench& bench) {
   const Instant now = laboratory.clock().now();
   Json json{{"bench", bench.name},
             {"state", to_string(state_of(bench, now))},
@@ -318,13 +321,13 @@ Json bench_tile_json(const Laboratory& laboratory, const Bench& bench) {
     json["clock_offset_s"] = json_number(clock->offset_s);
     json["clock_offset_bound_s"] = json_number(clock->bound_s);
   }
-  if (const Run* run = bench.current_run()) {
+  if (const network::Run* run = bench.current_run()) {
     add_run(*run, now, json);
   }
   return json;
 }
 
-Json bench_json(const Laboratory& laboratory, const Bench& bench) {
+Json bench_json(const network::Laboratory& laboratory, const network::Bench& bench) {
   const Instant now = laboratory.clock().now();
   Json json = with_time(laboratory, bench.number);
   json.update(bench_tile_json(laboratory, bench));
@@ -332,17 +335,17 @@ Json bench_json(const Laboratory& laboratory, const Bench& bench) {
   for (const auto& [name, source] : bench.sources) {
     json["sources"].push_back(source_json(source, now));
   }
-  const Run* run = bench.current_run();
+  const network::Run* run = bench.current_run();
   json["plan"] = run == nullptr ? Json(nullptr) : plan_json(*run);
   json["now"] = run == nullptr ? Json(nullptr) : step_now_json(*run, now);
   json["messages"] = Json::array();
-  for (const Event& event : bench.events) {
+  for (const network::Event& event : bench.events) {
     json["messages"].push_back(event_json(event));
   }
   return json;
 }
 
-Json laboratory_json(const Laboratory& laboratory) {
+Json laboratory_json(const network::Laboratory& laboratory) {
   const Instant now = laboratory.clock().now();
   Json json = with_time(laboratory, laboratory.number());
   json["software"] = software_version();
@@ -355,10 +358,10 @@ Json laboratory_json(const Laboratory& laboratory) {
     json["programs"].push_back(program_json(laboratory, program, now));
   }
   json["events"] = Json::array();
-  for (const Event& event : laboratory.events()) {
+  for (const network::Event& event : laboratory.events()) {
     json["events"].push_back(event_json(event));
   }
   return json;
 }
 
-} // namespace dyncal::services::live
+} // namespace dyncal::inline views::live

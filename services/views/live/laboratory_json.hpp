@@ -12,14 +12,15 @@
 
 #include "services/network/laboratory.hpp"
 
-namespace dyncal::services::live {
+namespace dyncal::inline views::live {
 
 // Benches, programs and events.
-[[nodiscard]] nlohmann::ordered_json laboratory_json(const Laboratory& laboratory);
+[[nodiscard]] nlohmann::ordered_json laboratory_json(const network::Laboratory& laboratory);
 // What the laboratory shows of one bench.
-[[nodiscard]] nlohmann::ordered_json bench_tile_json(const Laboratory& laboratory,
-                                                     const Bench& bench);
+[[nodiscard]] nlohmann::ordered_json bench_tile_json(const network::Laboratory& laboratory,
+                                                     const network::Bench& bench);
 // The tile, and with it sources, plan and messages.
-[[nodiscard]] nlohmann::ordered_json bench_json(const Laboratory& laboratory, const Bench& bench);
+[[nodiscard]] nlohmann::ordered_json bench_json(const network::Laboratory& laboratory,
+                                                const network::Bench& bench);
 
-} // namespace dyncal::services::live
+} // namespace dyncal::inline views::live

@@ -6,11 +6,12 @@
 #include "services/views/report/run_figures.hpp"
 #include "services/views/report/transfer_data.hpp"
 
-namespace dyncal::services::live {
+namespace dyncal::inline views::live {
 namespace {
 
 // As files are made of it, but with the results of one channel.
-RunOutcome outcome_of(const std::string& bench, const Run& run, const std::string& channel) {
+RunOutcome outcome_of(const std::string& bench, const network::Run& run,
+                      const std::string& channel) {
   RunOutcome outcome;
   outcome.bench = bench;
   outcome.run = run.name;
@@ -24,7 +25,7 @@ RunOutcome outcome_of(const std::string& bench, const Run& run, const std::strin
 
 } // namespace
 
-std::vector<figures::Figure> run_figures(const std::string& bench, const Run& run,
+std::vector<figures::Figure> run_figures(const std::string& bench, const network::Run& run,
                                          const std::string& channel,
                                          figures::ErrorBars error_bars) {
   const RunOutcome outcome = outcome_of(bench, run, channel);
@@ -48,4 +49,4 @@ std::vector<figures::Figure> run_figures(const std::string& bench, const Run& ru
   return drawn;
 }
 
-} // namespace dyncal::services::live
+} // namespace dyncal::inline views::live

@@ -9,12 +9,13 @@
 #include "services/network/run.hpp"
 #include "services/views/figures/transfer_function.hpp"
 
-namespace dyncal::services::live {
+namespace dyncal::inline views::live {
 
 // Transfer function and deviations of the channel, then the sample clock of its source as far as it
 // was reported. Empty: the run has no result of this channel.
-[[nodiscard]] std::vector<figures::Figure> run_figures(const std::string& bench, const Run& run,
+[[nodiscard]] std::vector<figures::Figure> run_figures(const std::string& bench,
+                                                       const network::Run& run,
                                                        const std::string& channel,
                                                        figures::ErrorBars error_bars);
 
-} // namespace dyncal::services::live
+} // namespace dyncal::inline views::live

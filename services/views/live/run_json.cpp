@@ -8,12 +8,12 @@
 #include "services/views/report/stated_value.hpp"
 #include "services/views/report/stored_members.hpp"
 
-namespace dyncal::services::live {
+namespace dyncal::inline views::live {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-RunOutcome outcome_of(const std::string& bench, const Run& run) {
+RunOutcome outcome_of(const std::string& bench, const network::Run& run) {
   RunOutcome outcome;
   outcome.bench = bench;
   outcome.run = run.name;
@@ -31,7 +31,7 @@ RunOutcome outcome_of(const std::string& bench, const Run& run) {
   return outcome;
 }
 
-Json points_json(const Run& run, const StoredResult& result) {
+Json points_json(const network::Run& run, const StoredResult& result) {
   Json points = Json::array();
   auto heard = run.results.begin(); // in the same order
   for (const StoredPoint& point : result.points) {
@@ -82,7 +82,7 @@ Json clocks_json(const StoredResult& result) {
 
 } // namespace
 
-Json run_json(const std::string& bench, const Run& run) {
+Json run_json(const std::string& bench, const network::Run& run) {
   const StoredResult result = stored_result_of(outcome_of(bench, run));
   return {{"run", run.name},
           {"state", to_string(run.state())},
@@ -94,4 +94,4 @@ Json run_json(const std::string& bench, const Run& run) {
           {"sample_clock", clocks_json(result)}};
 }
 
-} // namespace dyncal::services::live
+} // namespace dyncal::inline views::live

@@ -11,8 +11,8 @@
 
 #include "services/network/run.hpp"
 
-namespace dyncal::services::live {
+namespace dyncal::inline views::live {
 
-[[nodiscard]] nlohmann::ordered_json run_json(const std::string& bench, const Run& run);
+[[nodiscard]] nlohmann::ordered_json run_json(const std::string& bench, const network::Run& run);
 
-} // namespace dyncal::services::live
+} // namespace dyncal::inline views::live

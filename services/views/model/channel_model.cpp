@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 constexpr int iir_poles = 4;
@@ -234,4 +234,4 @@ Expected<ChannelModel> model_channel(MeasuredResponse measured, const ModelReque
   return model;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -14,7 +14,7 @@
 #include "services/base/error.hpp"
 #include "services/views/model/measured_response.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 struct FilterRequest {
   bool iir = false;
@@ -48,4 +48,4 @@ struct ChannelModel {
 // Why this order: one sentence.
 [[nodiscard]] std::string reason_of(const analysis::ResponseChoice& choice);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

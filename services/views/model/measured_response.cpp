@@ -16,7 +16,7 @@
 #include "services/evaluation/shared_phase_uncertainty.hpp"
 #include "services/views/report/stored_result.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 constexpr double max_u_phase_rad = 0.5;
@@ -342,4 +342,4 @@ read_responses(const std::vector<std::filesystem::path>& files, const ResponseSe
   return responses;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

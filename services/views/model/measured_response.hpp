@@ -23,7 +23,7 @@
 #include "services/base/error.hpp"
 #include "services/base/work_count.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 struct MeasuredValue {
   std::string file;
@@ -65,4 +65,4 @@ read_responses(const std::vector<std::filesystem::path>& files, const ResponseSe
 // May the value be wrong beyond its u?
 [[nodiscard]] bool makes_unusable(const std::string& flag_name);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -7,7 +7,7 @@
 #include "services/base/rounding.hpp"
 #include "services/views/figures/model_residuals.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 figures::Figure model_figure(const ChannelModel& model) {
   const analysis::FittedResponse& fit = model.fit();
@@ -41,4 +41,4 @@ figures::Figure model_figure(const ChannelModel& model) {
   return figures::model_residual_figure(data, "model-residuals-" + place);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -4,9 +4,9 @@
 #include "services/views/figures/figure.hpp"
 #include "services/views/model/channel_model.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 // Named "model-residuals-SOURCE-CHANNEL".
 [[nodiscard]] figures::Figure model_figure(const ChannelModel& model);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -8,7 +8,7 @@
 #include "services/base/version.hpp"
 #include "services/views/report/json_number.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -187,4 +187,4 @@ nlohmann::ordered_json model_json(const std::vector<std::string>& files,
   return json;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

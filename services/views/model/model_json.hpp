@@ -11,7 +11,7 @@
 
 #include "services/views/model/channel_model.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 // Raised with every change of the schema; keys are added, never renamed.
 inline constexpr int model_schema_version = 1;
@@ -19,4 +19,4 @@ inline constexpr int model_schema_version = 1;
 [[nodiscard]] nlohmann::ordered_json model_json(const std::vector<std::string>& files,
                                                 const std::vector<ChannelModel>& models);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

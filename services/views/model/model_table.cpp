@@ -13,7 +13,7 @@
 #include "services/base/rounding.hpp"
 #include "services/contract/unit.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
@@ -166,4 +166,4 @@ std::string model_text(const ChannelModel& model) {
   return text;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -6,8 +6,8 @@
 
 #include "services/views/model/channel_model.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 [[nodiscard]] std::string model_text(const ChannelModel& model);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -5,7 +5,7 @@
 
 #include "analysis/uncertainty/coverage.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 // Student's factor of four degrees of freedom: five repetitions show their scatter well enough.
@@ -55,4 +55,4 @@ std::string advice_on_repetitions(double largest_k) {
                              : "";
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

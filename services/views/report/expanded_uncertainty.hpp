@@ -12,7 +12,7 @@
 #include "services/evaluation/result/step_result.hpp"
 #include "services/evaluation/result/transfer_function.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 struct ExpandedUncertainty {
   double u = 0.0; // k = 1
@@ -30,4 +30,4 @@ struct ExpandedUncertainty {
 // what to do; empty where it is not. The same words in table, page, report and certificate.
 [[nodiscard]] std::string advice_on_repetitions(double largest_k);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

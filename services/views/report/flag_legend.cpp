@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 void append(const std::vector<Flag>& from, std::vector<Flag>& to) {
@@ -101,4 +101,4 @@ std::string flag_names(const std::vector<Flag>& flags) {
   return fmt::format("{}", fmt::join(names, " "));
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -9,7 +9,7 @@
 
 #include "services/evaluation/result/run_outcome.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 struct FlagMeaning {
   std::string name;                   // "samples_lost"
@@ -37,4 +37,4 @@ struct FlagMeaning {
 // The names, each once, separated by spaces: "samples_lost shots_missing".
 [[nodiscard]] std::string flag_names(const std::vector<Flag>& flags);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -19,7 +19,7 @@
 #include "services/evaluation/result/members.hpp"
 #include "services/views/report/json_number.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 class JsonWriter {
 public:
@@ -244,4 +244,4 @@ private:
   const Json& json_;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -5,10 +5,10 @@
 
 #include <nlohmann/json.hpp>
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 [[nodiscard]] inline nlohmann::ordered_json json_number(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

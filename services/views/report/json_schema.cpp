@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 using Json = nlohmann::json;
@@ -218,4 +218,4 @@ std::optional<std::string> deviation_from(const nlohmann::json& schema,
   return (found->place.empty() ? "the whole" : found->place) + " " + found->what;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

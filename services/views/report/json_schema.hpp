@@ -16,9 +16,9 @@
 
 #include <nlohmann/json.hpp>
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 [[nodiscard]] std::optional<std::string> deviation_from(const nlohmann::json& schema,
                                                         const nlohmann::json& value);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -4,7 +4,7 @@
 
 #include "services/views/report/json_number.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -99,4 +99,4 @@ Json picture_json(const figures::Figure& figure) {
           {"panels", panels}};
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

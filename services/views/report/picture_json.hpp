@@ -13,9 +13,9 @@
 
 #include "services/views/figures/figure.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 // With the figure's name.
 [[nodiscard]] nlohmann::ordered_json picture_json(const figures::Figure& figure);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -4,7 +4,7 @@
 
 #include "services/views/report/stored_result.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 analysis::ComparedResult comparable(const StoredValue& value) {
   return {value.magnitude, 0.5 * value.of_magnitude.expanded, value.phase_rad,
@@ -22,4 +22,4 @@ Expected<ResultPoints> read_result_file(const std::filesystem::path& path, ByteC
   return points;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -14,7 +14,7 @@
 #include "services/base/error.hpp"
 #include "services/views/report/stored_result.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 struct ResultPoint {
   std::string unit;
@@ -30,4 +30,4 @@ using ResultPoints = std::map<std::pair<std::string, double>, ResultPoint>;
 [[nodiscard]] Expected<ResultPoints> read_result_file(const std::filesystem::path& path,
                                                       ByteCount& bytes);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

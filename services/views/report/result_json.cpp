@@ -11,7 +11,7 @@
 #include "services/views/report/stored_members.hpp"
 #include "services/views/report/stored_setup.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 StoredPoint stored_point(const RunOutcome& outcome, const StepResult& result) {
@@ -129,4 +129,4 @@ Expected<void> write_json(const std::filesystem::path& path, const nlohmann::ord
   return write_output_file(path, json_text(json, 1) + '\n');
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

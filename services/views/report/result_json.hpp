@@ -14,7 +14,7 @@
 #include "services/evaluation/result/run_outcome.hpp"
 #include "services/views/report/stored_result.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 // As its file has it.
 [[nodiscard]] StoredResult stored_result_of(const RunOutcome& outcome);
@@ -26,4 +26,4 @@ namespace dyncal::services {
 [[nodiscard]] Expected<void> write_json(const std::filesystem::path& path,
                                         const nlohmann::ordered_json& json);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

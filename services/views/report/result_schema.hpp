@@ -1,8 +1,8 @@
 // The schema of result files, result.schema.json, as it is compiled in. Any thread.
 #pragma once
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 [[nodiscard]] const char* result_schema_text();
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

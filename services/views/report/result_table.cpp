@@ -15,7 +15,7 @@
 #include "services/views/report/expanded_uncertainty.hpp"
 #include "services/views/report/flag_legend.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 constexpr std::size_t columns = 7;
@@ -263,4 +263,4 @@ std::string result_table(const RunOutcome& outcome) {
   return text + legend(outcome);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -9,7 +9,7 @@
 
 #include "services/evaluation/result/run_outcome.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 // The channel's magnitude is above three times its uncertainty at more than half of the
 // frequencies: it is worth showing.
@@ -18,4 +18,4 @@ namespace dyncal::services {
 // One row per channel and frequency; channels that do not respond are only named.
 [[nodiscard]] std::string result_table(const RunOutcome& outcome);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

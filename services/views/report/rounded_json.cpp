@@ -4,7 +4,7 @@
 
 #include "services/base/rounding.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -28,4 +28,4 @@ nlohmann::ordered_json rounded_json(double magnitude, double u_magnitude, double
           {"phase_deg", texts(phase.degrees, phase_rad, u_phase_rad)}};
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -5,11 +5,11 @@
 
 #include <nlohmann/json.hpp>
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 [[nodiscard]] nlohmann::ordered_json rounded_json(double value, double u);
 // Of one value of a transfer function: "magnitude", "phase_rad" and "phase_deg".
 [[nodiscard]] nlohmann::ordered_json rounded_json(double magnitude, double u_magnitude,
                                                   double phase_rad, double u_phase_rad);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -11,7 +11,7 @@
 #include "services/views/report/result_table.hpp"
 #include "services/views/report/transfer_data.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 std::string file_name(const std::string& what, std::string of) {
@@ -81,4 +81,4 @@ Expected<std::vector<std::filesystem::path>> write_figures(const RunOutcome& out
   return paths;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

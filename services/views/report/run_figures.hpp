@@ -13,7 +13,7 @@
 #include "services/evaluation/result/run_outcome.hpp"
 #include "services/views/figures/transfer_function.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 struct FigureFiles {
   std::optional<std::filesystem::path> folder; // empty: none are written
@@ -34,4 +34,4 @@ channel_figures(const figures::TransferFunctionData& data, const std::string& ch
 write_figures(const RunOutcome& outcome, const std::filesystem::path& folder,
               figures::ErrorBars error_bars = figures::ErrorBars::standard);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -14,7 +14,7 @@
 #include "services/views/report/result_table.hpp"
 #include "services/views/report/run_figures.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 std::size_t steps_with_a_result(const RunOutcome& outcome) {
@@ -147,4 +147,4 @@ Expected<void> check_complete(const RunOutcome& outcome) {
   return {};
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -10,7 +10,7 @@
 #include "services/evaluation/result/run_outcome.hpp"
 #include "services/views/report/run_figures.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 // Before the run: fails (bad_file) when what show_outcome() is to write could not be written now.
 [[nodiscard]] Expected<void> check_outputs(const std::optional<std::filesystem::path>& json,
@@ -37,4 +37,4 @@ namespace dyncal::services {
 // calibration has a valid result, with those that have none.
 [[nodiscard]] Expected<void> check_complete(const RunOutcome& outcome);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

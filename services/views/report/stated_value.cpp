@@ -9,7 +9,7 @@
 #include "services/base/rounding.hpp"
 #include "services/contract/evaluation_method.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 StatedValue stated(const RoundedValue& rounded, const ExpandedUncertainty& uncertainty) {
@@ -130,4 +130,4 @@ std::string frequency_range(const std::vector<StoredValue>& values) {
                                           low->frequency_text_hz, high->frequency_text_hz);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -13,7 +13,7 @@
 
 #include "services/views/report/stored_result.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 struct StatedValue {
   std::string value;
@@ -46,4 +46,4 @@ struct StatedValue {
 // What the whole run was excited with: "17 frequencies from 10 Hz to 200 Hz".
 [[nodiscard]] std::string frequency_range(const std::vector<StoredValue>& values);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

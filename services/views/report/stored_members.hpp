@@ -12,7 +12,7 @@
 #include "services/evaluation/result/members.hpp"
 #include "services/views/report/stored_result.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 inline const std::string phase_convention =
     "lead: arg H in rad, a delay is negative; u_ are standard uncertainties (k = 1), U_ = k u_ "
@@ -228,4 +228,4 @@ void members(auto& visit, Either<StoredResult> auto& one) {
   visit.unless_empty("recipe", one.recipe);
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

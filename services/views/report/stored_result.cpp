@@ -17,7 +17,7 @@
 #include "services/views/report/result_schema.hpp"
 #include "services/views/report/stored_members.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 using Json = nlohmann::json;
@@ -226,4 +226,4 @@ Expected<StoredResult> read_values(const std::filesystem::path& run) {
   return with_values(read_result(run));
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

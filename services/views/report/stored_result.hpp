@@ -22,7 +22,7 @@
 #include "services/evaluation/result/run_outcome.hpp"
 #include "services/views/report/expanded_uncertainty.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 // Raised with every change of the schema beyond new keys, which readers ignore.
 inline constexpr int result_schema_version = 2;
@@ -179,4 +179,4 @@ struct StoredResult {
 [[nodiscard]] Expected<StoredResult>
 result_of_text(const std::string& text, const std::filesystem::path& file, ByteCount& count);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -6,7 +6,7 @@
 #include "analysis/instrument/adc_calibration.hpp"
 #include "services/evaluation/recipe/reference_correction.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 std::string role_of(const Recipe& recipe, const std::string& channel) {
@@ -168,4 +168,4 @@ void add_measured_excitation(const RunOutcome& outcome, StoredPoint& point) {
   }
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

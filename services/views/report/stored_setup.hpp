@@ -8,7 +8,7 @@
 #include "services/evaluation/result/run_outcome.hpp"
 #include "services/views/report/stored_result.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 [[nodiscard]] StoredRoles stored_roles(const Recipe& recipe);
 [[nodiscard]] StoredCorrections stored_corrections(const Recipe& recipe,
@@ -23,4 +23,4 @@ namespace dyncal::services {
 // What the reference measured of the excitation; its level only where it is in m/s^2.
 void add_measured_excitation(const RunOutcome& outcome, StoredPoint& point);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

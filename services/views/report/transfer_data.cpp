@@ -16,7 +16,7 @@
 #include "services/views/report/expanded_uncertainty.hpp"
 #include "services/views/report/flag_legend.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 double fit_residual(const StepResult& result) {
@@ -132,4 +132,4 @@ figures::TransferFunctionData transfer_data_so_far(const RunOutcome& outcome,
   return data;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -12,11 +12,11 @@
 #include "services/evaluation/result/run_outcome.hpp"
 #include "services/views/figures/transfer_function.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 [[nodiscard]] figures::TransferFunctionData transfer_data(const RunOutcome& outcome,
                                                           const TransferFunction& function);
 [[nodiscard]] figures::TransferFunctionData transfer_data_so_far(const RunOutcome& outcome,
                                                                  const std::string& channel);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 void ChannelRing::clear() {
   samples_.clear();
@@ -81,4 +81,4 @@ std::vector<Sample> ChannelRing::newest_stretch(std::size_t most) const {
   return {first, samples_.end()};
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -17,7 +17,7 @@
 
 #include "services/bus/clock.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 struct Sample {
   std::int64_t stamp_ns = 0;
@@ -73,4 +73,4 @@ private:
   std::int64_t received_utc_ns_ = 0;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -7,7 +7,7 @@
 #include "analysis/base/phasor.hpp"
 #include "analysis/sine/sine_fit.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 constexpr double block_s = 0.05;
@@ -298,4 +298,4 @@ std::optional<SettledSamples> find_settled(std::span<const Sample> samples,
   return settled(blocks_of_step(window, periods, blocks));
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

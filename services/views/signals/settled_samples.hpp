@@ -26,7 +26,7 @@
 #include "analysis/base/frequency.hpp"
 #include "services/views/signals/channel_ring.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 // Stamps of the first samples that came after the instants of a step.
 struct StepWindow {
@@ -59,4 +59,4 @@ struct SettledSamples {
                                                          const StepWindow& window,
                                                          const analysis::Frequency& frequency);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

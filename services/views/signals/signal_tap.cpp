@@ -6,7 +6,7 @@
 
 #include "services/contract/source_block.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 constexpr std::chrono::milliseconds max_wait{100};
@@ -164,4 +164,4 @@ void SignalTap::push(const Topic& topic, const wire::TriggeredRecord& record) {
   }
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -23,7 +23,7 @@
 #include "services/contract/source_kind.hpp"
 #include "services/views/signals/channel_ring.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 struct TappedChannel {
   std::string bench;
@@ -90,4 +90,4 @@ private:
   std::jthread thread_; // the last: ended first
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 constexpr double shown_periods = 4.0;
@@ -76,4 +76,4 @@ Expected<SineView> view_sine(const SettledSamples& settled, std::size_t columns)
   return view;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

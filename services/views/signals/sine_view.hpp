@@ -16,7 +16,7 @@
 #include "services/views/signals/settled_samples.hpp"
 #include "services/views/signals/trace.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 struct SineView {
   analysis::SineFit fit;
@@ -30,4 +30,4 @@ inline constexpr std::size_t max_fitted_samples = std::size_t{1} << 15U;
 
 [[nodiscard]] Expected<SineView> view_sine(const SettledSamples& settled, std::size_t columns);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -9,7 +9,7 @@
 
 #include <unsupported/Eigen/FFT>
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 constexpr std::size_t min_samples = 64;
@@ -140,4 +140,4 @@ Expected<Spectrum> spectrum_of(std::span<const double> values, double rate_hz,
   return spectrum;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

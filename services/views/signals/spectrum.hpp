@@ -19,7 +19,7 @@
 
 #include "services/base/error.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 struct Spectrum {
   std::vector<std::pair<double, double>> lines; // Hz, amplitude; at most `max_lines`: peaks stay
@@ -38,4 +38,4 @@ inline constexpr const char* spectrum_window = "blackman-harris";
 [[nodiscard]] Expected<Spectrum> spectrum_of(std::span<const double> values, double rate_hz,
                                              std::size_t max_lines = max_spectrum_lines);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -5,7 +5,7 @@
 #include <iterator>
 #include <numeric>
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 constexpr double second_ns = 1e9;
@@ -101,4 +101,4 @@ Trace make_trace(const ChannelRing& ring, double seconds, std::size_t columns,
   return trace;
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -15,7 +15,7 @@
 
 #include "services/views/signals/channel_ring.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 
 struct TraceColumn {
   double time_s = 0.0; // of its first value, since the begin of the window
@@ -42,4 +42,4 @@ struct ChannelRange {
 [[nodiscard]] Trace make_trace(const ChannelRing& ring, double seconds, std::size_t columns,
                                const ChannelRange& range);
 
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -5,7 +5,7 @@
 
 #include "services/bench/file/bench_file.hpp"
 
-namespace dyncal::services {
+namespace dyncal {
 namespace {
 
 TEST(ExampleLab, HasBenchFilesThatAreAcceptedAndCanRunTogether) {
@@ -28,4 +28,4 @@ TEST(ExampleLab, HasBenchFilesThatAreAcceptedAndCanRunTogether) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal

@@ -4,7 +4,7 @@
 
 #include "tests/temporary_folder.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline base {
 namespace {
 
 TEST(ByteCount, CountsMegabytesAndReachesTheTotal) {
@@ -52,4 +52,4 @@ TEST(ByteCount, AFileThatIsNotThereHasNoBytes) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline base

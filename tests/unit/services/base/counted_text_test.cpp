@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline base {
 namespace {
 
 std::string text_of_size(std::size_t size) {
@@ -49,4 +49,4 @@ TEST(CountedText, SeveralTextsAddUp) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline base

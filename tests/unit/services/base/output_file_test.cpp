@@ -7,7 +7,7 @@
 
 #include "tests/temporary_folder.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline base {
 namespace {
 
 namespace fs = std::filesystem;
@@ -83,4 +83,4 @@ TEST_F(OutputFile, IsAskedForBeforeARunWithoutTouchingAnOlderFile) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline base

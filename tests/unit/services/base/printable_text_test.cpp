@@ -5,7 +5,7 @@
 
 #include "services/base/json_text.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline base {
 namespace {
 
 TEST(PrintableText, LeavesUtf8AsItIs) {
@@ -69,4 +69,4 @@ TEST(JsonText, WritesTextsThatAreNotUtf8) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline base

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline base {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -111,4 +111,4 @@ TEST(Rounding, NothingMovesByMoreThanHalfAPlace) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline base

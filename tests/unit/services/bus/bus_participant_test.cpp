@@ -34,7 +34,7 @@ TEST_P(BusParticipant, RefusesADomainThatDoesNotExist) {
     wrong.domain = domain;
     const auto participant = Participant::create(wrong);
     ASSERT_FALSE(participant);
-    EXPECT_EQ(participant.error().code, services::ErrorCode::network);
+    EXPECT_EQ(participant.error().code, base::ErrorCode::network);
     EXPECT_THAT(participant.error().message, HasSubstr(std::to_string(domain)));
   }
 }
@@ -59,7 +59,7 @@ TEST_P(BusParticipant, RefusesAWriterForABenchWhoseNameIsTooLongOrAPattern) {
     const auto writer =
         participant->writer<wire::SampleBlock>(topics::dau_samples, Profile::samples, bench);
     ASSERT_FALSE(writer) << bench;
-    EXPECT_EQ(writer.error().code, services::ErrorCode::bad_argument);
+    EXPECT_EQ(writer.error().code, base::ErrorCode::bad_argument);
   }
   EXPECT_TRUE(participant->writer<wire::SampleBlock>(topics::dau_samples, Profile::samples,
                                                      std::string(64, 'b')));
@@ -101,7 +101,7 @@ TEST(BusVendor, IsNamedAsInThisBuild) {
   }
   const auto wrong = parse_vendor("opendds");
   ASSERT_FALSE(wrong);
-  EXPECT_EQ(wrong.error().code, services::ErrorCode::bad_argument);
+  EXPECT_EQ(wrong.error().code, base::ErrorCode::bad_argument);
   EXPECT_THAT(wrong.error().message, HasSubstr("'opendds'"));
   for (const Vendor vendor : vendors_in_this_build()) {
     EXPECT_THAT(wrong.error().message, HasSubstr(to_string(vendor)));
@@ -119,7 +119,7 @@ TEST(BusVendor, IsCycloneDdsWhereNoneIsChosen) {
 TEST(BusVendor, IsNeverTheBusOfUnitTests) {
   const auto memory = parse_vendor("memory");
   ASSERT_FALSE(memory);
-  EXPECT_EQ(memory.error().code, services::ErrorCode::bad_argument);
+  EXPECT_EQ(memory.error().code, base::ErrorCode::bad_argument);
   EXPECT_THAT(memory.error().message, HasSubstr("cannot leave a process"));
 }
 

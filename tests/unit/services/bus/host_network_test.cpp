@@ -16,7 +16,7 @@ TEST(HostNetwork, FindsTheLoopbackInterfaceByNameAndByAddress) {
 TEST(HostNetwork, NamesTheInterfacesThereAreWhenOneIsNot) {
   const auto address = interface_address("eth99");
   ASSERT_FALSE(address);
-  EXPECT_EQ(address.error().code, services::ErrorCode::network);
+  EXPECT_EQ(address.error().code, base::ErrorCode::network);
   EXPECT_THAT(address.error().message, HasSubstr("\"eth99\""));
   EXPECT_THAT(address.error().message, HasSubstr("lo (127.0.0.1)"));
 }

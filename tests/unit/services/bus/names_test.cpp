@@ -14,7 +14,7 @@ TEST(Names, HaveOneTo64Characters) {
   EXPECT_FALSE(check_name("source", ""));
   const auto too_long = check_name("source", std::string(65, 'a'));
   ASSERT_FALSE(too_long);
-  EXPECT_EQ(too_long.error().code, services::ErrorCode::bad_argument);
+  EXPECT_EQ(too_long.error().code, base::ErrorCode::bad_argument);
   EXPECT_THAT(too_long.error().message, HasSubstr("source \"aaaa"));
   EXPECT_THAT(too_long.error().message, HasSubstr("65 bytes"));
 }

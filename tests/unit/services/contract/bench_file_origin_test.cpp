@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 namespace {
 
 const std::string settings = "channels.Data_11 = 'sync'\n"
@@ -55,4 +55,4 @@ TEST(BenchFileOrigin, RefusesInOneSentenceWithWhatToDo) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

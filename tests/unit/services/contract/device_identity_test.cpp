@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 namespace {
 
 TEST(DeviceIdentity, StandsInPlaceOfWhatTheInstrumentSays) {
@@ -34,4 +34,4 @@ TEST(DeviceIdentity, StatesRangesOfChannels) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

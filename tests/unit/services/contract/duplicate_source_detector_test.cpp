@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <vector>
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 namespace {
 
 DuplicateSourceDetector watch(const std::vector<std::uint64_t>& sessions) {
@@ -45,4 +45,4 @@ TEST(DuplicateSourceDetector, ForgetsATwinWhenTheOtherHasComeAloneForLong) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 namespace {
 
 wire::SourceDescription description(std::uint64_t session) {
@@ -91,4 +91,4 @@ TEST(KnownSource, KeepsTheDescriptionsOfFewSessions) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

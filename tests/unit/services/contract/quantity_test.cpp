@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 namespace {
 
 TEST(Quantity, FollowsFromTheDimensionOfTheUnit) {
@@ -63,4 +63,4 @@ TEST(Quantity, FollowsFromTheWordsOfInstruments) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

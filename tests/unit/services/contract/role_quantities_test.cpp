@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 namespace {
 
 using testing::HasSubstr;
@@ -208,4 +208,4 @@ TEST(RoleQuantities, WhatTheSourceSaysCountsBesideTheUnitOfTheBenchFile) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 namespace {
 
 using testing::HasSubstr;
@@ -113,4 +113,4 @@ TEST(RoleRules, WithoutSyncTheStepsMayBeFoundInTheReference) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

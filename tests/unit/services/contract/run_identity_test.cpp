@@ -4,7 +4,7 @@
 
 #include "services/contract/time_name.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 namespace {
 
 constexpr std::int64_t now_ns = 1'795'342'530'125'000'000;
@@ -66,4 +66,4 @@ TEST(RunIdentity, SaysSinceWhen) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 namespace {
 
 SourceBlock block_of(std::uint64_t session, std::uint64_t number, std::uint64_t first_sample,
@@ -121,4 +121,4 @@ TEST(SampleContinuity, CountsAnUnusableFirstBlockAsItTells) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

@@ -4,7 +4,7 @@
 
 #include "idl/dyncal.h"
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 namespace {
 
 wire::SampleBlock regular_message() {
@@ -62,4 +62,4 @@ TEST(SourceBlock, FindsSizesThatContradictEachOther) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

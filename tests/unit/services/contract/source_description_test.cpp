@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 namespace {
 
 drivers::SourceDescription instrument(const std::string& device, const std::string& serial) {
@@ -36,4 +36,4 @@ TEST(SourceDescription, TakesWhatIsNotKnownForNoDifference) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

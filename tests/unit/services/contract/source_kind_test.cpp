@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 namespace {
 
 constexpr SourceKind kinds[] = {SourceKind::dau, SourceKind::acs, SourceKind::dso, SourceKind::tss,
@@ -25,4 +25,4 @@ TEST(SourceKind, EveryKindHasAMemberOfTheContractAndATopicOfItsOwn) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline contract {
 namespace {
 
 TEST(Unit, TranslatesShortFormsAndKeepsDSi) {
@@ -22,4 +22,4 @@ TEST(Unit, RefusesWhatIsNeither) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline contract

@@ -9,7 +9,7 @@
 #include "services/contract/source_description.hpp"
 #include "tests/unit/services/evaluation/synthetic_run.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 // Of the samples of every block, the first `not_trusted` are not.
@@ -44,4 +44,4 @@ TEST(ClockReportBuilder, SaysNothingOfFew) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

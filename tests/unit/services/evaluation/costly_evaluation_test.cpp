@@ -13,7 +13,7 @@
 #include "tests/unit/services/evaluation/costly_run.hpp"
 #include "tests/unit/services/evaluation/feed.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 const EvaluationLimits beside{.evaluations_at_once = 1, .never_waits = true};
@@ -104,4 +104,4 @@ TEST(CostlyEvaluation, GivesTheBitsOfOneInTheCallersThread) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -11,7 +11,7 @@
 #include "tests/unit/services/evaluation/feed.hpp"
 #include "tests/unit/services/evaluation/synthetic_run.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 struct Evaluated {
@@ -111,4 +111,4 @@ TEST(EvaluationAhead, LostSamplesAreCountedAsAfterwards) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

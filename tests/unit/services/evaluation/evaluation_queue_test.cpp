@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 std::vector<StepResult> result_of_step(std::uint32_t step) {
@@ -133,4 +133,4 @@ TEST(EvaluationQueue, KeepsTheResultsOfWhatItStops) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

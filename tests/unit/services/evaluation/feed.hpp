@@ -9,24 +9,24 @@
 
 namespace dyncal::tests {
 
-inline services::Expected<void> describe(services::RunEvaluator& evaluator,
-                                         const wire::SourceDescription& description) {
-  return evaluator.describe(description.source().to_string(), services::from_message(description));
+inline base::Expected<void> describe(evaluation::RunEvaluator& evaluator,
+                                     const wire::SourceDescription& description) {
+  return evaluator.describe(description.source().to_string(), dyncal::from_message(description));
 }
 
-inline void feed(services::RunEvaluator& evaluator, const wire::SampleBlock& block) {
-  evaluator.add(block.source().to_string(), services::view_block(block));
+inline void feed(evaluation::RunEvaluator& evaluator, const wire::SampleBlock& block) {
+  evaluator.add(block.source().to_string(), contract::view_block(block));
 }
 
 // One of another run is left out.
-inline void feed(services::RunEvaluator& evaluator, const wire::TriggeredRecord& record) {
+inline void feed(evaluation::RunEvaluator& evaluator, const wire::TriggeredRecord& record) {
   if (record.run() == evaluator.recipe().run) {
-    evaluator.add(record.source().to_string(), services::from_message(record));
+    evaluator.add(record.source().to_string(), dyncal::from_message(record));
   }
 }
 
-inline bool feed(services::SourceRecord& record, const wire::SampleBlock& block) {
-  return record.add(services::view_block(block));
+inline bool feed(evaluation::SourceRecord& record, const wire::SampleBlock& block) {
+  return record.add(contract::view_block(block));
 }
 
 } // namespace dyncal::tests

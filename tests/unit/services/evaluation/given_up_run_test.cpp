@@ -9,7 +9,7 @@
 #include "tests/unit/services/evaluation/costly_run.hpp"
 #include "tests/unit/services/evaluation/feed.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 constexpr std::size_t steps = 24;
@@ -104,4 +104,4 @@ TEST(GivenUpSearch, LooksForNoStep) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

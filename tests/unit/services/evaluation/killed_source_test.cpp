@@ -13,7 +13,7 @@
 #include "tests/unit/services/evaluation/feed.hpp"
 #include "tests/unit/services/evaluation/synthetic_run.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 constexpr double interval_s = 997e-6; // of the DAU
@@ -193,4 +193,4 @@ TEST_F(KilledSource, GivesLiveWhatItsRecordingGives) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

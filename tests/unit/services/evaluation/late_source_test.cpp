@@ -16,7 +16,7 @@
 #include "tests/unit/services/evaluation/feed.hpp"
 #include "tests/unit/services/evaluation/synthetic_run.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 using testing::HasSubstr;
@@ -212,4 +212,4 @@ TEST_P(LateSource, NorWhereItsSamplesComeLate) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

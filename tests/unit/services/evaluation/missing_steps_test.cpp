@@ -10,7 +10,7 @@
 #include "tests/unit/services/evaluation/feed.hpp"
 #include "tests/unit/services/evaluation/synthetic_run.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 using testing::HasSubstr;
@@ -126,4 +126,4 @@ TEST_P(MissingSteps, NoneIsMissing) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

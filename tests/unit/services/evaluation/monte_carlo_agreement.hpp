@@ -9,10 +9,10 @@
 
 namespace dyncal::tests {
 
-inline void expect_drawing_agrees(const std::vector<services::StepResult>& results,
+inline void expect_drawing_agrees(const std::vector<evaluation::StepResult>& results,
                                   std::size_t expected_results) {
   ASSERT_EQ(results.size(), expected_results);
-  for (const services::StepResult& result : results) {
+  for (const evaluation::StepResult& result : results) {
     ASSERT_TRUE(result.valid) << result.problem;
     ASSERT_TRUE(result.monte_carlo);
     const analysis::TransferCheck& drawn = *result.monte_carlo;

@@ -8,7 +8,7 @@
 #include "tests/unit/services/evaluation/feed.hpp"
 #include "tests/unit/services/evaluation/synthetic_run.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 using testing::AllOf;
@@ -128,4 +128,4 @@ TEST_P(NoExcitation, IsNotSaidOfASineThatIsTooShort) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -7,7 +7,7 @@
 
 #include "services/evaluation/transfer_summary.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 using testing::HasSubstr;
@@ -123,4 +123,4 @@ TEST_F(OutcomeAgreementTest, PutsTheMeanOfItsPointsInPlaceOfAnother) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

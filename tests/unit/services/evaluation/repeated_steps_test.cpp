@@ -9,7 +9,7 @@
 #include "tests/unit/services/evaluation/feed.hpp"
 #include "tests/unit/services/evaluation/synthetic_run.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 using testing::Contains;
@@ -306,4 +306,4 @@ TEST_P(RepeatedSteps, OnlyTheLastAttemptIsSettledAtTheEnd) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -9,7 +9,7 @@
 #include "tests/unit/services/evaluation/feed.hpp"
 #include "tests/unit/services/evaluation/synthetic_run.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 class RestartedSource : public testing::Test {
@@ -145,4 +145,4 @@ TEST_F(RestartedSource, IsNotWaitedWithWhenItIsNotOfTheRun) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -15,7 +15,7 @@
 #include "tests/unit/services/evaluation/monte_carlo_agreement.hpp"
 #include "tests/unit/services/evaluation/synthetic_run.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 using testing::HasSubstr;
@@ -548,4 +548,4 @@ TEST(RunEvaluator, EndsAnAbortedRunWithTheStepsThatWereAnnounced) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

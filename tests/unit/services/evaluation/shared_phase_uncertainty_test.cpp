@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 using analysis::ContributionKind;
@@ -63,4 +63,4 @@ TEST(SharedPhaseUncertainty, WhatAveragesIsLeftOut) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 constexpr double noise_rad = 1e-4;
@@ -80,4 +80,4 @@ TEST(SweepDelay, OneSweepOrOneFrequencyTellsNothing) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -7,7 +7,7 @@
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 // Three sweeps of four frequencies, each as late as given beside 2 ms; noise 1e-4 rad.
@@ -50,4 +50,4 @@ TEST(TransferSummary, TakesADelayThatASweepSharesIntoTheGroupDelay) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

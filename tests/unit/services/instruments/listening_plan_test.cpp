@@ -5,7 +5,7 @@
 
 #include "tests/unit/services/programs/dau/bench_text.hpp"
 
-namespace dyncal::services::dau {
+namespace dyncal::inline instruments {
 namespace {
 
 using testing::HasSubstr;
@@ -57,4 +57,4 @@ TEST(ListeningPlan, ABenchWithoutSmartUpSourceHasNothingToReceive) {
 }
 
 } // namespace
-} // namespace dyncal::services::dau
+} // namespace dyncal::inline instruments

@@ -15,7 +15,7 @@
 #include "tests/patience.hpp"
 #include "tests/unit/drivers/files/temporary_file.hpp"
 
-namespace dyncal::services::acs {
+namespace dyncal::inline instruments {
 namespace {
 
 using drivers::files::TemporaryFile;
@@ -227,4 +227,4 @@ TEST_F(SlowlyPlayedFile, AnswersAnotherRunInTheSessionThatWillBePlayed) {
 }
 
 } // namespace
-} // namespace dyncal::services::acs
+} // namespace dyncal::inline instruments

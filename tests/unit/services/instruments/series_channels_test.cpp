@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace dyncal::services::dso {
+namespace dyncal::inline instruments {
 namespace {
 
 drivers::tss::Series series_of_two() {
@@ -40,4 +40,4 @@ TEST(SeriesChannels, AMissingChannelIsNamedWithThoseThereAre) {
 }
 
 } // namespace
-} // namespace dyncal::services::dso
+} // namespace dyncal::inline instruments

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services::dso {
+namespace dyncal::inline instruments {
 namespace {
 
 // A count that knows of the sensor's trigger number `shot`.
@@ -104,4 +104,4 @@ TEST(TriggerCount, ASensorThatBeginsOrCeasesToCountHasAFirstSeriesAgain) {
 }
 
 } // namespace
-} // namespace dyncal::services::dso
+} // namespace dyncal::inline instruments

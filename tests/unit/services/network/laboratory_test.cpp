@@ -8,7 +8,7 @@
 #include "services/network/laboratory_readers.hpp"
 #include "tests/unit/services/network/messages.hpp"
 
-namespace dyncal::services::live {
+namespace dyncal::network {
 namespace {
 
 using namespace std::chrono_literals;
@@ -435,4 +435,4 @@ TEST(LiveLaboratoryReaders, FeedALateListenerWithAllThatIsThere) {
 }
 
 } // namespace
-} // namespace dyncal::services::live
+} // namespace dyncal::network

@@ -6,7 +6,7 @@
 
 #include "idl/dyncal.h"
 
-namespace dyncal::services::live {
+namespace dyncal::network {
 
 inline wire::SourceStatus status_of(const std::string& bench, const std::string& source,
                                     wire::SourceState state = wire::SOURCE_RUNNING,
@@ -95,4 +95,4 @@ inline wire::ServiceStatus analysis_of(const std::string& bench, const std::stri
   return status;
 }
 
-} // namespace dyncal::services::live
+} // namespace dyncal::network

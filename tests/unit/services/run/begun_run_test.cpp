@@ -13,7 +13,7 @@
 #include "tests/unit/services/run/played_generator.hpp"
 #include "tests/unit/services/run/two_steps.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 namespace {
 
 using namespace std::chrono_literals;
@@ -391,4 +391,4 @@ TEST_F(ConductedRun, TakesTheAttemptsThatItMade) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline run

@@ -8,7 +8,7 @@
 #include "services/bus/memory/memory_network.hpp"
 #include "services/contract/topics.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 namespace {
 
 using namespace std::chrono_literals;
@@ -102,4 +102,4 @@ TEST_F(BenchQueueTest, AStopEndsTheWaiting) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline run

@@ -13,7 +13,7 @@
 #include "tests/unit/services/run/played_generator.hpp"
 #include "tests/unit/services/run/two_steps.hpp"
 
-namespace dyncal::services::run_tests {
+namespace dyncal::inline run::run_tests {
 
 using namespace std::chrono_literals;
 
@@ -77,4 +77,4 @@ protected:
   std::string failure_;
 };
 
-} // namespace dyncal::services::run_tests
+} // namespace dyncal::inline run::run_tests

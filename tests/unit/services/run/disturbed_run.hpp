@@ -17,7 +17,7 @@
 #include "tests/unit/services/run/played_generator.hpp"
 #include "tests/unit/services/run/two_steps.hpp"
 
-namespace dyncal::services::run_tests {
+namespace dyncal::inline run::run_tests {
 
 using namespace std::chrono_literals;
 
@@ -186,4 +186,4 @@ protected:
   }
 };
 
-} // namespace dyncal::services::run_tests
+} // namespace dyncal::inline run::run_tests

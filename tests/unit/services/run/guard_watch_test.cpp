@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 namespace {
 
 using namespace std::chrono_literals;
@@ -118,4 +118,4 @@ TEST_F(GuardWatchTest, PassesOverOtherServicesAndHoldsNoMoreThanItsBound) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline run

@@ -16,7 +16,7 @@
 #include "drivers/generator/level_control.hpp"
 #include "services/evaluation/record/channel_level.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 namespace {
 
 using drivers::generator::LevelControl;
@@ -250,4 +250,4 @@ TEST(LevelReading, RefusesAWindowAtAnEndOfTheRange) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline run

@@ -4,7 +4,7 @@
 
 #include "services/evaluation/record/channel_level.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 namespace {
 
 TEST(LevelSettling, IsPlannedOnlyWhereTheLevelIsControlled) {
@@ -20,4 +20,4 @@ TEST(LevelSettling, IsPlannedOnlyWhereTheLevelIsControlled) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline run

@@ -10,7 +10,7 @@
 
 #include "tests/udp_port.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 namespace {
 
 using namespace std::chrono_literals;
@@ -43,4 +43,4 @@ TEST(OutputGuardDeathTest, DoesNothingAfterAFarewell) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline run

@@ -120,11 +120,11 @@ private:
   std::string identity_ = "played";
 };
 
-inline services::ConnectGenerator connect_to(PlayedInstrument& instrument) {
-  return [&instrument](const services::GeneratorSettings&, const services::AskOperator&) {
-    services::GeneratorConnection connection;
+inline run::ConnectGenerator connect_to(PlayedInstrument& instrument) {
+  return [&instrument](const bench::GeneratorSettings&, const run::AskOperator&) {
+    run::GeneratorConnection connection;
     connection.generator = std::make_unique<PlayedGenerator>(instrument);
-    return services::Expected<services::GeneratorConnection>(std::move(connection));
+    return base::Expected<run::GeneratorConnection>(std::move(connection));
   };
 }
 

@@ -6,7 +6,7 @@
 #include "services/bus/memory/memory_network.hpp"
 #include "services/contract/topics.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 namespace {
 
 using namespace std::chrono_literals;
@@ -124,4 +124,4 @@ TEST_F(RunCommandsTest, ACommandThatIsStillRepeatedAsksForNoSecondRepeat) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline run

@@ -11,7 +11,7 @@
 
 #include "tests/unit/services/run/conducted_run.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 namespace {
 
 using namespace std::chrono_literals;
@@ -258,4 +258,4 @@ TEST_F(RunOfFiles, IsAbortedByTheUser) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline run

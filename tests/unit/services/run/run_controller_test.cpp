@@ -10,7 +10,7 @@
 #include "services/run/arming_wait.hpp"
 #include "tests/unit/services/run/conducted_run.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 namespace {
 
 using namespace std::chrono_literals;
@@ -338,4 +338,4 @@ TEST_F(RunControllerTest, KeepsTheRunAliveWhileStepsAreExcited) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline run

@@ -8,7 +8,7 @@
 #include "tests/unit/services/run/played_generator.hpp"
 #include "tests/unit/services/run/two_steps.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 namespace {
 
 using namespace std::chrono_literals;
@@ -72,4 +72,4 @@ TEST_F(RunKeepingTest, HandsOverResultsAsTheyCome) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline run

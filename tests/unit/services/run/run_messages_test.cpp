@@ -9,7 +9,7 @@
 
 #include "services/bus/memory/stepped_clock.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 namespace {
 
 // What came of each topic, and something that happens when the next one is taken.
@@ -134,4 +134,4 @@ TEST(RunMessages, HasTheSettledResultsOnceItSeesFinished) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline run

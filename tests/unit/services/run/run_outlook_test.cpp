@@ -5,7 +5,7 @@
 #include "services/bus/memory/memory_network.hpp"
 #include "services/contract/topics.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 namespace {
 
 using namespace std::chrono_literals;
@@ -106,4 +106,4 @@ TEST_F(RunOutlookTest, LeavesOutCommandsToOthersAndAboutOtherRuns) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline run

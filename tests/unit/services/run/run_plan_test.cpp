@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 namespace {
 
 TEST(RunPlan, PlansAllFrequenciesOfARepetitionBeforeTheNext) {
@@ -39,4 +39,4 @@ TEST(RunPlan, RefusesWhatTheMethodDoesNotHave) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline run

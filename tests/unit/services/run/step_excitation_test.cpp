@@ -17,7 +17,7 @@
 #include "services/run/run_plan.hpp"
 #include "tests/unit/services/run/played_generator.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 namespace {
 
 using namespace std::chrono_literals;
@@ -494,4 +494,4 @@ TEST_F(ShotsTest, EndWithAFailureWhenTheAnalysisIsLostMeanwhile) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline run

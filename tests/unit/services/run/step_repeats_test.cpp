@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 namespace {
 
 StepResult good(std::uint32_t step, std::uint32_t attempt = 1,
@@ -150,4 +150,4 @@ TEST_F(StepRepeatsTest, AStepIsEvaluatedWithTheResultsOfItsLastAttemptOfEveryCha
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline run

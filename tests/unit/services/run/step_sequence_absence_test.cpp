@@ -7,7 +7,7 @@
 
 #include "tests/unit/services/run/disturbed_run.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 namespace {
 
 using namespace std::chrono_literals;
@@ -268,4 +268,4 @@ TEST_F(StepSequenceAbsenceTest,
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline run

@@ -6,7 +6,7 @@
 
 #include "tests/unit/services/run/disturbed_run.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 namespace {
 
 using namespace std::chrono_literals;
@@ -116,4 +116,4 @@ TEST_F(StepSequenceRepeatsTest, ARepeatIsPausedAndBrokenOffLikeAnyStep) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline run

@@ -7,7 +7,7 @@
 
 #include "tests/unit/services/run/disturbed_run.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline run {
 namespace {
 
 using namespace std::chrono_literals;
@@ -154,4 +154,4 @@ TEST_F(StepSequenceResumeTest, ARunOfAnotherBenchFileIsNotResumed) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline run

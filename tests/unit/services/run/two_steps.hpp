@@ -8,14 +8,14 @@
 
 namespace dyncal::tests {
 
-inline services::BenchFile bench_of_two_steps(const std::string& name) {
-  services::BenchFile bench;
+inline bench::BenchFile bench_of_two_steps(const std::string& name) {
+  bench::BenchFile bench;
   bench.bench = name;
   bench.excitation.frequencies_hz = {"40", "80"};
   bench.excitation.levels_m_s2 = {10.0, 10.0};
   bench.excitation.settling_s = 0.5;
   bench.excitation.duration_s = 2.0;
-  bench.generator.driver = services::GeneratorDriver::scpi;
+  bench.generator.driver = bench::GeneratorDriver::scpi;
   bench.generator.level_per_volt = 5.0;
   bench.method.reference = {"acs", "reference"};
   bench.method.sync_acs = {"acs", "sync"};

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -148,4 +148,4 @@ TEST(BlockRing, WaitingEndsWhenStopIsRequested) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

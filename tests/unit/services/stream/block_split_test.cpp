@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 namespace {
 
 drivers::SampleBlock long_block(std::size_t samples, std::size_t channels, bool stamped) {
@@ -82,4 +82,4 @@ TEST(BlockSplit, NeverDividesASample) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

@@ -5,7 +5,7 @@
 
 #include "tests/temporary_folder.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 namespace {
 
 constexpr std::uint64_t chunk = ByteLog::chunk_bytes;
@@ -86,4 +86,4 @@ TEST(FolderForKeptMessages, IsThatOfTheServiceWhereThereIsOne) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

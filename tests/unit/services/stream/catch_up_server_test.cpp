@@ -6,7 +6,7 @@
 #include "services/bus/memory/memory_network.hpp"
 #include "services/contract/topics.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 namespace {
 
 using namespace std::chrono_literals;
@@ -337,4 +337,4 @@ TEST_F(CatchUpServerTest, GivesRecordsOfATriggeredSource) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

@@ -6,7 +6,7 @@
 #include "services/bus/memory/memory_network.hpp"
 #include "services/stream/source_publication.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 namespace {
 
 using namespace std::chrono_literals;
@@ -74,4 +74,4 @@ TEST(KeptSpan, IsInTheLogOfASourceOnceForEachRate) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

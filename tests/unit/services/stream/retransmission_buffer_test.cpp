@@ -5,7 +5,7 @@
 
 #include "tests/temporary_folder.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 namespace {
 
 using namespace std::chrono_literals;
@@ -265,4 +265,4 @@ TEST_F(RetransmissionBufferTest, FindsRecordsBetweenMarksWithoutNumber) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

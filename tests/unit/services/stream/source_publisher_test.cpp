@@ -9,7 +9,7 @@
 #include "services/bus/bus.hpp"
 #include "services/stream/messages.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 namespace {
 
 drivers::SampleBlock block_from(std::uint64_t first, std::size_t samples = 50) {
@@ -154,4 +154,4 @@ TEST(WaitingPublisher, OfAFileWaitsForRoomUntilItIsStopped) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

@@ -10,7 +10,7 @@
 #include "services/bus/vendor.hpp"
 #include "tests/unit/services/stream/bench_listener.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 namespace {
 
 using testing::HasSubstr;
@@ -410,4 +410,4 @@ INSTANTIATE_TEST_SUITE_P(Bus, SourceServiceTest, testing::ValuesIn(bus::vendors_
                          [](const auto& vendor) { return bus::to_string(vendor.param); });
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

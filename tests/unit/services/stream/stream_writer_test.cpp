@@ -6,7 +6,7 @@
 #include "services/bus/memory/memory_network.hpp"
 #include "services/contract/topics.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 namespace {
 
 const std::string bench = "acc";
@@ -99,4 +99,4 @@ TEST_F(StreamWriterTest, WritesTheSameBytesWhenItTriesAgain) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

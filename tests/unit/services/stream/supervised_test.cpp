@@ -11,7 +11,7 @@
 #include "tests/unit/services/daemon/supervision/notify_socket.hpp"
 #include "tests/unit/services/daemon/supervision/scrape.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 namespace {
 
 const std::string of_source = R"({bench="acc",source="acs"})";
@@ -99,4 +99,4 @@ TEST_F(SupervisedTest, ShowsTheWatchdogThatItsLoopTurns) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline stream {
 namespace {
 
 using namespace std::chrono_literals;
@@ -61,4 +61,4 @@ TEST_F(WritePaceTest, WaitsForAReaderThatHangsOnceAndNoLonger) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline stream

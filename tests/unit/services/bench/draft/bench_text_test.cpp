@@ -7,7 +7,7 @@
 #include "services/checks/bench_check/report.hpp"
 #include "tests/temporary_folder.hpp"
 
-namespace dyncal::services::bench_draft {
+namespace dyncal::inline bench::bench_draft {
 namespace {
 
 void write_records(const tests::TemporaryFolder& folder) {
@@ -86,4 +86,4 @@ TEST(BenchText, TextsOfTheDraftStayTexts) {
 }
 
 } // namespace
-} // namespace dyncal::services::bench_draft
+} // namespace dyncal::inline bench::bench_draft

@@ -7,7 +7,7 @@
 
 #include "tests/temporary_folder.hpp"
 
-namespace dyncal::services::bench_draft {
+namespace dyncal::inline bench::bench_draft {
 namespace {
 
 Expected<BenchDraft> ask(const std::string& answers, std::string& questions) {
@@ -76,4 +76,4 @@ TEST(DraftQuestions, AnswersThatEndEarly) {
 }
 
 } // namespace
-} // namespace dyncal::services::bench_draft
+} // namespace dyncal::inline bench::bench_draft

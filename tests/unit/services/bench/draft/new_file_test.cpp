@@ -8,7 +8,7 @@
 
 #include "tests/temporary_folder.hpp"
 
-namespace dyncal::services::bench_draft {
+namespace dyncal::inline bench::bench_draft {
 namespace {
 
 std::string text_of(const std::filesystem::path& path) {
@@ -48,4 +48,4 @@ TEST(NewFile, FolderThatIsNotThere) {
 }
 
 } // namespace
-} // namespace dyncal::services::bench_draft
+} // namespace dyncal::inline bench::bench_draft

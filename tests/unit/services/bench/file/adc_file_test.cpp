@@ -10,7 +10,7 @@
 #include "services/bench/file/adc_file_writer.hpp"
 #include "tests/temporary_folder.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 namespace {
 
 AdcCorrectionSettings settings_for(const std::string& channel,
@@ -159,4 +159,4 @@ TEST_F(AdcFile, RefusesANegativeUncertainty) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

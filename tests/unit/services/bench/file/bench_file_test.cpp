@@ -9,7 +9,7 @@
 
 #include "tests/temporary_folder.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 namespace {
 
 using testing::HasSubstr;
@@ -306,4 +306,4 @@ TEST(BenchFile, RefusesASensorIdThatIsNone) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

@@ -9,7 +9,7 @@
 #include "services/bench/file/bench_file.hpp"
 #include "tests/temporary_folder.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 namespace {
 
 using testing::HasSubstr;
@@ -149,4 +149,4 @@ TEST_F(CanKeys, AreRefusedWithFileLineAndKey) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 namespace {
 
 TEST(GeneratorAddress, IsComparedAsItIsWrittenButForLoopback) {
@@ -16,4 +16,4 @@ TEST(GeneratorAddress, IsComparedAsItIsWrittenButForLoopback) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

@@ -2,7 +2,7 @@
 
 #include "services/bench/file/bench_file.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 namespace {
 
 using ::testing::HasSubstr;
@@ -80,4 +80,4 @@ TEST(GeneratorTable, AsksForTheLevelPerVoltWhereAVoltageIsSet) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

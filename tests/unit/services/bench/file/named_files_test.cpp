@@ -6,7 +6,7 @@
 #include "services/bench/file/bench_file.hpp"
 #include "tests/temporary_folder.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 namespace {
 
 namespace fs = std::filesystem;
@@ -72,4 +72,4 @@ TEST(NamedFiles, AreKnownOfABenchFileAndFoundAmongCopies) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

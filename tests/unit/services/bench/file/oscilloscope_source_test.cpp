@@ -10,7 +10,7 @@
 #include "services/bench/file/dso_delay_file.hpp"
 #include "tests/temporary_folder.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 namespace {
 
 using testing::HasSubstr;
@@ -122,4 +122,4 @@ TEST(SeriesBench, TheDelayComesFromTheFileOfItsCalibration) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 namespace {
 
 using testing::HasSubstr;
@@ -104,4 +104,4 @@ TEST(ReferenceFile, SaysThatItCannotBeRead) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

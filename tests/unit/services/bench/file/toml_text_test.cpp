@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <toml++/toml.h>
 
-namespace dyncal::services {
+namespace dyncal::inline bench {
 namespace {
 
 // Why the text is refused; empty: it is not.
@@ -59,4 +59,4 @@ TEST(TomlText, HasForeignLettersInStringsAndCommentsAlone) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline bench

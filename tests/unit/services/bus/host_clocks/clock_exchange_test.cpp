@@ -9,7 +9,7 @@
 #include "services/bus/memory/memory_network.hpp"
 #include "services/contract/topics.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline host_clocks {
 namespace {
 
 using namespace std::chrono_literals;
@@ -252,4 +252,4 @@ TEST_F(ClockExchangeTest, EchoesNoMoreThanItsLimit) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline host_clocks

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
-namespace dyncal::services {
+namespace dyncal::inline host_clocks {
 namespace {
 
 using namespace std::chrono_literals;
@@ -81,4 +81,4 @@ TEST(OffsetTracker, KeepsTheNewestExchangesOnly) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline host_clocks

@@ -10,7 +10,7 @@
 #include "services/bus/memory/memory_network.hpp"
 #include "services/contract/topics.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline host_clocks {
 namespace {
 
 using namespace std::chrono_literals;
@@ -196,4 +196,4 @@ TEST_F(LinkMeterTest, SendsMoreSlowlyToManyPrograms) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline host_clocks

@@ -7,7 +7,7 @@
 #include "services/checks/bench_check/report.hpp"
 #include "tests/unit/services/checks/bench_check/checked_bench.hpp"
 
-namespace dyncal::services::bench_check {
+namespace dyncal::inline checks::bench_check {
 namespace {
 
 using testing::HasSubstr;
@@ -497,4 +497,4 @@ acs_delay_s = 1e-6
 }
 
 } // namespace
-} // namespace dyncal::services::bench_check
+} // namespace dyncal::inline checks::bench_check

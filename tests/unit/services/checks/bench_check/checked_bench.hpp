@@ -9,7 +9,7 @@
 #include "services/checks/bench_check/checks.hpp"
 #include "tests/temporary_folder.hpp"
 
-namespace dyncal::services::bench_check {
+namespace dyncal::inline checks::bench_check {
 
 // Of a SmartUp Unit and an ACS; there is nothing to find but notes.
 inline const std::string smartup_bench = R"(bench = "acc-1"
@@ -66,4 +66,4 @@ inline std::vector<Finding> of(const Findings& findings, Severity severity) {
   return chosen;
 }
 
-} // namespace dyncal::services::bench_check
+} // namespace dyncal::inline checks::bench_check

@@ -5,7 +5,7 @@
 
 #include "tests/unit/services/checks/bench_check/checked_bench.hpp"
 
-namespace dyncal::services::bench_check {
+namespace dyncal::inline checks::bench_check {
 namespace {
 
 const Findings findings{{Severity::note, "a.toml", 3, "excitation", "has 3 steps"},
@@ -41,4 +41,4 @@ TEST(BenchCheckReport, Json) {
 }
 
 } // namespace
-} // namespace dyncal::services::bench_check
+} // namespace dyncal::inline checks::bench_check

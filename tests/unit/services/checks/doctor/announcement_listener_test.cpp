@@ -4,7 +4,7 @@
 
 #include "services/bus/discovery.hpp"
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 namespace {
 
 TEST(AnnouncementListener, ReadsTheSenderOfAPacket) {
@@ -29,4 +29,4 @@ TEST(Discovery, KnowsVendorsByTheirNumber) {
 }
 
 } // namespace
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

@@ -4,7 +4,7 @@
 #include "services/checks/doctor/checks.hpp"
 #include "tests/unit/services/checks/doctor/findings.hpp"
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 namespace {
 
 using bus::DiscoveredEndpoint;
@@ -123,4 +123,4 @@ TEST(PartitionsMatch, AsDdsHasIt) {
 }
 
 } // namespace
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

@@ -4,7 +4,7 @@
 #include "services/checks/doctor/checks.hpp"
 #include "tests/unit/services/checks/doctor/findings.hpp"
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 namespace {
 
 using testing::ElementsAre;
@@ -77,4 +77,4 @@ TEST_F(CheckGuards, AsksForNoneWhereNoneIsNeeded) {
 }
 
 } // namespace
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

@@ -5,7 +5,7 @@
 #include "tests/temporary_folder.hpp"
 #include "tests/unit/services/checks/doctor/findings.hpp"
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 namespace {
 
 using testing::ElementsAre;
@@ -103,4 +103,4 @@ TEST(HostViewTest, SeesThisHost) {
 }
 
 } // namespace
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

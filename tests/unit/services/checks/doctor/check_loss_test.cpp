@@ -4,7 +4,7 @@
 #include "services/checks/doctor/checks.hpp"
 #include "tests/unit/services/checks/doctor/findings.hpp"
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 namespace {
 
 using testing::AllOf;
@@ -74,4 +74,4 @@ TEST_F(CheckLoss, TellsWhereNothingCouldBeMeasured) {
 }
 
 } // namespace
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

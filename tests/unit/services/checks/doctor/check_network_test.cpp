@@ -4,7 +4,7 @@
 #include "services/checks/doctor/checks.hpp"
 #include "tests/unit/services/checks/doctor/findings.hpp"
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 namespace {
 
 using testing::AllOf;
@@ -77,4 +77,4 @@ TEST_F(CheckNetwork, CountsMessagesThatDoNotMatchTheContract) {
 }
 
 } // namespace
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

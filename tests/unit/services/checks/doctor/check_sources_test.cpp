@@ -4,7 +4,7 @@
 #include "services/checks/doctor/checks.hpp"
 #include "tests/unit/services/checks/doctor/findings.hpp"
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 namespace {
 
 using testing::AllOf;
@@ -133,4 +133,4 @@ TEST_F(CheckSources, NamesServicesOfABenchThatReadDifferentFiles) {
 }
 
 } // namespace
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

@@ -7,8 +7,8 @@
 
 namespace dyncal::tests {
 
-using services::doctor::Findings;
-using services::doctor::Severity;
+using dyncal::doctor::Findings;
+using dyncal::doctor::Severity;
 
 // Sentences of one severity, each with its check before it: "twins: two services ...".
 inline std::vector<std::string> sentences(const Findings& findings, Severity severity) {

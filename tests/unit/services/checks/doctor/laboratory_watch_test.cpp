@@ -6,7 +6,7 @@
 #include "services/bus/memory/memory_network.hpp"
 #include "services/contract/topics.hpp"
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 namespace {
 
 using namespace std::chrono_literals;
@@ -113,4 +113,4 @@ TEST_F(LaboratoryWatchTest, SeesProgramsTheirClocksAndWhatIsLost) {
 }
 
 } // namespace
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

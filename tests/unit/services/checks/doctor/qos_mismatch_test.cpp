@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 namespace {
 
 using bus::AccessScope;
@@ -104,4 +104,4 @@ std::vector<Policy> policies() {
 INSTANTIATE_TEST_SUITE_P(Policies, QosMismatch, testing::ValuesIn(policies()));
 
 } // namespace
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 namespace {
 
 const Finding fine{Severity::ok, "disk", "100 MB are free"};
@@ -76,4 +76,4 @@ TEST(DoctorReport, HasAllOfItAsJson) {
 }
 
 } // namespace
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

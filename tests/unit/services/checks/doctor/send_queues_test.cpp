@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 namespace {
 
 // With a queue that drops: unheard_analysis_test.py of tests/faults.
@@ -13,4 +13,4 @@ TEST(SendQueues, HasThatOfTheLoopbackInterface) {
 }
 
 } // namespace
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

@@ -11,7 +11,7 @@
 
 #include "drivers/link/file_descriptor.hpp"
 
-namespace dyncal::services::doctor {
+namespace dyncal::inline checks::doctor {
 namespace {
 
 constexpr const char* here = "127.0.0.1";
@@ -70,4 +70,4 @@ TEST(TrialConnections, LeaveOutWhatIsNoAddress) {
 }
 
 } // namespace
-} // namespace dyncal::services::doctor
+} // namespace dyncal::inline checks::doctor

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 namespace {
 
 using bus::HostAddress;
@@ -19,7 +19,7 @@ const HostAddress containers_later{"docker0", 4, "172.18.0.1", false, true};
 
 std::string what_deafens(const Addresses& start, std::vector<std::string> announced,
                          const Addresses& now) {
-  return services::what_deafens(AddressesAtStart{start, std::move(announced)}, now);
+  return daemon::what_deafens(AddressesAtStart{start, std::move(announced)}, now);
 }
 
 TEST(AddressChange, DeafensWhenTheAddressMakesWayForAnother) {
@@ -68,4 +68,4 @@ TEST(AddressChange, SaysWhatHasGoneAndWhatHasCome) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

@@ -8,7 +8,7 @@
 
 #include "services/daemon/program/completion.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 namespace {
 
 using testing::HasSubstr;
@@ -131,4 +131,4 @@ TEST(CommandLine, CompletionOfThreeShells) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 namespace {
 
 // In a thread, where nothing else catches it.
@@ -58,4 +58,4 @@ TEST(LastWords, LeaveADumpWhereALibraryAbortsForAnotherReason) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

@@ -10,7 +10,7 @@
 #include <thread>
 #include <unistd.h>
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 namespace {
 
 // The kernel has announced it when this returns.
@@ -69,4 +69,4 @@ TEST(NetworkChanges, AreAssumedWhereMoreWasAnnouncedThanTheKernelKeeps) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

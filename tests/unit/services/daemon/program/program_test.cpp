@@ -10,7 +10,7 @@
 #include "services/base/printable_text.hpp"
 #include "services/daemon/program/log.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 namespace {
 
 std::string hostile() {
@@ -44,4 +44,4 @@ TEST(Log, WritesOneShortLineWhateverOthersHaveSent) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

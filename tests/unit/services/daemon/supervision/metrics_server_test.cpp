@@ -7,7 +7,7 @@
 #include "services/daemon/supervision/supervisor.hpp"
 #include "tests/unit/services/daemon/supervision/scrape.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 namespace {
 
 using testing::ContainsRegex;
@@ -188,4 +188,4 @@ TEST_F(MetricsTest, AreServedByASupervisorThatIsAskedTo) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

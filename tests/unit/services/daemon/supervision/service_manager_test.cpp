@@ -5,7 +5,7 @@
 #include "tests/temporary_folder.hpp"
 #include "tests/unit/services/daemon/supervision/notify_socket.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline daemon {
 namespace {
 
 using namespace std::chrono_literals;
@@ -93,4 +93,4 @@ TEST_F(ServiceManagerTest, DoesNothingWithoutAServiceManager) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline daemon

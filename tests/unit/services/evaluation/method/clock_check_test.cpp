@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 constexpr int samples = 2000;
@@ -78,4 +78,4 @@ TEST(ClockCheck, BesideSyncOnlyTheMagnitudeCounts) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

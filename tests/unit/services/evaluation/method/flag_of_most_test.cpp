@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 constexpr ResultFlag kind = ResultFlag::changed_within_step;
@@ -63,4 +63,4 @@ TEST(FlagOfMost, StepsWithoutAValueNeitherCountNorGetIt) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

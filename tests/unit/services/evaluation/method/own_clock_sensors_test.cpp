@@ -14,7 +14,7 @@
 #include "tests/unit/services/evaluation/monte_carlo_agreement.hpp"
 #include "tests/unit/services/evaluation/synthetic_run.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 using testing::HasSubstr;
@@ -238,4 +238,4 @@ TEST(OwnClockSensors, NeedsToKnowItsSensors) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

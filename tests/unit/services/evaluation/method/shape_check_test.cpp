@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 using testing::HasSubstr;
@@ -152,4 +152,4 @@ TEST(ShapeCheck, ValuesInTurnOfTwoSensorsAreSaidWithTheirDifference) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 struct Record {
@@ -74,4 +74,4 @@ TEST(SignalCheck, FlagsWhatItCannotJudge) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

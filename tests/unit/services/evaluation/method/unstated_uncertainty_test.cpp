@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 using testing::ElementsAre;
@@ -87,4 +87,4 @@ TEST(UnstatedUncertainty, OfTheDelayBetweenChannelsOfTheAcsWhereOneIsComparedWit
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

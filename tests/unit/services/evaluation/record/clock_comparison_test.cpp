@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 constexpr double frequency_hz = 80.0;
@@ -79,4 +79,4 @@ TEST_F(ClockComparison, PhasesOfOtherFrequenciesTellNothing) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

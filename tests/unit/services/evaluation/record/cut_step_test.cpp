@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 constexpr std::int64_t ms = 1'000'000;
@@ -62,4 +62,4 @@ TEST_F(CutStep, IsNoneWhereTheOthersLastAsLongAsTheyLike) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

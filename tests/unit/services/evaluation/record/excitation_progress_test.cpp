@@ -5,7 +5,7 @@
 #include "services/evaluation/recipe/recipe_message.hpp"
 #include "tests/unit/services/evaluation/synthetic_run.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 class ExcitationProgressTest : public testing::Test {
@@ -37,4 +37,4 @@ TEST_F(ExcitationProgressTest, AStepThatTheRecipeDoesNotHaveChangesNothing) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -7,7 +7,7 @@
 #include "services/evaluation/recipe/recipe_message.hpp"
 #include "tests/unit/services/evaluation/synthetic_run.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 // All steps last from 0.5 s on for 1.5 s, every 2 s.
@@ -65,4 +65,4 @@ TEST(ExcitationSurvey, ARecordMayBeginWithinAStep) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

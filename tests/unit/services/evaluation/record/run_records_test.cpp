@@ -5,7 +5,7 @@
 #include "services/evaluation/recipe/recipe_message.hpp"
 #include "tests/unit/services/evaluation/synthetic_run.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 constexpr std::int64_t s_ns = 1'000'000'000;
@@ -78,4 +78,4 @@ TEST_F(RunRecordsTest, NothingComesAnyMoreOnceTheRunIsCutShort) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 constexpr std::int64_t ms = 1'000'000;
@@ -80,4 +80,4 @@ TEST_F(SentBlocksTest, AllowForAHostWhoseClockIsSetBack) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 TriggeredRecord record_of_shot(std::uint64_t shot, std::uint32_t step = 1) {
@@ -59,4 +59,4 @@ TEST(ShotRecord, IsBoundedAndCountsWhatItDrops) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -7,7 +7,7 @@
 #include "tests/unit/services/evaluation/feed.hpp"
 #include "tests/unit/services/evaluation/synthetic_run.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 TEST(SourceRecord, HoldsTheSameSamplesHoweverTheyWereCut) {
@@ -139,4 +139,4 @@ TEST(SourceRecord, KeepsItsBoundAndCountsWhatItDrops) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

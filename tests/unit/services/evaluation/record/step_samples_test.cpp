@@ -7,7 +7,7 @@
 
 #include "tests/unit/services/evaluation/feed.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 wire::SampleBlock block_of(std::size_t samples) {
@@ -115,4 +115,4 @@ TEST(StepSamples, LeaveOutAndCountWhatIsNotTrustedNotMeasuredOrNotLater) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -6,7 +6,7 @@
 #include "tests/unit/services/evaluation/feed.hpp"
 #include "tests/unit/services/evaluation/synthetic_run.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 // The records of a run up to some time before the end of its first step is found, which both
@@ -99,4 +99,4 @@ TEST_F(StepSnapshotTest, DoesNotHoldWhenTheExcitationWasBrokenOff) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

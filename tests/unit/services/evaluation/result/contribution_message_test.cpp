@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 using analysis::Contribution;
@@ -77,4 +77,4 @@ TEST(ContributionMessage, UnknownValuesAreReadAsARowThatNeverAverages) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -8,7 +8,7 @@
 #include "services/evaluation/result/clock_report_message.hpp"
 #include "services/evaluation/result/transfer_function_message.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 StepResult example_result() {
@@ -151,4 +151,4 @@ TEST(ClockReportMessage, OfAnOlderWriterIsFlaggedByItsUncertainty) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline evaluation {
 namespace {
 
 constexpr const char* silent = "source 'dau' has sent nothing for 5 s";
@@ -42,4 +42,4 @@ TEST(RunPause, IsAnotherOneForTheSameReasonOnceTheRunHasGoneOn) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline evaluation

@@ -9,7 +9,7 @@
 #include "services/base/version.hpp"
 #include "tests/unit/services/programs/analysis/played_sources.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using namespace std::chrono_literals;
@@ -562,4 +562,4 @@ TEST_F(AnalysisServiceTest, TakesARunOverThatBeganWithItsOwnSoftware) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -10,7 +10,7 @@
 #include "tests/unit/services/evaluation/costly_run.hpp"
 #include "tests/unit/services/programs/analysis/played_sources.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using namespace std::chrono_literals;
@@ -155,4 +155,4 @@ TEST_F(CostlyEvaluationTest, OfARunThatHasDiedDoesNotHoldItsBench) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

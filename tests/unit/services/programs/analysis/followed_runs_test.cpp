@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using namespace std::chrono_literals;
@@ -87,4 +87,4 @@ TEST_F(FollowedRunsTest, IsBoundedAndKeepsRunsThatRepeat) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

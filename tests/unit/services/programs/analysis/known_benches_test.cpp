@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using namespace std::chrono_literals;
@@ -80,4 +80,4 @@ TEST_F(KnownBenchesTest, DropsNoSourceOfALivingRun) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

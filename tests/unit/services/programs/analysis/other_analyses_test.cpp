@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using namespace std::chrono_literals;
@@ -74,4 +74,4 @@ TEST(OtherAnalysesTest, KnowsWhoLeadsARunThatIsInUseWhateverElseComes) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -11,7 +11,7 @@
 #include "services/programs/analysis/run_session.hpp"
 #include "tests/unit/services/programs/analysis/played_sources.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 
 class RunSessionTest : public testing::Test {
 protected:
@@ -92,4 +92,4 @@ protected:
   }
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

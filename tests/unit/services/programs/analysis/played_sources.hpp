@@ -37,7 +37,7 @@ public:
                       .value()),
         samples_(participant_
                      .writer<wire::SampleBlock>(
-                         services::sample_topic(services::from_wire(description.kind())),
+                         contract::sample_topic(contract::from_wire(description.kind())),
                          bus::Profile::samples, bench())
                      .value()),
         commands_(participant_

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using namespace std::chrono_literals;
@@ -55,4 +55,4 @@ TEST_F(RunConductorTest, ResumingWithAnotherRecipeIsWrongWhereItsOwnConductorIsG
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -10,7 +10,7 @@
 #include "services/bus/memory/stepped_clock.hpp"
 #include "services/contract/topics.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using Events = std::vector<std::string>;
@@ -95,4 +95,4 @@ TEST(RunPublisher, WaitsForNobodyWhereNoResultComesOnceMore) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -6,7 +6,7 @@
 
 #include "tests/unit/services/programs/analysis/played_session.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using namespace std::chrono_literals;
@@ -108,4 +108,4 @@ TEST_F(TwinTest, IsNamedByHostAndProcess) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

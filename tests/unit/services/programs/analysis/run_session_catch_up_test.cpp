@@ -5,7 +5,7 @@
 
 #include "tests/unit/services/programs/analysis/played_session.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using namespace std::chrono_literals;
@@ -510,4 +510,4 @@ TEST_F(RunSessionCatchUp, RefusesARunOfWhichASourceHasTheBeginningNoMore) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

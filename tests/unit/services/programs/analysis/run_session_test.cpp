@@ -9,7 +9,7 @@
 
 #include "tests/unit/services/programs/analysis/played_session.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using namespace std::chrono_literals;
@@ -513,4 +513,4 @@ TEST_F(RunSessionLevel, GoesOnAtTheLevelThatIsPlanned) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using namespace std::chrono_literals;
@@ -58,4 +58,4 @@ TEST(Arming, GivesASourceThatHasStartedTimeToAnswer) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -8,7 +8,7 @@
 #include "services/bus/memory/memory_network.hpp"
 #include "services/contract/topics.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 class SourceRequestsTest : public testing::Test {
@@ -56,4 +56,4 @@ TEST_F(SourceRequestsTest, AsksForWhatWasMissed) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using namespace std::chrono_literals;
@@ -300,4 +300,4 @@ TEST(StreamFollowerOfRecords, TakesShotsInOrderAndEmptyMessagesAsTheyCome) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

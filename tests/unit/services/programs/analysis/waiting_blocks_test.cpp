@@ -7,7 +7,7 @@
 
 #include "services/programs/analysis/stream_follower.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using Numbers = std::vector<std::uint64_t>;
@@ -58,4 +58,4 @@ TEST(WaitingBlocks, LeavesOutASessionAndHasItsRoomAgain) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -16,7 +16,7 @@
 #include "tests/unit/drivers/collecting_sink.hpp"
 #include "tests/unit/services/stream/bench_listener.hpp"
 
-namespace dyncal::services::can {
+namespace dyncal::inline programs::can {
 namespace {
 
 using drivers::can::BusEvent;
@@ -298,4 +298,4 @@ TEST_F(CanService, PlaysARecordedLogWithTheMeansAndGapsThatItIsKnownToHave) {
 }
 
 } // namespace
-} // namespace dyncal::services::can
+} // namespace dyncal::inline programs::can

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using ::testing::HasSubstr;
@@ -78,4 +78,4 @@ TEST(CalibrateAdc, APassTakesSyncForEverythingAndSetsTheVoltage) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -9,7 +9,7 @@
 #include "services/programs/command/pulse_file.hpp"
 #include "tests/temporary_folder.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 namespace fs = std::filesystem;
@@ -130,4 +130,4 @@ TEST_F(CalibrateTime, TheRealRecordsAreReadWithTheirKnownFaults) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

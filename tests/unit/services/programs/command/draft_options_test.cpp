@@ -5,7 +5,7 @@
 
 #include "services/bench/draft/bench_text.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using bench_draft::BenchDraft;
@@ -74,4 +74,4 @@ TEST(DraftOptions, KnowsKeysOfTheFilesThatAreDrafted) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

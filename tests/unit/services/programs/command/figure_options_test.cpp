@@ -9,7 +9,7 @@
 #include "tests/temporary_folder.hpp"
 #include "tests/unit/services/views/report/example_outcome.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using figures::ErrorBars;
@@ -89,4 +89,4 @@ TEST(FigureOptions, WithoutBarsDeviationsHaveNeitherBarsNorBand) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 TEST(HarmlessText, KeepsWhatIsReadable) {
@@ -34,4 +34,4 @@ TEST(HarmlessText, OfA100KilobytesIsOneShortLine) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -9,7 +9,7 @@
 #include "services/programs/command/laboratory_lines.hpp"
 #include "tests/unit/services/network/messages.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using testing::HasSubstr;
@@ -36,7 +36,7 @@ protected:
   }
 
   bus::SteppedClock clock;
-  live::Laboratory laboratory{clock};
+  network::Laboratory laboratory{clock};
 };
 
 TEST_F(LaboratoryTable, OneLineASourceAndAChannelThatResponds) {
@@ -215,4 +215,4 @@ TEST_F(LaboratoryTable, LinesForAPipeTellTheClocksOfAllHosts) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

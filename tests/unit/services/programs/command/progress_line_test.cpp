@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 TEST(ProgressLine, SaysStepFrequencyPhaseAndTimeLeft) {
@@ -24,4 +24,4 @@ TEST(ProgressLine, SaysBeforeTheFirstStepWhatIsWaitedFor) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

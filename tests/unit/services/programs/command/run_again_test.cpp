@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -28,4 +28,4 @@ TEST(RunAgain, BeginsAsItWasCalledWhereNothingWasExcited) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

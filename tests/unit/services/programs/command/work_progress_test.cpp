@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using namespace std::chrono_literals;
@@ -108,4 +108,4 @@ TEST_F(WorkProgressOnTerminal, ShowsNothingOfWhatIsQuick) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -8,7 +8,7 @@
 #include "services/bench/file/bench_file.hpp"
 #include "tests/temporary_folder.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 TEST(DemoBench, BenchFileOfEveryPresetIsOneThatAUserMayStartFrom) {
@@ -58,4 +58,4 @@ TEST(DemoBench, ExcitesWhereTheResponseIsKnown) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -8,7 +8,7 @@
 
 #include "tests/temporary_folder.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 class TruthCheck : public testing::Test {
@@ -64,4 +64,4 @@ TEST_F(TruthCheck, AFileThatIsNoTruthIsAnError) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -5,7 +5,7 @@
 
 #include "services/bus/bus.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 class VendorAssignment : public testing::Test {
@@ -40,4 +40,4 @@ TEST_F(VendorAssignment, RefusesWordsThatAreNone) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -20,7 +20,7 @@
 #include "tests/dds_domain.hpp"
 #include "tests/patience.hpp"
 
-namespace dyncal::services::dso {
+namespace dyncal::inline programs::dso {
 namespace {
 
 using namespace std::chrono_literals;
@@ -342,4 +342,4 @@ INSTANTIATE_TEST_SUITE_P(Faults, BadLine,
                          });
 
 } // namespace
-} // namespace dyncal::services::dso
+} // namespace dyncal::inline programs::dso

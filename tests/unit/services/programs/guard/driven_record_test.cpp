@@ -5,7 +5,7 @@
 
 #include "tests/temporary_folder.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 const DrivenRun driven{"r1", false, {{40.0, 0.8}, {80.0, std::nullopt}}, true};
@@ -50,4 +50,4 @@ TEST(DrivenRecord, SaysWhereItCannotBeWritten) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

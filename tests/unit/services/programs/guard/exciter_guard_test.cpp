@@ -7,7 +7,7 @@
 #include "services/contract/topics.hpp"
 #include "tests/temporary_folder.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using namespace std::chrono_literals;
@@ -334,4 +334,4 @@ TEST_F(ExciterGuardTest, DoesNotTakeAnotherBenchsExcitationForItsOwn) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

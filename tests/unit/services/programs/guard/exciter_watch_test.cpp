@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using namespace std::chrono_literals;
@@ -468,4 +468,4 @@ TEST_F(ExciterWatchTest, HoldsItsPromiseOverDrawnHistories) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

@@ -12,7 +12,7 @@
 #include "services/bus/memory/memory_network.hpp"
 #include "services/contract/topics.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline programs {
 namespace {
 
 using namespace std::chrono_literals;
@@ -222,4 +222,4 @@ TEST_F(ReferenceWatchTest, GoesOnWithTheRunThatFollows) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline programs

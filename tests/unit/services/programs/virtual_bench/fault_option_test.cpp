@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace dyncal::services::virtual_bench {
+namespace dyncal::inline programs::virtual_bench {
 namespace {
 
 using drivers::virtual_bench::BenchFaults;
@@ -129,4 +129,4 @@ TEST(FaultOption, HelpNamesEveryFault) {
 }
 
 } // namespace
-} // namespace dyncal::services::virtual_bench
+} // namespace dyncal::inline programs::virtual_bench

@@ -7,7 +7,7 @@
 #include "services/bus/memory/stepped_clock.hpp"
 #include "tests/temporary_folder.hpp"
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 namespace {
 
 using namespace std::chrono_literals;
@@ -113,4 +113,4 @@ TEST_F(ReadToken, TakesALongLineThatOthersCannotRead) {
 }
 
 } // namespace
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 namespace {
 
 TEST(MethodsOf, AreThoseOfEveryAddress) {
@@ -34,4 +34,4 @@ TEST(Allows, ComparesWholeMethods) {
 }
 
 } // namespace
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

@@ -11,7 +11,7 @@
 #include "tests/temporary_folder.hpp"
 #include "tests/unit/services/records/store/silent_server.hpp"
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 namespace {
 
 using testing::HasSubstr;
@@ -71,4 +71,4 @@ TEST(HistoryAnswers, EveryVisitorOfAStoreThatWorksGetsAnAnswer) {
 }
 
 } // namespace
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 namespace {
 
 TEST(IsOwnHost, TakesAddressesAndNamesOfThisComputer) {
@@ -28,4 +28,4 @@ TEST(IsOwnOrigin, TakesTheSameHostAndNoneOther) {
 }
 
 } // namespace
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

@@ -10,7 +10,7 @@
 #include "tests/unit/services/network/messages.hpp"
 #include "tests/unit/services/programs/web/raw_visitor.hpp"
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 namespace {
 
 namespace fs = std::filesystem;
@@ -33,7 +33,7 @@ protected:
       return request.path == "/api/run";
     });
     cache_.change(
-        [](live::Laboratory& laboratory) { laboratory.take(live::status_of("acc-1", "dau")); });
+        [](network::Laboratory& laboratory) { laboratory.take(live::status_of("acc-1", "dau")); });
     ASSERT_TRUE(router_.start());
   }
   // Head and body of the answer to these lines, after which the connection is closed.
@@ -246,4 +246,4 @@ TEST_F(HttpRules, SendNothingToWhomHasItAlready) {
 }
 
 } // namespace
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

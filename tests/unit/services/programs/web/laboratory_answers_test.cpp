@@ -6,7 +6,7 @@
 #include "services/bus/memory/stepped_clock.hpp"
 #include "tests/unit/services/network/messages.hpp"
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 namespace {
 
 TEST(BenchAddress, DividesNameAndPart) {
@@ -27,7 +27,7 @@ TEST(BenchAddress, DividesNameAndPart) {
 class FigureAnswers : public testing::Test {
 protected:
   FigureAnswers() {
-    cache_.change([](live::Laboratory& laboratory) {
+    cache_.change([](network::Laboratory& laboratory) {
       laboratory.take(live::measurement_of("acc-1", "r1", wire::MEASUREMENT_RUNNING));
       laboratory.take(live::result_of("acc-1", "r1", 1, 0.3));
     });
@@ -70,4 +70,4 @@ TEST_F(FigureAnswers, RefuseUnknownBarsRunsAndChannels) {
 }
 
 } // namespace
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

@@ -9,7 +9,7 @@
 #include "services/programs/web/request_router.hpp"
 #include "tests/unit/services/programs/web/raw_visitor.hpp"
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -105,4 +105,4 @@ TEST_F(LimitedServerTest, AnswersASlowVisitorWhole) {
 }
 
 } // namespace
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

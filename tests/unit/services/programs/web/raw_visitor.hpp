@@ -10,7 +10,7 @@
 
 #include "drivers/link/file_descriptor.hpp"
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 
 class RawVisitor {
 public:
@@ -56,4 +56,4 @@ private:
   bool is_connected_ = false;
 };
 
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 namespace {
 
 const std::string host = "Host: lab-1:8080\r\n";
@@ -102,4 +102,4 @@ TEST(ReadHead, EndsWhereTheEmptyLineIs) {
 }
 
 } // namespace
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

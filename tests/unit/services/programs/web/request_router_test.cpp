@@ -21,7 +21,7 @@
 #include "tests/temporary_folder.hpp"
 #include "tests/unit/services/network/messages.hpp"
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -39,7 +39,7 @@ protected:
         [this](const auto& request, auto& response) { return events_.answer(request, response); });
     router_.on_post(
         [this](const auto& request, auto& response) { return actions_.post(request, response); });
-    cache_.change([](live::Laboratory& laboratory) {
+    cache_.change([](network::Laboratory& laboratory) {
       laboratory.take(live::status_of("<b>acc-1</b>", "dau"));
     });
     ASSERT_TRUE(router_.start());
@@ -245,4 +245,4 @@ TEST_F(RequestRouterTest, LetsAsManyListenAsItHasRoomFor) {
 }
 
 } // namespace
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

@@ -8,7 +8,7 @@
 
 #include "tests/temporary_folder.hpp"
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 namespace {
 
 namespace fs = std::filesystem;
@@ -95,4 +95,4 @@ TEST(NamesEtag, ComparesWeakly) {
 }
 
 } // namespace
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

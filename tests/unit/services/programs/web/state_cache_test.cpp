@@ -8,7 +8,7 @@
 #include "services/bus/memory/stepped_clock.hpp"
 #include "tests/unit/services/network/messages.hpp"
 
-namespace dyncal::services::web {
+namespace dyncal::inline programs::web {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -18,7 +18,7 @@ class StateCacheTest : public testing::Test {
 protected:
   template <class Message>
   void take(const Message& message) {
-    cache_.change([&](live::Laboratory& laboratory) { laboratory.take(message); });
+    cache_.change([&](network::Laboratory& laboratory) { laboratory.take(message); });
   }
   Text results(const std::string& run = "") {
     return cache_.results("acc-1", run, [this](const std::string&, Json& json) {
@@ -62,7 +62,7 @@ TEST_F(StateCacheTest, MakesResultsAnewWhenTheyChange) {
 }
 
 TEST_F(StateCacheTest, MakesFiguresOnceForEachChannelAndChange) {
-  using services::figures::ErrorBars;
+  using dyncal::figures::ErrorBars;
   const auto figures = [this](ErrorBars bars, const std::string& channel = "dau/acceleration_z") {
     return cache_.figures("acc-1", "", channel, bars);
   };
@@ -101,10 +101,10 @@ TEST_F(StateCacheTest, MakesFiguresOnceForEachChannelAndChange) {
 TEST_F(StateCacheTest, ShowsARunThatWasDroppedAndIsHeardOfAgainAsItIsNow) {
   const auto figures = [this] {
     return cache_.figures("acc-1", "r1", "dau/acceleration_z",
-                          services::figures::ErrorBars::expanded);
+                          dyncal::figures::ErrorBars::expanded);
   };
   const auto drop = [this](const std::string& others) {
-    for (std::size_t i = 0; i < live::Limits{}.runs; ++i) {
+    for (std::size_t i = 0; i < network::Limits{}.runs; ++i) {
       clock_.advance(1s);
       take(live::result_of("acc-1", others + std::to_string(i), 1, 0.5));
     }
@@ -137,7 +137,7 @@ TEST_F(StateCacheTest, ShowsThePlanOfARunThatIsHeardOfAgain) {
   first.message("the first");
   take(first);
   const Text old = results("r1");
-  for (std::size_t i = 0; i < live::Limits{}.runs; ++i) {
+  for (std::size_t i = 0; i < network::Limits{}.runs; ++i) {
     clock_.advance(1s);
     take(live::result_of("acc-1", "other" + std::to_string(i), 1, 0.5));
   }
@@ -159,16 +159,15 @@ TEST_F(StateCacheTest, HoldsTextsOfTheRunsItHoldsOnly) {
     }
     clock_.advance(1s);
     ASSERT_NE(results(run), nullptr);
-    ASSERT_NE(
-        cache_.figures("acc-1", run, "dau/acceleration_z", services::figures::ErrorBars::none),
-        nullptr);
+    ASSERT_NE(cache_.figures("acc-1", run, "dau/acceleration_z", dyncal::figures::ErrorBars::none),
+              nullptr);
     ASSERT_NE(cache_.laboratory(), nullptr);
     most.texts = std::max(most.texts, cache_.held().texts);
     most.bytes = std::max(most.bytes, cache_.held().bytes);
     after_300 = i == 299 ? cache_.held() : after_300;
   }
-  EXPECT_LE(most.texts, 2 * live::Limits{}.runs + 1);
-  EXPECT_GE(most.texts, 2 * live::Limits{}.runs) << "what is shown is held";
+  EXPECT_LE(most.texts, 2 * network::Limits{}.runs + 1);
+  EXPECT_GE(most.texts, 2 * network::Limits{}.runs) << "what is shown is held";
   EXPECT_GT(after_300.bytes, 10'000U);
   EXPECT_LT(most.bytes, after_300.bytes + after_300.bytes / 10);
 }
@@ -198,4 +197,4 @@ TEST_F(StateCacheTest, HasNoTextOfABenchThatIsNotKnown) {
 }
 
 } // namespace
-} // namespace dyncal::services::web
+} // namespace dyncal::inline programs::web

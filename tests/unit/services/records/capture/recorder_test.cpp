@@ -9,7 +9,7 @@
 #include "tests/temporary_folder.hpp"
 #include "tests/unit/services/records/mcap/recorded_example.hpp"
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 namespace {
 
 wire::SampleBlock block_of(std::uint64_t number) {
@@ -282,4 +282,4 @@ TEST_F(RecorderTest, TellsTheBusWhatItHasStored) {
 }
 
 } // namespace
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

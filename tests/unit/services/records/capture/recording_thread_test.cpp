@@ -5,7 +5,7 @@
 #include "tests/temporary_folder.hpp"
 #include "tests/unit/services/records/mcap/recorded_example.hpp"
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 namespace {
 
 TEST(RecordingThread, WritesWhatIsPutAndEndsTheFile) {
@@ -55,4 +55,4 @@ TEST(RecordingThread, HasABound) {
 }
 
 } // namespace
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

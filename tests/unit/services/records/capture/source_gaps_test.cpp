@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 namespace {
 
 using namespace std::chrono_literals;
@@ -64,4 +64,4 @@ TEST(SourceGaps, AskForTheBeginningOfARun) {
 }
 
 } // namespace
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

@@ -6,7 +6,7 @@
 #include "tests/temporary_folder.hpp"
 #include "tests/unit/services/records/exchange/recorded_bench.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 using testing::HasSubstr;
@@ -88,4 +88,4 @@ TEST_F(Hdf5Export, StopsWhileItReads) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline records

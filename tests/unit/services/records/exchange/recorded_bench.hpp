@@ -13,7 +13,7 @@
 
 #include "tests/unit/services/records/mcap/example_recording.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 inline wire::SourceDescription example_description(const std::string& source, std::uint64_t session,
                                                    const std::vector<std::string>& channels,
@@ -151,4 +151,4 @@ inline void write_recorded_bench(const std::filesystem::path& path) {
   EXPECT_TRUE(recording.writer.close());
 }
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

@@ -9,7 +9,7 @@
 #include "tests/temporary_folder.hpp"
 #include "tests/unit/services/records/exchange/recorded_bench.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 using testing::ElementsAre;
@@ -121,4 +121,4 @@ TEST(ExportFormats, AreToldByTheNameOrRefused) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline records

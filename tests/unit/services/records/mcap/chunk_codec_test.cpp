@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 namespace {
 
 TEST(ChunkCodec, GivesBackWhatItCompressed) {
@@ -80,4 +80,4 @@ TEST(ChunkCodec, NamesACompressionThatItDoesNotKnow) {
 }
 
 } // namespace
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

@@ -10,7 +10,7 @@
 #include "services/records/capture/recorded_topics.hpp"
 #include "services/records/mcap/recording_writer.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 inline constexpr std::int64_t example_utc_ns = 1'700'000'000'123'456'789;
 
@@ -39,4 +39,4 @@ struct ExampleRecording {
   std::uint32_t sequence = 0;
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

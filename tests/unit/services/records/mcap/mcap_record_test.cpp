@@ -4,7 +4,7 @@
 
 #include "tests/unit/services/records/mcap/recorded_example.hpp"
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 namespace {
 
 std::string bytes_of(const std::string& hexadecimal) {
@@ -129,4 +129,4 @@ TEST(McapRecord, IsRefusedWhenALengthDoesNotFit) {
 }
 
 } // namespace
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

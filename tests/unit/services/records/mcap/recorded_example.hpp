@@ -18,7 +18,7 @@
 #include "services/records/mcap/recording_writer.hpp"
 #include "services/records/mcap/text_crc.hpp"
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 
 inline WriterOptions example_options(Compression compression = Compression::none) {
   WriterOptions options;
@@ -131,4 +131,4 @@ inline ExampleRead read_example(RecordingReader& reader) {
   return read;
 }
 
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

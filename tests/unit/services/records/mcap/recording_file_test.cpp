@@ -10,7 +10,7 @@
 #include "tests/temporary_folder.hpp"
 #include "tests/unit/services/records/mcap/recorded_example.hpp"
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 namespace {
 
 // The last 50 bytes are DataEnd, Footer and magic, and the records before them follow each other.
@@ -96,4 +96,4 @@ TEST(RecordingFile, NamesAFolderThatIsNotThere) {
 }
 
 } // namespace
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

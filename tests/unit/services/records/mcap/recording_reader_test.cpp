@@ -8,7 +8,7 @@
 #include "tests/temporary_folder.hpp"
 #include "tests/unit/services/records/mcap/recorded_example.hpp"
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 namespace {
 
 std::string example(const ExampleSize& size = {}) {
@@ -216,10 +216,10 @@ TEST(RecordingReader, StopsWhereItIsAskedTo) {
                        return ++asked < 2;
                      }});
     ASSERT_FALSE(report);
-    EXPECT_EQ(report.error().code, services::ErrorCode::interrupted);
+    EXPECT_EQ(report.error().code, base::ErrorCode::interrupted);
     EXPECT_EQ(asked, 2U);
   }
 }
 
 } // namespace
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

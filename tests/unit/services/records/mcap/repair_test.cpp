@@ -10,7 +10,7 @@
 #include "tests/temporary_folder.hpp"
 #include "tests/unit/services/records/mcap/recorded_example.hpp"
 
-namespace dyncal::recording {
+namespace dyncal::inline records::recording {
 namespace {
 
 TEST(Repair, SavesAllWholeChunksOfAFileCutAtAHundredPlaces) {
@@ -52,7 +52,7 @@ TEST(Repair, CountsWhatIsReadAndThenWhatIsCopied) {
   const auto damaged = folder.write("cut.mcap", whole.substr(0, whole.size() - 100'000));
   const std::size_t megabytes = (whole.size() - 100'000) / 1'000'000;
   ASSERT_GE(megabytes, 2U);
-  const auto count = std::make_shared<services::WorkCount>("opening");
+  const auto count = std::make_shared<base::WorkCount>("opening");
   ASSERT_TRUE(repair(damaged, folder.path() / "b.mcap", "dyncal test", count));
   EXPECT_EQ(count->state().what, "copying");
   EXPECT_EQ(count->state().total, megabytes);
@@ -98,4 +98,4 @@ TEST(Repair, LeavesNothingOfARepairThatFailed) {
 }
 
 } // namespace
-} // namespace dyncal::recording
+} // namespace dyncal::inline records::recording

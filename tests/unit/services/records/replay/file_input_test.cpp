@@ -9,7 +9,7 @@
 
 #include "tests/temporary_folder.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 using testing::HasSubstr;
@@ -135,4 +135,4 @@ TEST_F(FileInputTest, RefusesALiveSource) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline records

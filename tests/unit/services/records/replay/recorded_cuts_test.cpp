@@ -17,7 +17,7 @@
 #include "tests/unit/services/evaluation/synthetic_run.hpp"
 #include "tests/unit/services/records/mcap/example_recording.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 using testing::HasSubstr;
@@ -217,4 +217,4 @@ TEST_F(RecordedCuts, GiveNoStepTheValueOfAnother) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline records

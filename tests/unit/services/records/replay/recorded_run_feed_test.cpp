@@ -7,7 +7,7 @@
 #include "tests/unit/services/evaluation/synthetic_run.hpp"
 #include "tests/unit/services/records/mcap/example_recording.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 // All steps are evaluated at the end: what was announced waits for a source that sends no more.
@@ -86,4 +86,4 @@ TEST_F(RecordedRunFeedTest, EvaluatesNothingOnceTheRunIsGivenUp) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline records

@@ -7,7 +7,7 @@
 #include "tests/unit/services/evaluation/synthetic_run.hpp"
 #include "tests/unit/services/records/mcap/example_recording.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 class RecordedRun : public testing::Test {
@@ -194,4 +194,4 @@ TEST_F(RecordingBegunAgain, TakesNoStepForOverBeforeItsSamplesHaveCome) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline records

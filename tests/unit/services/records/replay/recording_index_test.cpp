@@ -7,7 +7,7 @@
 #include "tests/temporary_folder.hpp"
 #include "tests/unit/services/records/mcap/example_recording.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 using testing::ElementsAre;
@@ -69,4 +69,4 @@ TEST_F(RecordingIndex, LeavesASessionInItsPlaceThatIsMendedBehindTheNextOne) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline records

@@ -6,7 +6,7 @@
 #include "tests/temporary_folder.hpp"
 #include "tests/unit/services/records/mcap/example_recording.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 TEST(RecordingPlayer, PutsNoGuardBackThatIsNotThere) {
@@ -52,4 +52,4 @@ TEST(RecordingPlayer, PutsNoGuardBackThatIsNotThere) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline records

@@ -6,7 +6,7 @@
 
 #include "tests/temporary_folder.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 std::filesystem::path write_csv(const tests::TemporaryFolder& folder, std::size_t rows,
@@ -48,4 +48,4 @@ TEST(SeriesFile, OfADamagedFileCountsWhatIsBeforeTheDamage) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline records

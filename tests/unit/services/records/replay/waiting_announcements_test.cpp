@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 class WaitingAnnouncementsTest : public testing::Test {
@@ -74,4 +74,4 @@ TEST_F(WaitingAnnouncementsTest, ComeInTheirOrderAndAllAtTheEnd) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline records

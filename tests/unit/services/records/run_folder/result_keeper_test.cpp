@@ -14,7 +14,7 @@
 #include "tests/unit/services/records/run_folder/size_limit.hpp"
 #include "tests/unit/services/views/report/example_outcome.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 using testing::HasSubstr;
@@ -130,4 +130,4 @@ TEST_F(Keeper, EndsWithTheFinalState) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline records

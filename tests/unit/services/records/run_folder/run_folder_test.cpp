@@ -12,7 +12,7 @@
 #include "tests/unit/services/records/run_folder/size_limit.hpp"
 #include "tests/unit/services/views/report/example_outcome.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 namespace fs = std::filesystem;
@@ -232,4 +232,4 @@ TEST_F(Folder, OfARunIsFoundByItsNameWhereNothingHasThatPath) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline records

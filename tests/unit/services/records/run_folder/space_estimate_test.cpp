@@ -4,7 +4,7 @@
 
 #include "tests/unit/services/views/report/example_outcome.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 // 10 steps of 1 s settling and 7 s, each with 2 s around it: 100 s.
@@ -51,4 +51,4 @@ TEST(SizeText, HasAUnitThatFits) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline records

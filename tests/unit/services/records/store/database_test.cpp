@@ -12,7 +12,7 @@
 #include "tests/unit/services/records/store/silent_server.hpp"
 #include "tests/unit/services/records/store/store_places.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 using testing::HasSubstr;
@@ -166,4 +166,4 @@ TEST(OpenSqlite, RefusesWhatIsNotADatabase) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline records

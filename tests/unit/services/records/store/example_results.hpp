@@ -21,25 +21,25 @@ struct ExampleResult {
   std::string recipe_sha256 = "abc";
 };
 
-inline services::RunOutcome outcome_of(const ExampleResult& example) {
+inline evaluation::RunOutcome outcome_of(const ExampleResult& example) {
   constexpr std::int64_t day_ns = 86'400'000'000'000;
-  services::RunOutcome outcome = example_outcome();
+  evaluation::RunOutcome outcome = example_outcome();
   outcome.run = example.run;
   outcome.recipe_sha256 = example.recipe_sha256;
   outcome.began_utc_ns += example.days * day_ns;
   outcome.ended_utc_ns = example.ended ? outcome.ended_utc_ns + example.days * day_ns : 0;
-  outcome.sources.push_back({"dau", services::SourceKind::dau, "dyncal 1.2.3", {}});
+  outcome.sources.push_back({"dau", contract::SourceKind::dau, "dyncal 1.2.3", {}});
   outcome.sources.back().description.device = "SmartUp";
   outcome.sources.back().description.serial = example.serial;
   outcome.results.front().data_sha256 = std::string(64, 'd');
-  for (services::FrequencyPoint& point : outcome.transfer_functions.front().points) {
+  for (evaluation::FrequencyPoint& point : outcome.transfer_functions.front().points) {
     point.mean.magnitude = example.magnitude;
   }
   return outcome;
 }
 
-inline std::string text_of(const services::RunOutcome& outcome) {
-  return services::result_json(outcome).dump(1) + "\n";
+inline std::string text_of(const evaluation::RunOutcome& outcome) {
+  return views::result_json(outcome).dump(1) + "\n";
 }
 
 } // namespace dyncal::tests

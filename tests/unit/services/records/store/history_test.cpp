@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 StoredValue point(double frequency_hz, double magnitude, double phase_rad) {
@@ -93,4 +93,4 @@ TEST(History, ShowsOneChannelAndFrequencyIfAsked) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline records

@@ -7,7 +7,7 @@
 
 #include <stdexcept>
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 
 class SilentServer {
 public:
@@ -33,4 +33,4 @@ private:
   sockaddr_in address_{};
 };
 
-} // namespace dyncal::services
+} // namespace dyncal::inline records

@@ -32,8 +32,8 @@ protected:
       if (!server()) {
         GTEST_SKIP() << missing;
       }
-      const auto refused = services::open_postgres("dbname=none host=/nowhere");
-      if (!refused && refused.error().code == services::ErrorCode::bad_argument) {
+      const auto refused = records::open_postgres("dbname=none host=/nowhere");
+      if (!refused && refused.error().code == base::ErrorCode::bad_argument) {
         GTEST_SKIP() << refused.error().message;
       }
       place_ = server()->fresh_place();
@@ -41,9 +41,9 @@ protected:
       place_ = (folder_.path() / "dyncal.sqlite").string();
     }
   }
-  [[nodiscard]] std::unique_ptr<services::Database> open() const {
-    auto database = services::is_server(place_) ? services::open_postgres(place_)
-                                                : services::open_sqlite(place_);
+  [[nodiscard]] std::unique_ptr<records::Database> open() const {
+    auto database =
+        records::is_server(place_) ? records::open_postgres(place_) : records::open_sqlite(place_);
     EXPECT_TRUE(database) << database.error().message;
     return database ? std::move(*database) : nullptr;
   }

@@ -16,7 +16,7 @@
 #include "tests/unit/services/records/store/example_results.hpp"
 #include "tests/unit/services/records/store/store_places.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline records {
 namespace {
 
 using testing::HasSubstr;
@@ -246,4 +246,4 @@ TEST(ResultRecord, IsThatOfTheFolderOfARun) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline records

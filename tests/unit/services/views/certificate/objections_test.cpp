@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 using ::testing::ElementsAre;
@@ -85,4 +85,4 @@ TEST(Objections, ToRunsThatAreNotWhole) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 TEST(RatioUnit, OfAlikeAndOfDifferentKinds) {
@@ -26,4 +26,4 @@ TEST(RatioUnit, OfWhatIsNotAUnit) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 TEST(RefusingFlags, EveryFlagHasAReason) {
@@ -25,4 +25,4 @@ TEST(RefusingFlags, ForbidWhatUDoesNotHold) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 using ::testing::HasSubstr;
@@ -38,4 +38,4 @@ TEST(XmlDocument, RefusesWhateverDeclaresSomething) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 using ::testing::HasSubstr;
@@ -43,4 +43,4 @@ TEST(Html, DefinitionsWithoutTextAreLeftOut) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline views

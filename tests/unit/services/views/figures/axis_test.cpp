@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 namespace {
 
 using testing::ElementsAre;
@@ -113,4 +113,4 @@ TEST(RangeOfAnAxis, YieldsAFewTicksForAnyWidth) {
 }
 
 } // namespace
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

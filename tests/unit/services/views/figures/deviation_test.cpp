@@ -8,7 +8,7 @@
 
 #include "tests/unit/services/views/figures/well_formed.hpp"
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 namespace {
 
 using testing::Contains;
@@ -121,4 +121,4 @@ TEST(DeviationFigure, GivesTheBarsOfTheDataToRepetitionsWhileMeansArePlain) {
 }
 
 } // namespace
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

@@ -5,7 +5,7 @@
 
 #include "tests/unit/services/views/figures/well_formed.hpp"
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 namespace {
 
 using testing::Contains;
@@ -54,4 +54,4 @@ TEST(DriftFigure, SaysSoWithoutPoints) {
 }
 
 } // namespace
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

@@ -9,7 +9,7 @@
 
 #include "tests/temporary_folder.hpp"
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 namespace {
 
 using testing::HasSubstr;
@@ -64,4 +64,4 @@ TEST(CsvComment, StaysOnOneLine) {
 }
 
 } // namespace
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

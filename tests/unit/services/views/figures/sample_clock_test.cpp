@@ -9,7 +9,7 @@
 #include "services/views/figures/regular_intervals.hpp"
 #include "tests/unit/services/views/figures/well_formed.hpp"
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 namespace {
 
 using testing::Contains;
@@ -165,4 +165,4 @@ TEST(RegularIntervals, AreThoseWithinHalfOfTheMedian) {
 }
 
 } // namespace
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

@@ -6,7 +6,7 @@
 
 #include "tests/unit/services/views/figures/well_formed.hpp"
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 namespace {
 
 using testing::Contains;
@@ -43,4 +43,4 @@ TEST(StampDeviationFigure, TakesRecordsOfDaysAndOnesWithoutAnything) {
 }
 
 } // namespace
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

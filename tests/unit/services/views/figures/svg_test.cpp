@@ -7,7 +7,7 @@
 
 #include "tests/unit/services/views/figures/well_formed.hpp"
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 namespace {
 
 TEST(SvgText, IsEscaped) {
@@ -47,4 +47,4 @@ TEST(TextWidth, CountsCharactersNotBytes) {
 }
 
 } // namespace
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

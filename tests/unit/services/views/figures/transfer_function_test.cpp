@@ -10,7 +10,7 @@
 
 #include "tests/unit/services/views/figures/well_formed.hpp"
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 namespace {
 
 using testing::Contains;
@@ -201,4 +201,4 @@ TEST(TransferFunctionFigure, GivesBarsToRepetitionsWhileMeansArePlain) {
 }
 
 } // namespace
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

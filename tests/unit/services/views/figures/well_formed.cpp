@@ -4,7 +4,7 @@
 
 #include <tinyxml2.h>
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 namespace {
 
 void visit(const tinyxml2::XMLElement* element,
@@ -61,4 +61,4 @@ std::vector<std::string> texts_of(const std::string& svg) {
   return texts;
 }
 
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

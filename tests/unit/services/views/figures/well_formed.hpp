@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace dyncal::services::figures {
+namespace dyncal::inline views::figures {
 
 // Empty when the text is well-formed XML with the root <svg> and without a number that is none;
 // else what is wrong.
@@ -16,4 +16,4 @@ std::size_t count_elements(const std::string& svg, const std::string& name);
 // The content of all text elements, in order.
 std::vector<std::string> texts_of(const std::string& svg);
 
-} // namespace dyncal::services::figures
+} // namespace dyncal::inline views::figures

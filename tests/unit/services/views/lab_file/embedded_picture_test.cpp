@@ -6,7 +6,7 @@
 
 #include "tests/temporary_folder.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 using ::testing::HasSubstr;
@@ -57,4 +57,4 @@ TEST_F(Picture, ThatFetchesOrRunsSomethingIsRefused) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -6,7 +6,7 @@
 
 #include <gmock/gmock.h>
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 using ::testing::HasSubstr;
@@ -118,4 +118,4 @@ TEST(LaboratoryFile, IsNotAFolderAndNotEndless) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -6,7 +6,7 @@
 
 #include <gmock/gmock.h>
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 using ::testing::HasSubstr;
@@ -43,4 +43,4 @@ TEST(SensorFile, NamesEachKeyThatIsMissing) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline views

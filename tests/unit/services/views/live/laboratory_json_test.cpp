@@ -10,14 +10,14 @@
 #include "services/views/live/run_json.hpp"
 #include "tests/unit/services/network/messages.hpp"
 
-namespace dyncal::services::live {
+namespace dyncal::inline views::live {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
 TEST(LaboratoryJson, TellsOfABenchWhatItIsAndWhy) {
   bus::SteppedClock clock;
-  Laboratory laboratory(clock);
+  network::Laboratory laboratory(clock);
   laboratory.take(status_of("acc-1", "dau", wire::SOURCE_FAILED));
   laboratory.take(measurement_of("acc-1", "r1", wire::MEASUREMENT_RUNNING));
   laboratory.take(excitation_of("acc-1", "r1", 2, wire::EXCITATION_STEADY));
@@ -44,7 +44,7 @@ TEST(LaboratoryJson, TellsOfABenchWhatItIsAndWhy) {
 
 TEST(LaboratoryJson, NamesTheBenchOfAProgram) {
   bus::SteppedClock clock;
-  Laboratory laboratory(clock);
+  network::Laboratory laboratory(clock);
   laboratory.take(analysis_of("acc-1", "r1", wire::ARM_ARMED, wire::HEALTH_FAILED));
   DiscoveredProgram program;
   program.identity = {"dyncal-analysis", "lab-1", 1, "dyncal 9", "cyclonedds"};
@@ -64,7 +64,7 @@ TEST(LaboratoryJson, NamesTheBenchOfAProgram) {
 
 TEST(LaboratoryJson, TellsOfAnAnalysisThatDiedInARunButNotOfOneWhoseRunIsOver) {
   bus::SteppedClock clock;
-  Laboratory laboratory(clock);
+  network::Laboratory laboratory(clock);
   DiscoveredProgram program;
   program.identity = {"dyncal-analysis", "lab-1", 1, "dyncal 9", "cyclonedds"};
   laboratory.set_programs({program}, {});
@@ -74,7 +74,7 @@ TEST(LaboratoryJson, TellsOfAnAnalysisThatDiedInARunButNotOfOneWhoseRunIsOver) {
   hear(wire::MEASUREMENT_RUNNING);
   laboratory.take(analysis_of("acc-1", "r1", wire::ARM_ARMED));
   const auto health = [&] { return laboratory_json(laboratory)["programs"][0]["health"]; };
-  clock.advance(silence_limit);
+  clock.advance(network::silence_limit);
   hear(wire::MEASUREMENT_RUNNING);
   EXPECT_EQ(health(), "ok");
   clock.advance(std::chrono::milliseconds(1));
@@ -88,7 +88,7 @@ TEST(LaboratoryJson, TellsOfAnAnalysisThatDiedInARunButNotOfOneWhoseRunIsOver) {
 
 TEST(LaboratoryJson, LeavesHostileTextsTextAndReplacesWhatIsNotUtf8) {
   bus::SteppedClock clock;
-  Laboratory laboratory(clock);
+  network::Laboratory laboratory(clock);
   const std::string name = "<script>alert(1)</script>";
   wire::SourceStatus status = status_of(name, "\"><img src=x>\xff\xfe");
   status.message("</script>\n\u2028");
@@ -101,7 +101,7 @@ TEST(LaboratoryJson, LeavesHostileTextsTextAndReplacesWhatIsNotUtf8) {
 
 TEST(RunJson, CarriesEveryDigitAndNullForWhatIsNotANumber) {
   bus::SteppedClock clock;
-  Laboratory laboratory(clock);
+  network::Laboratory laboratory(clock);
   const double magnitude = 0.1 + 0.2;
   laboratory.take(result_of("acc-1", "r1", 1, magnitude));
   wire::CalibrationResult invalid =
@@ -120,4 +120,4 @@ TEST(RunJson, CarriesEveryDigitAndNullForWhatIsNotANumber) {
 }
 
 } // namespace
-} // namespace dyncal::services::live
+} // namespace dyncal::inline views::live

@@ -12,7 +12,7 @@
 #include "services/views/report/run_figures.hpp"
 #include "tests/unit/services/views/report/example_outcome.hpp"
 
-namespace dyncal::services::live {
+namespace dyncal::inline views::live {
 namespace {
 
 using figures::ErrorBars;
@@ -89,14 +89,14 @@ protected:
   }
 
   bus::SteppedClock clock_;
-  Laboratory laboratory_{clock_};
+  network::Laboratory laboratory_{clock_};
 };
 
 TEST_F(RunFigures, AreThoseOfTheFilesOnceTheRunIsOver) {
   const RunOutcome outcome = finished_run();
   take_all(outcome);
   for (const ErrorBars bars : {ErrorBars::standard, ErrorBars::expanded, ErrorBars::none}) {
-    std::vector<figures::Figure> of_files = services::run_figures(outcome, bars);
+    std::vector<figures::Figure> of_files = views::run_figures(outcome, bars);
     std::erase_if(of_files, [](const figures::Figure& figure) {
       return figure.name.ends_with("angular_velocity_x") || figure.name.ends_with("other");
     });
@@ -148,4 +148,4 @@ TEST_F(RunFigures, AreThoseOfAChannelAlsoIfItDoesNotRespond) {
 }
 
 } // namespace
-} // namespace dyncal::services::live
+} // namespace dyncal::inline views::live

@@ -18,7 +18,7 @@
 #include "services/views/report/stated_value.hpp"
 #include "services/views/report/transfer_data.hpp"
 
-namespace dyncal::services::live {
+namespace dyncal::inline views::live {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -52,7 +52,7 @@ Pair draw(std::mt19937& random, int low_place, int high_place, int max_multiple)
 }
 
 struct Drawn {
-  Run run;
+  network::Run run;
   RunOutcome outcome;
 };
 
@@ -164,4 +164,4 @@ TEST(SameText, OnPageTerminalReportCertificateAndInCsv) {
 }
 
 } // namespace
-} // namespace dyncal::services::live
+} // namespace dyncal::inline views::live

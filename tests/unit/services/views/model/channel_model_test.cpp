@@ -11,7 +11,7 @@
 #include "services/views/model/model_json.hpp"
 #include "services/views/model/model_table.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 constexpr double u = 1e-3;
@@ -164,4 +164,4 @@ TEST(ChannelModel, HasAFigureOfItsResiduals) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline views

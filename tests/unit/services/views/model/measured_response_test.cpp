@@ -7,7 +7,7 @@
 #include "tests/result_text.hpp"
 #include "tests/temporary_folder.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 using tests::BudgetRow;
@@ -117,4 +117,4 @@ TEST_F(MeasuredResponseFile, NeedsAChannelThatResponds) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline views

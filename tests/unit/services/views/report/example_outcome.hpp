@@ -6,12 +6,12 @@
 
 namespace dyncal::tests {
 
-inline services::TransferFunction example_function(const std::string& channel, double magnitude) {
-  services::TransferFunction function;
+inline evaluation::TransferFunction example_function(const std::string& channel, double magnitude) {
+  evaluation::TransferFunction function;
   function.channel = channel;
   function.unit = R"(\one)";
   for (const char* text : {"10", "20"}) {
-    services::FrequencyPoint point;
+    evaluation::FrequencyPoint point;
     point.frequency_text_hz = text;
     point.frequency_hz = std::stod(text);
     point.level_m_s2 = 2.75;
@@ -45,8 +45,8 @@ inline analysis::ChannelFit example_fit(const std::string& channel, double ampli
   return fit;
 }
 
-inline services::StepResult example_result(std::uint32_t step, const std::string& frequency_hz) {
-  services::StepResult result;
+inline evaluation::StepResult example_result(std::uint32_t step, const std::string& frequency_hz) {
+  evaluation::StepResult result;
   result.channel = "dau/acceleration_z";
   result.step = step;
   result.frequency_hz = std::stod(frequency_hz);
@@ -56,11 +56,11 @@ inline services::StepResult example_result(std::uint32_t step, const std::string
   return result;
 }
 
-inline services::Recipe example_recipe() {
-  services::Recipe recipe;
+inline evaluation::Recipe example_recipe() {
+  evaluation::Recipe recipe;
   recipe.bench = "acc-1";
   recipe.run = "r1";
-  recipe.roles = services::SampleStampingRoles{
+  recipe.roles = evaluation::SampleStampingRoles{
       .reference = {"acs", "reference"},
       .sync_acs = {"acs", "sync"},
       .sync_dau = {"dau", "sync"},
@@ -81,9 +81,9 @@ inline services::Recipe example_recipe() {
   return recipe;
 }
 
-inline services::RunOutcome example_outcome() {
-  using services::ResultFlag;
-  services::RunOutcome outcome = outcome_of(example_recipe());
+inline evaluation::RunOutcome example_outcome() {
+  using evaluation::ResultFlag;
+  evaluation::RunOutcome outcome = outcome_of(example_recipe());
   outcome.began_utc_ns = 1'700'000'000'000'000'012;
   outcome.ended_utc_ns = 1'700'000'060'000'000'000;
   outcome.analysis_dds = "fastdds";
@@ -97,9 +97,9 @@ inline services::RunOutcome example_outcome() {
   acs.channels = {{"reference", "acceleration", R"(\metre\second\tothe{-2})", -50.0, 50.0, 0.0},
                   {"sync", "", R"(\volt)"}};
   outcome.pauses = {{1'700'000'010'000'000'000, 1'700'000'052'400'000'000, "paused by 'ada'"}};
-  outcome.sources = {{"acs", services::SourceKind::acs, "dyncal 1.2.3", acs}};
+  outcome.sources = {{"acs", contract::SourceKind::acs, "dyncal 1.2.3", acs}};
 
-  services::StepResult measured = example_result(1, "10");
+  evaluation::StepResult measured = example_result(1, "10");
   measured.valid = true;
   measured.magnitude = 1.0;
   measured.phase_rad = -0.5;
@@ -115,7 +115,7 @@ inline services::RunOutcome example_outcome() {
   measured.lost = 7;
   measured.flags = {flag_of_source(ResultFlag::samples_lost, "dau")};
   measured.temperature_degc = 23.5;
-  services::StepResult failed = example_result(2, "20");
+  evaluation::StepResult failed = example_result(2, "20");
   failed.problem = "no steady sine";
   failed.attempt = 3;
   outcome.results = {measured, failed};
@@ -123,7 +123,7 @@ inline services::RunOutcome example_outcome() {
   outcome.transfer_functions = {example_function("dau/acceleration_z", 1.0),
                                 example_function("dau/angular_velocity_x", 1e-4)};
   outcome.transfer_functions.front().flags = {make_flag(ResultFlag::polarity_inverted)};
-  services::ClockReport clock{.source = "dau", .clock = {}};
+  evaluation::ClockReport clock{.source = "dau", .clock = {}};
   clock.clock.mean_interval_s = 996.96e-6;
   clock.clock.intervals = 1000;
   clock.clock.event_count = 1;

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 using analysis::ContributionKind;
@@ -48,4 +48,4 @@ TEST(ExpandedUncertainty, AdvisesToRepeatWhereFewRepetitionsMakeKLarge) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -5,7 +5,7 @@
 
 #include "tests/unit/services/views/report/example_outcome.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 using testing::ElementsAre;
@@ -43,4 +43,4 @@ TEST(FlagLegend, AMeanHasTheFlagsOfItsValidRepetitions) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 using nlohmann::json;
@@ -51,4 +51,4 @@ TEST(PictureJson, HasTheRangeOfTheAxisWhereThePictureSetsIt) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -7,7 +7,7 @@
 #include "tests/temporary_folder.hpp"
 #include "tests/unit/services/views/report/example_outcome.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 // compare and triaxial apply a factor of 2: that must give U, although u_magnitude is that of k
@@ -44,4 +44,4 @@ TEST(ResultFile, CountsTheBytesThatItReads) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline views

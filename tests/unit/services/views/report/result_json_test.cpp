@@ -6,7 +6,7 @@
 
 #include "tests/unit/services/views/report/example_outcome.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 using testing::HasSubstr;
@@ -116,4 +116,4 @@ TEST(ResultJson, AFileThatCannotBeWrittenIsAnError) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline views

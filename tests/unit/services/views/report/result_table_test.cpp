@@ -8,7 +8,7 @@
 #include "services/views/report/expanded_uncertainty.hpp"
 #include "tests/unit/services/views/report/example_outcome.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 using testing::HasSubstr;
@@ -122,4 +122,4 @@ TEST(ResultTable, ListsWhatHasNoResultAndWhy) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline views

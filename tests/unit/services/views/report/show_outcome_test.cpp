@@ -7,7 +7,7 @@
 
 #include "tests/temporary_folder.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 using testing::HasSubstr;
@@ -135,4 +135,4 @@ TEST(ShowOutcome, WhatEndedARunEarlyComesFirst) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline views

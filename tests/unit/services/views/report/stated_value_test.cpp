@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 StoredValue value_of(double magnitude, double expanded, double phase_rad, double expanded_rad) {
@@ -90,4 +90,4 @@ TEST(StatedValue, SaysWhatItHoldsFor) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline views

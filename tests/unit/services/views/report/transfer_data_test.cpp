@@ -8,7 +8,7 @@
 #include "services/views/report/expanded_uncertainty.hpp"
 #include "tests/unit/services/views/report/example_outcome.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 constexpr double turn = 2 * std::numbers::pi;
@@ -102,4 +102,4 @@ TEST(TransferData, HasTheMeansOfTheFunctionWithUAndItsExpandedValue) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 void push(ChannelRing& ring, std::int64_t first_ns, std::int64_t interval_ns,
@@ -68,4 +68,4 @@ TEST(ChannelRing, GivesTheNewestSamplesBehindAGap) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline views

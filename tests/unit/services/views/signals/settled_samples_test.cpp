@@ -10,7 +10,7 @@
 
 #include "services/views/signals/sine_view.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 using Instant = ChannelRing::Instant;
@@ -253,4 +253,4 @@ TEST(SettledSamples, ATriggeredRecordIsOfTheStepItCameIn) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline views

@@ -5,7 +5,7 @@
 #include "services/bus/memory/memory_network.hpp"
 #include "services/contract/topics.hpp"
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 wire::SampleBlock block_of(std::uint64_t number, double value) {
@@ -80,4 +80,4 @@ TEST_F(SignalTapTest, HoldsNoMoreChannelsThanItsLimit) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline views

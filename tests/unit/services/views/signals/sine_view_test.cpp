@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 std::vector<Sample> sine(std::size_t count) {
@@ -43,4 +43,4 @@ TEST(SineView, StatesTheScatterFromBlockToBlock) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline views

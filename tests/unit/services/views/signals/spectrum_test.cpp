@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 constexpr double rate_hz = 10'000.0;
@@ -64,4 +64,4 @@ TEST(Spectrum, NeedsSamplesAndARate) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline views

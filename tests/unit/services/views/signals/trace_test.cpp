@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dyncal::services {
+namespace dyncal::inline views {
 namespace {
 
 // 50 kS/s for so many seconds.
@@ -90,4 +90,4 @@ TEST(Trace, ShowsGapsAndHasNothingOfAnEmptyRing) {
 }
 
 } // namespace
-} // namespace dyncal::services
+} // namespace dyncal::inline views
