@@ -1,4 +1,4 @@
-// The messages that a live::Laboratory is fed with, from DDS: readers of states and results, and
+// The messages that a network::Laboratory is fed with, from DDS: readers of states and results, and
 // the exchange of clocks that tells which programs are there. No samples are read.
 //
 // Belongs to one thread, which calls work() when the wake-up rings, at least twice a second.

@@ -40,7 +40,7 @@ std::string frequency_of(std::uint32_t step) {
 }
 
 wire::Measurement measurement_of(const std::string& run, wire::MeasurementState state) {
-  wire::Measurement measurement = live::measurement_of(bench, run, state);
+  wire::Measurement measurement = network::measurement_of(bench, run, state);
   measurement.steps().resize(steps, measurement.steps().front());
   for (std::uint32_t step = 1; step <= steps; ++step) {
     measurement.steps()[step - 1].step(step);
@@ -63,7 +63,7 @@ Run play(bus::Participant& participant, const std::string& name) {
   evaluation::StepResult result = tests::example_outcome().results.front();
   result.budget.resize(budget_rows, result.budget.back());
   for (std::uint32_t step = 1; step <= steps; ++step) {
-    wire::Excitation excitation = live::excitation_of(bench, name, step, wire::EXCITATION_DONE);
+    wire::Excitation excitation = network::excitation_of(bench, name, step, wire::EXCITATION_DONE);
     excitation.frequency_text_hz(frequency_of(step));
     run.excitation.write(excitation);
     result.step = step;

@@ -36,7 +36,7 @@ Json runs_json(const network::Bench& bench) {
   for (const auto& [name, run] : bench.runs) {
     runs.push_back({{"run", name},
                     {"planned_utc_ms", milliseconds(run.time_utc_ns())},
-                    {"state", live::to_string(run.state())}});
+                    {"state", network::to_string(run.state())}});
   }
   return runs;
 }

@@ -91,7 +91,7 @@ TEST(GivenUpSearch, LooksForNoStep) {
   std::stop_source given_up;
   RunRecords records(recipe, {{{"acs", "sync"}, {"acs"}}}, SourceRecord::default_capacity, true,
                      nullptr, given_up.get_token());
-  records.find("acs")->describe(from_message(run.acs_description()));
+  records.find("acs")->describe(contract::from_message(run.acs_description()));
   for (const wire::SampleBlock& block : run.acs_blocks()) {
     tests::feed(*records.find("acs"), block);
   }

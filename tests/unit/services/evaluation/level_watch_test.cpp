@@ -20,7 +20,7 @@ std::vector<std::string> sentences_while(const tests::SyntheticRun& run, std::si
   SourceRecord record("acs");
   wire::SourceDescription description = run.acs_description();
   description.channels()[0].unit(unit);
-  record.describe(from_message(description));
+  record.describe(contract::from_message(description));
   std::vector<std::string> sentences;
   for (const wire::SampleBlock& block : run.acs_blocks()) {
     tests::feed(record, block);

@@ -65,7 +65,7 @@ TEST(SourceRecord, GivesAwayAPartThatSaysTheSameOfItsTime) {
   SourceRecord record("dau");
   tests::SyntheticRun run;
   run.lost_block = 3;
-  record.describe(from_message(run.dau_description()));
+  record.describe(contract::from_message(run.dau_description()));
   for (const wire::SampleBlock& block : run.dau_blocks()) {
     tests::feed(record, block);
   }

@@ -18,8 +18,8 @@ protected:
   StepSnapshotTest()
       : recipe_(*parse_recipe(run_.measurement())),
         records_(recipe_, {{{"acs", "sync"}, {"acs"}}, {{"dau", "sync"}, {"dau"}}}) {
-    records_.find("acs")->describe(from_message(run_.acs_description()));
-    records_.find("dau")->describe(from_message(run_.dau_description()));
+    records_.find("acs")->describe(contract::from_message(run_.acs_description()));
+    records_.find("dau")->describe(contract::from_message(run_.dau_description()));
     add_until(expected_at_s);
   }
 
@@ -64,7 +64,7 @@ TEST_F(StepSnapshotTest, HoldsAsLongAsOnlyLaterSamplesCome) {
 
 TEST_F(StepSnapshotTest, AStepIsNotExpectedBeforeItsPlannedSamplesHaveCome) {
   RunRecords records(recipe_, {{{"acs", "sync"}, {"acs"}}});
-  records.find("acs")->describe(from_message(run_.acs_description()));
+  records.find("acs")->describe(contract::from_message(run_.acs_description()));
   for (const wire::SampleBlock& block : acs_blocks_) {
     if (first_ns(block) > 1'400'000'000) { // 0.5 s off, 0.2 s settling, 0.8 s planned
       break;

@@ -17,12 +17,12 @@ using testing::HasSubstr;
 class LaboratoryTable : public testing::Test {
 protected:
   void add_bench(const std::string& name) {
-    laboratory.take(live::status_of(name, "acs"));
-    laboratory.take(live::status_of(name, "dau"));
-    laboratory.take(live::measurement_of(name, "r1", wire::MEASUREMENT_RUNNING));
-    laboratory.take(live::excitation_of(name, "r1", 1, wire::EXCITATION_STEADY));
-    laboratory.take(live::result_of(name, "r1", 1, 0.98765));
-    wire::CalibrationResult noise = live::result_of(name, "r1", 1, 1e-4);
+    laboratory.take(network::status_of(name, "acs"));
+    laboratory.take(network::status_of(name, "dau"));
+    laboratory.take(network::measurement_of(name, "r1", wire::MEASUREMENT_RUNNING));
+    laboratory.take(network::excitation_of(name, "r1", 1, wire::EXCITATION_STEADY));
+    laboratory.take(network::result_of(name, "r1", 1, 0.98765));
+    wire::CalibrationResult noise = network::result_of(name, "r1", 1, 1e-4);
     noise.channel("dau/angular_velocity_x");
     laboratory.take(noise);
   }
@@ -52,7 +52,7 @@ TEST_F(LaboratoryTable, OneLineASourceAndAChannelThatResponds) {
 
 wire::CalibrationResult flagged(const std::string& bench, const std::string& channel,
                                 const std::vector<std::string>& names) {
-  wire::CalibrationResult result = live::result_of(bench, "r1", 1, 0.98765);
+  wire::CalibrationResult result = network::result_of(bench, "r1", 1, 0.98765);
   result.channel(channel);
   result.flags(names); // sentences
   result.flag_names(names);
@@ -127,7 +127,7 @@ TEST_F(LaboratoryTable, WhatIsWrongIsNeverLeftOut) {
   for (int i = 1; i <= 8; ++i) {
     add_bench(fmt::format("bench-{}", i));
   }
-  wire::SourceStatus failed = live::status_of("bench-8", "zzz", wire::SOURCE_FAILED);
+  wire::SourceStatus failed = network::status_of("bench-8", "zzz", wire::SOURCE_FAILED);
   failed.message("the instrument is gone");
   laboratory.take(failed);
   EXPECT_THAT(table({.columns = 120}), HasSubstr("the instrument is gone"));
@@ -135,7 +135,7 @@ TEST_F(LaboratoryTable, WhatIsWrongIsNeverLeftOut) {
 
 TEST_F(LaboratoryTable, TextsFromTheNetworkMoveNoCursor) {
   add_bench("a\x1b[2J\nb");
-  wire::SourceStatus failed = live::status_of("a\x1b[2J\nb", "dau", wire::SOURCE_FAILED);
+  wire::SourceStatus failed = network::status_of("a\x1b[2J\nb", "dau", wire::SOURCE_FAILED);
   failed.message(std::string(500, '\x1b'));
   laboratory.take(failed);
   for (const std::string& line : laboratory_table(laboratory, {})) {
@@ -150,7 +150,7 @@ TEST_F(LaboratoryTable, TextsFromTheNetworkMoveNoCursor) {
 TEST_F(LaboratoryTable, ColoursAreForWhatIsNotWell) {
   add_bench("acc-1");
   EXPECT_EQ(table().find('\x1b'), std::string::npos);
-  wire::SourceStatus failed = live::status_of("acc-1", "dau", wire::SOURCE_FAILED);
+  wire::SourceStatus failed = network::status_of("acc-1", "dau", wire::SOURCE_FAILED);
   failed.message("gone");
   laboratory.take(failed);
   EXPECT_EQ(table().find('\x1b'), std::string::npos);

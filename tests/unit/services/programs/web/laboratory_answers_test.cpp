@@ -28,8 +28,8 @@ class FigureAnswers : public testing::Test {
 protected:
   FigureAnswers() {
     cache_.change([](network::Laboratory& laboratory) {
-      laboratory.take(live::measurement_of("acc-1", "r1", wire::MEASUREMENT_RUNNING));
-      laboratory.take(live::result_of("acc-1", "r1", 1, 0.3));
+      laboratory.take(network::measurement_of("acc-1", "r1", wire::MEASUREMENT_RUNNING));
+      laboratory.take(network::result_of("acc-1", "r1", 1, 0.3));
     });
   }
   // Asks the bench with these parameters besides the channel.

@@ -40,7 +40,7 @@ protected:
     router_.on_post(
         [this](const auto& request, auto& response) { return actions_.post(request, response); });
     cache_.change([](network::Laboratory& laboratory) {
-      laboratory.take(live::status_of("<b>acc-1</b>", "dau"));
+      laboratory.take(network::status_of("<b>acc-1</b>", "dau"));
     });
     ASSERT_TRUE(router_.start());
   }

@@ -32,9 +32,9 @@ protected:
 };
 
 TEST_F(StateCacheTest, MakesATextOnceForAllWhoAsk) {
-  take(live::status_of("acc-1", "dau"));
+  take(network::status_of("acc-1", "dau"));
   const Text first = cache_.laboratory();
-  take(live::status_of("acc-2", "dau"));
+  take(network::status_of("acc-2", "dau"));
   EXPECT_EQ(cache_.laboratory(), first);
   clock_.advance(StateCache::text_age);
   const Json json = Json::parse(*cache_.laboratory());
@@ -44,15 +44,15 @@ TEST_F(StateCacheTest, MakesATextOnceForAllWhoAsk) {
 
 TEST_F(StateCacheTest, MakesResultsAnewWhenTheyChange) {
   EXPECT_EQ(results(), nullptr);
-  take(live::measurement_of("acc-1", "r1", wire::MEASUREMENT_RUNNING));
-  take(live::result_of("acc-1", "r1", 1, 0.3));
+  take(network::measurement_of("acc-1", "r1", wire::MEASUREMENT_RUNNING));
+  take(network::result_of("acc-1", "r1", 1, 0.3));
   const Text first = results();
   ASSERT_NE(first, nullptr);
   clock_.advance(10s);
   EXPECT_EQ(results(), first);
   EXPECT_EQ(made_, 1);
   const std::uint64_t number = cache_.results_number("acc-1");
-  take(live::result_of("acc-1", "r1", 2, 0.4));
+  take(network::result_of("acc-1", "r1", 2, 0.4));
   EXPECT_NE(cache_.results_number("acc-1"), number);
   const Json json = Json::parse(*results());
   EXPECT_EQ(json["points"].size(), 2U);
@@ -67,9 +67,9 @@ TEST_F(StateCacheTest, MakesFiguresOnceForEachChannelAndChange) {
     return cache_.figures("acc-1", "", channel, bars);
   };
   EXPECT_EQ(figures(ErrorBars::expanded), nullptr);
-  take(live::measurement_of("acc-1", "r1", wire::MEASUREMENT_RUNNING));
+  take(network::measurement_of("acc-1", "r1", wire::MEASUREMENT_RUNNING));
   EXPECT_EQ(figures(ErrorBars::expanded), nullptr);
-  take(live::result_of("acc-1", "r1", 1, 0.3));
+  take(network::result_of("acc-1", "r1", 1, 0.3));
   const Text first = figures(ErrorBars::expanded);
   ASSERT_NE(first, nullptr);
   clock_.advance(10s);
@@ -91,7 +91,7 @@ TEST_F(StateCacheTest, MakesFiguresOnceForEachChannelAndChange) {
   EXPECT_GT(points[0][2], 1e-4); // U, not u
   EXPECT_EQ(points[0][3], 1);    // step
 
-  take(live::result_of("acc-1", "r1", 2, 0.4));
+  take(network::result_of("acc-1", "r1", 2, 0.4));
   const Text second = figures(ErrorBars::expanded);
   EXPECT_NE(second, first);
   EXPECT_GT(Json::parse(*second)["number"], json["number"]);
@@ -106,22 +106,22 @@ TEST_F(StateCacheTest, ShowsARunThatWasDroppedAndIsHeardOfAgainAsItIsNow) {
   const auto drop = [this](const std::string& others) {
     for (std::size_t i = 0; i < network::Limits{}.runs; ++i) {
       clock_.advance(1s);
-      take(live::result_of("acc-1", others + std::to_string(i), 1, 0.5));
+      take(network::result_of("acc-1", others + std::to_string(i), 1, 0.5));
     }
     clock_.advance(1s);
     ASSERT_EQ(results("r1"), nullptr);
   };
-  take(live::measurement_of("acc-1", "r1", wire::MEASUREMENT_DONE));
+  take(network::measurement_of("acc-1", "r1", wire::MEASUREMENT_DONE));
   const Json planned = Json::parse(*results("r1"));
   drop("a");
-  take(live::result_of("acc-1", "r1", 1, 0.3));
+  take(network::result_of("acc-1", "r1", 1, 0.3));
   const Json first = Json::parse(*results("r1"));
   EXPECT_EQ(first["points"][0]["magnitude"], 0.3);
   EXPECT_GT(first["number"], planned["number"]);
   const Text picture = figures();
   const std::uint64_t number = cache_.results_number("acc-1");
   drop("b");
-  take(live::result_of("acc-1", "r1", 1, 0.9));
+  take(network::result_of("acc-1", "r1", 1, 0.9));
   const Json second = Json::parse(*results("r1"));
   EXPECT_EQ(second["points"][0]["magnitude"], 0.9);
   EXPECT_GT(second["number"], first["number"]);
@@ -133,15 +133,15 @@ TEST_F(StateCacheTest, ShowsARunThatWasDroppedAndIsHeardOfAgainAsItIsNow) {
 
 // Nothing has come of either: what is known of them is the plan.
 TEST_F(StateCacheTest, ShowsThePlanOfARunThatIsHeardOfAgain) {
-  wire::Measurement first = live::measurement_of("acc-1", "r1", wire::MEASUREMENT_ABORTED);
+  wire::Measurement first = network::measurement_of("acc-1", "r1", wire::MEASUREMENT_ABORTED);
   first.message("the first");
   take(first);
   const Text old = results("r1");
   for (std::size_t i = 0; i < network::Limits{}.runs; ++i) {
     clock_.advance(1s);
-    take(live::result_of("acc-1", "other" + std::to_string(i), 1, 0.5));
+    take(network::result_of("acc-1", "other" + std::to_string(i), 1, 0.5));
   }
-  wire::Measurement second = live::measurement_of("acc-1", "r1", wire::MEASUREMENT_RUNNING);
+  wire::Measurement second = network::measurement_of("acc-1", "r1", wire::MEASUREMENT_RUNNING);
   second.message("the second");
   take(second);
   EXPECT_NE(*results("r1"), *old);
@@ -153,9 +153,9 @@ TEST_F(StateCacheTest, HoldsTextsOfTheRunsItHoldsOnly) {
   StateCache::Held after_300; // then the list of events is full
   for (int i = 0; i < 1000; ++i) {
     const std::string run = "r" + std::to_string(i);
-    take(live::measurement_of("acc-1", run, wire::MEASUREMENT_DONE));
+    take(network::measurement_of("acc-1", run, wire::MEASUREMENT_DONE));
     for (std::uint32_t step = 1; step <= 8; ++step) {
-      take(live::result_of("acc-1", run, step, 0.3));
+      take(network::result_of("acc-1", run, step, 0.3));
     }
     clock_.advance(1s);
     ASSERT_NE(results(run), nullptr);
@@ -173,17 +173,17 @@ TEST_F(StateCacheTest, HoldsTextsOfTheRunsItHoldsOnly) {
 }
 
 TEST_F(StateCacheTest, ForgetsWhatNobodyAsksFor) {
-  take(live::measurement_of("acc-1", "r1", wire::MEASUREMENT_RUNNING));
-  take(live::result_of("acc-1", "r1", 1, 0.3));
+  take(network::measurement_of("acc-1", "r1", wire::MEASUREMENT_RUNNING));
+  take(network::result_of("acc-1", "r1", 1, 0.3));
   const Text first = results();
   for (int i = 0; i < 10; ++i) { // somebody looks: it is made once
     clock_.advance(StateCache::forgotten_after / 2);
-    take(live::status_of("acc-1", "dau"));
+    take(network::status_of("acc-1", "dau"));
     EXPECT_EQ(results(), first);
   }
   EXPECT_EQ(made_, 1);
   clock_.advance(StateCache::forgotten_after);
-  take(live::status_of("acc-1", "dau"));
+  take(network::status_of("acc-1", "dau"));
   EXPECT_EQ(cache_.held().texts, 0U);
   EXPECT_EQ(cache_.held().bytes, 0U);
   ASSERT_NE(results(), nullptr);
@@ -192,7 +192,7 @@ TEST_F(StateCacheTest, ForgetsWhatNobodyAsksFor) {
 
 TEST_F(StateCacheTest, HasNoTextOfABenchThatIsNotKnown) {
   EXPECT_EQ(cache_.bench("acc-1"), nullptr);
-  take(live::status_of("acc-1", "dau"));
+  take(network::status_of("acc-1", "dau"));
   EXPECT_EQ(Json::parse(*cache_.bench("acc-1"))["sources"].size(), 1U);
 }
 

@@ -13,6 +13,7 @@
 namespace dyncal::inline views::live {
 namespace {
 
+using namespace network;
 using Json = nlohmann::ordered_json;
 
 TEST(LaboratoryJson, TellsOfABenchWhatItIsAndWhy) {
