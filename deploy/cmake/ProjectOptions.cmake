@@ -94,6 +94,8 @@ if(NOT TARGET dyncal_options)
     -Wno-stringop-overflow
     -Wno-restrict
     "$<$<BOOL:${DYNCAL_PRECOMPILED_HEADERS}>:-Wno-array-bounds;-Wno-stringop-overread>"
+    # A source that is joined to others is no header, though GCC takes it for one.
+    $<$<AND:$<BOOL:${DYNCAL_JOINED_SOURCES}>,$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>
     $<$<BOOL:${DYNCAL_WARNINGS_AS_ERRORS}>:-Werror>)
 endif()
 

@@ -14,12 +14,12 @@ constexpr std::uint32_t types_to_come = 0b1111011; // all but UNCERTAINTY_TYPE, 
 constexpr std::size_t first_adc_channel = 10;      // Data_11..13 of the calibration firmware
 constexpr std::size_t last_adc_channel = 12;
 
-struct Place {
+struct HierarchyPlace {
   std::string group;                // as declared
   std::optional<std::size_t> index; // absent: malformed
 };
 
-Place place_of(const std::string& hierarchy) {
+HierarchyPlace place_of(const std::string& hierarchy) {
   const auto slash = hierarchy.find('/');
   if (slash == std::string::npos) {
     return {hierarchy, std::nullopt};
@@ -153,7 +153,7 @@ bool DescriptionAssembly::complete() const {
 }
 
 std::string DescriptionAssembly::declared_name(std::size_t channel) const {
-  const Place place = place_of(declared_[channel].hierarchy);
+  const HierarchyPlace place = place_of(declared_[channel].hierarchy);
   std::string group = identifier(place.group);
   if (group.empty() || !place.index) {
     return group;
@@ -161,7 +161,7 @@ std::string DescriptionAssembly::declared_name(std::size_t channel) const {
   std::uint32_t indices = 0;
   int members = 0;
   for (const Declared& other : declared_) {
-    const Place other_place = place_of(other.hierarchy);
+    const HierarchyPlace other_place = place_of(other.hierarchy);
     if (other_place.group != place.group) {
       continue;
     }

@@ -63,5 +63,11 @@ struct Hdf5Result {
 // Compound types of the library for these; T is one of them.
 template <class T>
 [[nodiscard]] Hdf5Handle hdf5_type();
+template <>
+[[nodiscard]] Hdf5Handle hdf5_type<Hdf5Shot>();
+template <>
+[[nodiscard]] Hdf5Handle hdf5_type<Hdf5Excitation>();
+template <>
+[[nodiscard]] Hdf5Handle hdf5_type<Hdf5Result>();
 
 } // namespace dyncal::inline records
