@@ -1,6 +1,7 @@
 # Sources of a library or program are compiled eight as one: headers that they share are read once,
-# which halves the processor time of a build from nothing. After a change it compiles eight sources
-# for one, so that it is for those who use dyncal (preset "programs"), not for those who change it.
+# which saves about a third of a build's processor time from nothing. After a change it compiles
+# eight sources for one, so that it is for those who use dyncal (preset "programs"), not for those
+# who change it.
 #
 # What a source declares in unnamed namespaces is seen by those that are joined behind it. It could
 # be taken there in place of another thing of that name, without a word of the compiler: so a source
