@@ -3,134 +3,78 @@
 #include <cmath>
 
 #include "services/base/version.hpp"
+#include "services/evaluation/result/message_members.hpp"
 
 namespace dyncal::inline evaluation {
-namespace {
 
-void write_numbers(const analysis::SampleClockStatistics& clock, wire::SampleClockReport& report) {
-  report.interval_count(clock.intervals);
-  report.mean_interval_s(clock.mean_interval_s);
-  report.u_mean_interval_s(clock.u_mean_interval_s);
-  report.sd_interval_s(clock.sd_s);
-  report.min_interval_s(clock.minimum_s);
-  report.max_interval_s(clock.maximum_s);
-  report.median_interval_s(clock.median_s);
-  report.mad_sd_interval_s(clock.mad_sd_s);
-  report.p0_1_interval_s(clock.quantile_001_s);
-  report.p1_interval_s(clock.quantile_01_s);
-  report.p99_interval_s(clock.quantile_99_s);
-  report.p99_9_interval_s(clock.quantile_999_s);
-  report.nominal_rate_hz(clock.nominal_rate_hz);
-  report.mean_rate_hz(clock.mean_rate_hz);
-  report.tick_s(clock.tick_s);
-  report.lattice_statistic(clock.lattice_statistic);
-  report.event_count(clock.event_count);
-  report.pair_period_samples(clock.pair_period_samples);
-  report.pair_period_s(clock.pair_period_s);
-  report.temperature_correlation(clock.temperature_correlation);
-  report.temperature_slope_s_per_degc(clock.temperature_slope_s_per_degc);
-  report.close_up_begin_s(clock.close_up_first_time_s);
-  report.lost(clock.lost);
+void message_members(auto& visit, Either<analysis::IntervalHistogramBin> auto& bin, auto& message) {
+  visit(bin.ticks, message.interval_ticks());
+  visit(bin.interval_ns, message.interval_ns());
+  visit(bin.count, message.interval_count());
 }
 
-void write_lists(const analysis::SampleClockStatistics& clock, wire::SampleClockReport& report) {
-  report.mode_intervals_s() = clock.modes_s;
-  report.close_up_interval_ns() = clock.close_up_ns;
-  report.scatter_temperature_degc() = clock.scatter_temperature_degc;
-  report.scatter_interval_ns() = clock.scatter_interval_ns;
-  for (const analysis::IntervalHistogramBin& bin : clock.histogram) {
-    wire::HistogramBin message;
-    message.interval_ticks(bin.ticks);
-    message.interval_ns(bin.interval_ns);
-    message.interval_count(bin.count);
-    report.histogram().push_back(message);
-  }
-  for (const analysis::IntervalBucket& bucket : clock.over_time) {
-    wire::IntervalBucket message;
-    message.time_s(bucket.time_s);
-    message.min_interval_ns(bucket.minimum_ns);
-    message.max_interval_ns(bucket.maximum_ns);
-    message.mean_interval_ns(bucket.mean_ns);
-    report.over_time().push_back(message);
-  }
-  for (const analysis::IntervalEvent& event : clock.events) {
-    wire::IntervalEvent message;
-    message.kind(event.kind);
-    message.sample(event.sample);
-    message.time_s(event.time_s);
-    message.size_ns(event.size_ns);
-    message.missing_samples(event.missing);
-    report.events().push_back(message);
-  }
-  for (const analysis::TemperatureBin& bin : clock.over_temperature) {
-    wire::TemperatureBin message;
-    message.temperature_degc(bin.temperature_degc);
-    message.mean_interval_ns(bin.mean_interval_ns);
-    message.sd_interval_ns(bin.sd_interval_ns);
-    message.interval_count(bin.count);
-    report.over_temperature().push_back(message);
-  }
-  for (const analysis::AllanPoint& point : clock.allan) {
-    wire::AllanPoint message;
-    message.tau_s(point.tau_s);
-    message.deviation_rel(point.deviation);
-    report.allan().push_back(message);
-  }
+void message_members(auto& visit, Either<analysis::IntervalBucket> auto& bucket, auto& message) {
+  visit(bucket.time_s, message.time_s());
+  visit(bucket.minimum_ns, message.min_interval_ns());
+  visit(bucket.maximum_ns, message.max_interval_ns());
+  visit(bucket.mean_ns, message.mean_interval_ns());
 }
 
-void read_numbers(const wire::SampleClockReport& report, analysis::SampleClockStatistics& clock) {
-  clock.intervals = report.interval_count();
-  clock.mean_interval_s = report.mean_interval_s();
-  clock.u_mean_interval_s = report.u_mean_interval_s();
-  clock.sd_s = report.sd_interval_s();
-  clock.minimum_s = report.min_interval_s();
-  clock.maximum_s = report.max_interval_s();
-  clock.median_s = report.median_interval_s();
-  clock.mad_sd_s = report.mad_sd_interval_s();
-  clock.quantile_001_s = report.p0_1_interval_s();
-  clock.quantile_01_s = report.p1_interval_s();
-  clock.quantile_50_s = report.median_interval_s();
-  clock.quantile_99_s = report.p99_interval_s();
-  clock.quantile_999_s = report.p99_9_interval_s();
-  clock.nominal_rate_hz = report.nominal_rate_hz();
-  clock.mean_rate_hz = report.mean_rate_hz();
-  clock.tick_s = report.tick_s();
-  clock.lattice_statistic = report.lattice_statistic();
-  clock.event_count = report.event_count();
-  clock.pair_period_samples = report.pair_period_samples();
-  clock.pair_period_s = report.pair_period_s();
-  clock.temperature_correlation = report.temperature_correlation();
-  clock.temperature_slope_s_per_degc = report.temperature_slope_s_per_degc();
-  clock.close_up_first_time_s = report.close_up_begin_s();
-  clock.lost = report.lost();
+void message_members(auto& visit, Either<analysis::IntervalEvent> auto& event, auto& message) {
+  visit(event.kind, message.kind());
+  visit(event.sample, message.sample());
+  visit(event.time_s, message.time_s());
+  visit(event.size_ns, message.size_ns());
+  visit(event.missing, message.missing_samples());
 }
 
-void read_lists(const wire::SampleClockReport& report, analysis::SampleClockStatistics& clock) {
-  clock.modes_s = report.mode_intervals_s();
-  clock.close_up_ns = report.close_up_interval_ns();
-  clock.scatter_temperature_degc = report.scatter_temperature_degc();
-  clock.scatter_interval_ns = report.scatter_interval_ns();
-  for (const wire::HistogramBin& bin : report.histogram()) {
-    clock.histogram.push_back({bin.interval_ticks(), bin.interval_ns(), bin.interval_count()});
-  }
-  for (const wire::IntervalBucket& bucket : report.over_time()) {
-    clock.over_time.push_back({bucket.time_s(), bucket.min_interval_ns(), bucket.max_interval_ns(),
-                               bucket.mean_interval_ns()});
-  }
-  for (const wire::IntervalEvent& event : report.events()) {
-    clock.events.push_back(
-        {event.kind(), event.sample(), event.time_s(), event.size_ns(), event.missing_samples()});
-  }
-  for (const wire::TemperatureBin& bin : report.over_temperature()) {
-    clock.over_temperature.push_back({bin.temperature_degc(), bin.mean_interval_ns(),
-                                      bin.sd_interval_ns(), bin.interval_count()});
-  }
-  for (const wire::AllanPoint& point : report.allan()) {
-    clock.allan.push_back({point.tau_s(), point.deviation_rel()});
-  }
+void message_members(auto& visit, Either<analysis::TemperatureBin> auto& bin, auto& message) {
+  visit(bin.temperature_degc, message.temperature_degc());
+  visit(bin.mean_interval_ns, message.mean_interval_ns());
+  visit(bin.sd_interval_ns, message.sd_interval_ns());
+  visit(bin.count, message.interval_count());
 }
 
-} // namespace
+void message_members(auto& visit, Either<analysis::AllanPoint> auto& point, auto& message) {
+  visit(point.tau_s, message.tau_s());
+  visit(point.deviation, message.deviation_rel());
+}
+
+void message_members(auto& visit, Either<analysis::SampleClockStatistics> auto& clock,
+                     auto& report) {
+  visit(clock.intervals, report.interval_count());
+  visit(clock.mean_interval_s, report.mean_interval_s());
+  visit(clock.u_mean_interval_s, report.u_mean_interval_s());
+  visit(clock.sd_s, report.sd_interval_s());
+  visit(clock.minimum_s, report.min_interval_s());
+  visit(clock.maximum_s, report.max_interval_s());
+  visit(clock.median_s, report.median_interval_s());
+  visit(clock.mad_sd_s, report.mad_sd_interval_s());
+  visit(clock.quantile_001_s, report.p0_1_interval_s());
+  visit(clock.quantile_01_s, report.p1_interval_s());
+  visit(clock.quantile_99_s, report.p99_interval_s());
+  visit(clock.quantile_999_s, report.p99_9_interval_s());
+  visit(clock.nominal_rate_hz, report.nominal_rate_hz());
+  visit(clock.mean_rate_hz, report.mean_rate_hz());
+  visit(clock.tick_s, report.tick_s());
+  visit(clock.lattice_statistic, report.lattice_statistic());
+  visit(clock.modes_s, report.mode_intervals_s());
+  visit(clock.histogram, report.histogram());
+  visit(clock.over_time, report.over_time());
+  visit(clock.close_up_first_time_s, report.close_up_begin_s());
+  visit(clock.close_up_ns, report.close_up_interval_ns());
+  visit(clock.events, report.events());
+  visit(clock.event_count, report.event_count());
+  visit(clock.pair_period_samples, report.pair_period_samples());
+  visit(clock.pair_period_s, report.pair_period_s());
+  visit(clock.over_temperature, report.over_temperature());
+  visit(clock.scatter_temperature_degc, report.scatter_temperature_degc());
+  visit(clock.scatter_interval_ns, report.scatter_interval_ns());
+  visit(clock.temperature_correlation, report.temperature_correlation());
+  visit(clock.temperature_slope_s_per_degc, report.temperature_slope_s_per_degc());
+  visit(clock.allan, report.allan());
+  visit(clock.lost, report.lost());
+}
 
 wire::SampleClockReport to_message(const Recipe& recipe, const ClockReport& report) {
   wire::SampleClockReport message;
@@ -138,10 +82,9 @@ wire::SampleClockReport to_message(const Recipe& recipe, const ClockReport& repo
   message.run(recipe.run);
   message.source(report.source);
   message.software(software_version());
-  write_numbers(report.clock, message);
-  write_lists(report.clock, message);
-  message.flags() = sentences_of(report.flags);
-  message.flag_names() = names_of(report.flags);
+  MessageWriter writer;
+  message_members(writer, report.clock, message);
+  writer.flags(report.flags, message);
   if (report.last_block) {
     message.last_session(report.last_block->session);
     message.last_block(report.last_block->number);
@@ -152,9 +95,10 @@ wire::SampleClockReport to_message(const Recipe& recipe, const ClockReport& repo
 ClockReport from_message(const wire::SampleClockReport& message) {
   ClockReport report;
   report.source = message.source().to_string();
-  read_numbers(message, report.clock);
-  read_lists(message, report.clock);
-  report.flags = flags_from_message(message.flags(), message.flag_names());
+  MessageReader reader;
+  message_members(reader, report.clock, message);
+  report.clock.quantile_50_s = report.clock.median_s;
+  reader.flags(report.flags, message);
   if (message.last_session() != 0) {
     report.last_block = BlockPosition{message.last_session(), message.last_block()};
   }

@@ -1,9 +1,9 @@
 #include "services/evaluation/result/contribution_message.hpp"
 
-#include <algorithm>
 #include <array>
-#include <iterator>
 #include <utility>
+
+#include "services/evaluation/result/message_members.hpp"
 
 namespace dyncal::inline evaluation {
 namespace {
@@ -50,47 +50,35 @@ constexpr auto repeated = std::to_array<std::pair<Repeats, wire::Repeats>>({
     {Repeats::anew, wire::REPEATS_ANEW},
 });
 
-// The first pair of a table is what an unknown value is taken for.
-template <class Table, class Value>
-auto to_wire(const Table& table, Value value) {
-  const auto found = std::find_if(std::begin(table), std::end(table),
-                                  [&](const auto& pair) { return pair.first == value; });
-  return found == std::end(table) ? table.front().second : found->second;
-}
-
-template <class Table, class Value>
-auto from_wire(const Table& table, Value value) {
-  const auto found = std::find_if(std::begin(table), std::end(table),
-                                  [&](const auto& pair) { return pair.second == value; });
-  return found == std::end(table) ? table.front().first : found->first;
-}
-
 } // namespace
+
+void message_members(auto& visit, Either<analysis::Contribution> auto& row, auto& message) {
+  visit.named(row.kind, message.kind(), kinds);
+  visit(row.subject, message.subject());
+  visit.named(row.distribution, message.distribution(), distributions);
+  visit.named(row.repeats, message.repeats(), repeated);
+  visit(row.degrees_of_freedom, message.degrees_of_freedom());
+  visit(row.u_magnitude_rel, message.u_magnitude_rel());
+  visit(row.u_lasting_magnitude_rel, message.u_lasting_magnitude_rel());
+  visit(row.u_phase_rad, message.u_phase_rad());
+}
 
 wire::BudgetContribution to_message(const analysis::Contribution& row) {
   wire::BudgetContribution message;
-  message.kind(to_wire(kinds, row.kind));
-  message.subject(row.subject);
+  MessageWriter writer;
+  message_members(writer, row, message);
   message.name(row.name());
-  message.distribution(to_wire(distributions, row.distribution));
-  message.repeats(to_wire(repeated, row.repeats));
-  message.degrees_of_freedom(row.degrees_of_freedom);
-  message.u_magnitude_rel(row.u_magnitude_rel);
-  message.u_lasting_magnitude_rel(row.u_lasting_magnitude_rel);
-  message.u_phase_rad(row.u_phase_rad);
   return message;
 }
 
 analysis::Contribution from_message(const wire::BudgetContribution& message) {
-  const ContributionKind kind = from_wire(kinds, message.kind());
-  return {.kind = kind,
-          .subject = kind == ContributionKind::other ? message.name() : message.subject(),
-          .distribution = from_wire(distributions, message.distribution()),
-          .repeats = from_wire(repeated, message.repeats()),
-          .degrees_of_freedom = message.degrees_of_freedom(),
-          .u_magnitude_rel = message.u_magnitude_rel(),
-          .u_phase_rad = message.u_phase_rad(),
-          .u_lasting_magnitude_rel = message.u_lasting_magnitude_rel()};
+  analysis::Contribution row;
+  MessageReader reader;
+  message_members(reader, row, message);
+  if (row.kind == ContributionKind::other) {
+    row.subject = message.name();
+  }
+  return row;
 }
 
 } // namespace dyncal::inline evaluation

@@ -4,92 +4,64 @@
 
 #include "services/base/version.hpp"
 #include "services/contract/evaluation_method_message.hpp"
+#include "services/evaluation/result/message_members.hpp"
 
 namespace dyncal::inline evaluation {
-namespace {
 
-wire::TransferPoint point_message(const FrequencyPoint& point) {
-  wire::TransferPoint message;
-  message.frequency_text_hz(point.frequency_text_hz);
-  message.frequency_hz(point.frequency_hz);
-  message.level_m_s2(point.level_m_s2);
-  message.magnitude(point.mean.magnitude);
-  message.u_magnitude(point.mean.u_magnitude);
-  message.phase_rad(point.mean.phase_rad);
-  message.u_phase_rad(point.mean.u_phase_rad);
-  message.unwrapped_phase_rad(point.unwrapped_phase_rad);
-  message.scatter_magnitude(point.mean.scatter_magnitude);
-  message.scatter_phase_rad(point.mean.scatter_phase_rad);
-  message.repetitions(static_cast<std::uint32_t>(point.mean.repetitions));
-  return message;
+void message_members(auto& visit, Either<FrequencyPoint> auto& point, auto& message) {
+  visit(point.frequency_text_hz, message.frequency_text_hz());
+  visit(point.frequency_hz, message.frequency_hz());
+  visit(point.level_m_s2, message.level_m_s2());
+  visit(point.mean.magnitude, message.magnitude());
+  visit(point.mean.u_magnitude, message.u_magnitude());
+  visit(point.mean.phase_rad, message.phase_rad());
+  visit(point.mean.u_phase_rad, message.u_phase_rad());
+  visit(point.unwrapped_phase_rad, message.unwrapped_phase_rad());
+  visit(point.mean.scatter_magnitude, message.scatter_magnitude());
+  visit(point.mean.scatter_phase_rad, message.scatter_phase_rad());
+  visit(point.mean.repetitions, message.repetitions());
 }
 
-FrequencyPoint point_from_message(const wire::TransferPoint& message) {
-  FrequencyPoint point;
-  point.frequency_text_hz = message.frequency_text_hz();
-  point.frequency_hz = message.frequency_hz();
-  point.level_m_s2 = message.level_m_s2();
-  point.mean.h = std::polar(message.magnitude(), message.phase_rad());
-  point.mean.magnitude = message.magnitude();
-  point.mean.u_magnitude = message.u_magnitude();
-  point.mean.phase_rad = message.phase_rad();
-  point.mean.u_phase_rad = message.u_phase_rad();
-  point.mean.scatter_magnitude = message.scatter_magnitude();
-  point.mean.scatter_phase_rad = message.scatter_phase_rad();
-  point.mean.repetitions = message.repetitions();
-  point.unwrapped_phase_rad = message.unwrapped_phase_rad();
-  return point;
+void message_members(auto& visit, Either<analysis::RepetitionMean> auto& mean, auto& message) {
+  visit(mean.magnitude_rel.u, message.u_magnitude_rel());
+  visit(mean.magnitude_rel.degrees_of_freedom, message.degrees_of_freedom_magnitude());
+  visit(mean.magnitude_rel.k, message.k_magnitude());
+  visit(mean.phase.u, message.u_phase_rad());
+  visit(mean.phase.degrees_of_freedom, message.degrees_of_freedom_phase());
+  visit(mean.phase.k, message.k_phase());
+  visit(mean.u_independent_phase_rad, message.u_independent_phase_rad());
 }
 
-wire::MeanUncertainty uncertainty_message(const analysis::RepetitionMean& mean) {
-  wire::MeanUncertainty message;
-  message.u_magnitude_rel(mean.magnitude_rel.u);
-  message.degrees_of_freedom_magnitude(mean.magnitude_rel.degrees_of_freedom);
-  message.k_magnitude(mean.magnitude_rel.k);
-  message.u_phase_rad(mean.phase.u);
-  message.degrees_of_freedom_phase(mean.phase.degrees_of_freedom);
-  message.k_phase(mean.phase.k);
-  message.u_independent_phase_rad(mean.u_independent_phase_rad);
-  return message;
+void message_members(auto& visit, Either<TransferFunction> auto& function, auto& message) {
+  visit(function.channel, message.channel());
+  visit(function.unit, message.unit());
+  visit(function.points, message.points());
+  if (auto* delay = visit.present(function.group_delay, message.group_delay_valid())) {
+    visit(delay->delay_s, message.group_delay_s());
+    visit(delay->u_delay_s, message.u_group_delay_s());
+    visit(delay->intercept_rad, message.intercept_rad());
+    visit(delay->u_intercept_rad, message.u_intercept_rad());
+    visit(delay->cov_delay_intercept, message.cov_delay_intercept_rad_s());
+    visit(delay->phase_covariance, message.phase_covariance_rad2());
+    visit(delay->polarity_inverted, message.polarity_inverted());
+    visit(delay->chi_squared, message.group_delay_chi_squared());
+    visit(delay->degrees_of_freedom, message.group_delay_degrees_of_freedom());
+  }
+  visit(function.group_delay_problem, message.group_delay_problem());
+  visit.flags(function.flags, message);
+  visit(function.lost, message.lost());
 }
-
-void read_uncertainty(const wire::MeanUncertainty& message, analysis::RepetitionMean& mean) {
-  mean.magnitude_rel = {message.u_magnitude_rel(), message.degrees_of_freedom_magnitude(),
-                        message.k_magnitude()};
-  mean.phase = {message.u_phase_rad(), message.degrees_of_freedom_phase(), message.k_phase()};
-  mean.u_independent_phase_rad = message.u_independent_phase_rad();
-}
-
-} // namespace
 
 wire::TransferFunction to_message(const Recipe& recipe, const TransferFunction& function) {
   wire::TransferFunction message;
+  MessageWriter writer;
+  message_members(writer, function, message);
+  for (const FrequencyPoint& point : function.points) {
+    message_members(writer, point.mean, message.mean_uncertainties().emplace_back());
+  }
   message.bench(recipe.bench);
   message.run(recipe.run);
-  message.channel(function.channel);
   message.method(to_wire(function.method));
-  message.unit(function.unit);
-  for (const FrequencyPoint& point : function.points) {
-    message.points().push_back(point_message(point));
-    message.mean_uncertainties().push_back(uncertainty_message(point.mean));
-  }
-  message.group_delay_valid(function.group_delay.has_value());
-  message.group_delay_problem(function.group_delay_problem);
-  if (function.group_delay) {
-    const analysis::GroupDelay& delay = *function.group_delay;
-    message.group_delay_s(delay.delay_s);
-    message.u_group_delay_s(delay.u_delay_s);
-    message.intercept_rad(delay.intercept_rad);
-    message.u_intercept_rad(delay.u_intercept_rad);
-    message.cov_delay_intercept_rad_s(delay.cov_delay_intercept);
-    message.phase_covariance_rad2() = delay.phase_covariance;
-    message.polarity_inverted(delay.polarity_inverted);
-    message.group_delay_chi_squared(delay.chi_squared);
-    message.group_delay_degrees_of_freedom(delay.degrees_of_freedom);
-  }
-  message.flags() = sentences_of(function.flags);
-  message.flag_names() = names_of(function.flags);
-  message.lost(function.lost);
   message.software(software_version());
   message.recipe_sha256(recipe.sha256);
   return message;
@@ -97,30 +69,16 @@ wire::TransferFunction to_message(const Recipe& recipe, const TransferFunction& 
 
 TransferFunction from_message(const wire::TransferFunction& message) {
   TransferFunction function;
-  function.channel = message.channel().to_string();
-  function.method = from_wire(message.method()).value_or(EvaluationMethod::sample_timestamping);
-  function.unit = message.unit();
-  for (std::size_t i = 0; i < message.points().size(); ++i) {
-    function.points.push_back(point_from_message(message.points()[i]));
+  MessageReader reader;
+  message_members(reader, function, message);
+  for (std::size_t i = 0; i < function.points.size(); ++i) {
+    analysis::RepetitionMean& mean = function.points[i].mean;
+    mean.h = std::polar(mean.magnitude, mean.phase_rad);
     if (i < message.mean_uncertainties().size()) {
-      read_uncertainty(message.mean_uncertainties()[i], function.points.back().mean);
+      message_members(reader, mean, message.mean_uncertainties()[i]);
     }
   }
-  if (message.group_delay_valid()) {
-    analysis::GroupDelay& delay = function.group_delay.emplace();
-    delay.delay_s = message.group_delay_s();
-    delay.u_delay_s = message.u_group_delay_s();
-    delay.intercept_rad = message.intercept_rad();
-    delay.u_intercept_rad = message.u_intercept_rad();
-    delay.cov_delay_intercept = message.cov_delay_intercept_rad_s();
-    delay.phase_covariance = message.phase_covariance_rad2();
-    delay.polarity_inverted = message.polarity_inverted();
-    delay.chi_squared = message.group_delay_chi_squared();
-    delay.degrees_of_freedom = message.group_delay_degrees_of_freedom();
-  }
-  function.group_delay_problem = message.group_delay_problem();
-  function.flags = flags_from_message(message.flags(), message.flag_names());
-  function.lost = message.lost();
+  function.method = from_wire(message.method()).value_or(EvaluationMethod::sample_timestamping);
   return function;
 }
 
