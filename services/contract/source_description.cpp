@@ -1,29 +1,31 @@
 #include "services/contract/source_description.hpp"
 
+#include <array>
+#include <utility>
+
 #include <fmt/core.h>
 
 #include "idl/dyncal.h"
 #include "services/base/printable_text.hpp"
+#include "services/contract/message_members.hpp"
 
 namespace dyncal::inline contract {
 namespace {
 
-drivers::StampInstant stamp_instant(wire::StampInstant instant) {
-  switch (instant) {
-  case wire::STAMP_DATA_READY_EDGE:
-    return drivers::StampInstant::data_ready_edge;
-  case wire::STAMP_CONVERSION:
-    return drivers::StampInstant::conversion;
-  case wire::STAMP_TRIGGER_EDGE:
-    return drivers::StampInstant::trigger_edge;
-  case wire::STAMP_FRAME_START:
-    return drivers::StampInstant::frame_start;
-  case wire::STAMP_FRAME_END:
-    return drivers::StampInstant::frame_end;
-  default:
-    return drivers::StampInstant::unknown;
-  }
-}
+using drivers::StampInstant;
+using drivers::TimeBase;
+
+constexpr auto time_bases = std::to_array<std::pair<TimeBase, wire::TimeBase>>(
+    {{TimeBase::local, wire::TIME_BASE_LOCAL}, {TimeBase::utc, wire::TIME_BASE_UTC}});
+
+constexpr auto instants = std::to_array<std::pair<StampInstant, wire::StampInstant>>({
+    {StampInstant::unknown, wire::STAMP_UNKNOWN},
+    {StampInstant::data_ready_edge, wire::STAMP_DATA_READY_EDGE},
+    {StampInstant::conversion, wire::STAMP_CONVERSION},
+    {StampInstant::trigger_edge, wire::STAMP_TRIGGER_EDGE},
+    {StampInstant::frame_start, wire::STAMP_FRAME_START},
+    {StampInstant::frame_end, wire::STAMP_FRAME_END},
+});
 
 bool differs(const std::string& first, const std::string& now) {
   return !first.empty() && !now.empty() && first != now;
@@ -38,22 +40,41 @@ std::string device_text(const drivers::SourceDescription& description) {
 
 } // namespace
 
+void message_members(auto& visit, Either<drivers::ChannelDescription> auto& channel,
+                     auto& message) {
+  visit(channel.name, message.name());
+  visit(channel.quantity, message.quantity());
+  visit(channel.unit, message.unit());
+  visit(channel.minimum, message.minimum());
+  visit(channel.maximum, message.maximum());
+  visit(channel.resolution, message.resolution());
+}
+
+void message_members(auto& visit, Either<drivers::SourceDescription> auto& description,
+                     auto& message) {
+  visit(description.device, message.device());
+  visit(description.serial, message.serial());
+  visit(description.firmware, message.firmware());
+  visit(description.driver, message.driver());
+  visit(description.channels, message.channels());
+  visit(description.nominal_rate_hz, message.nominal_rate_hz());
+  visit.named(description.time_base, message.time_base(), time_bases);
+  visit.named(description.stamp_instant, message.stamp_instant(), instants);
+  visit(description.tick_s, message.tick_s());
+  visit(description.stamp_uncertainty_s, message.stamp_uncertainty_s());
+}
+
+wire::SourceDescription to_message(const drivers::SourceDescription& description) {
+  wire::SourceDescription message;
+  MessageWriter writer;
+  message_members(writer, description, message);
+  return message;
+}
+
 drivers::SourceDescription from_message(const wire::SourceDescription& message) {
   drivers::SourceDescription description;
-  description.device = message.device();
-  description.serial = message.serial();
-  description.firmware = message.firmware();
-  description.driver = message.driver();
-  for (const wire::ChannelDescription& channel : message.channels()) {
-    description.channels.push_back({channel.name(), channel.quantity(), channel.unit(),
-                                    channel.minimum(), channel.maximum(), channel.resolution()});
-  }
-  description.nominal_rate_hz = message.nominal_rate_hz();
-  description.time_base = message.time_base() == wire::TIME_BASE_UTC ? drivers::TimeBase::utc
-                                                                     : drivers::TimeBase::local;
-  description.stamp_instant = stamp_instant(message.stamp_instant());
-  description.tick_s = message.tick_s();
-  description.stamp_uncertainty_s = message.stamp_uncertainty_s();
+  MessageReader reader;
+  message_members(reader, description, message);
   return description;
 }
 

@@ -1,7 +1,8 @@
-// The description of a source as drivers give it, read from the contract's message, and whether
+// The description of a source as drivers give it, in the contract's message and back, and whether
 // another instrument has taken its place.
 //
-// The other way is services/stream/messages.hpp, where a source is published. Any thread.
+// What else the message has, whoever publishes the source adds (services/stream/messages.hpp). Any
+// thread.
 #pragma once
 
 #include <string>
@@ -14,6 +15,7 @@ class SourceDescription;
 
 namespace dyncal::inline contract {
 
+[[nodiscard]] wire::SourceDescription to_message(const drivers::SourceDescription& description);
 [[nodiscard]] drivers::SourceDescription from_message(const wire::SourceDescription& message);
 
 // One sentence that names both where device or serial number differ, as far as both are known;

@@ -5,69 +5,24 @@
 #include <utility>
 
 #include "services/bus/host_network.hpp"
+#include "services/contract/source_description.hpp"
 #include "services/contract/source_kind.hpp"
 
 namespace dyncal::inline stream {
 
-namespace {
-
-dyncal::wire::StampInstant to_contract(drivers::StampInstant instant) {
-  switch (instant) {
-  case drivers::StampInstant::unknown:
-    return wire::STAMP_UNKNOWN;
-  case drivers::StampInstant::data_ready_edge:
-    return wire::STAMP_DATA_READY_EDGE;
-  case drivers::StampInstant::conversion:
-    return wire::STAMP_CONVERSION;
-  case drivers::StampInstant::trigger_edge:
-    return wire::STAMP_TRIGGER_EDGE;
-  case drivers::StampInstant::frame_start:
-    return wire::STAMP_FRAME_START;
-  case drivers::StampInstant::frame_end:
-    return wire::STAMP_FRAME_END;
-  }
-  return wire::STAMP_UNKNOWN;
-}
-
-dyncal::wire::ChannelDescription to_contract(const drivers::ChannelDescription& channel) {
-  dyncal::wire::ChannelDescription message;
-  message.name(channel.name);
-  message.quantity(channel.quantity);
-  message.unit(channel.unit);
-  message.minimum(channel.minimum);
-  message.maximum(channel.maximum);
-  message.resolution(channel.resolution);
-  return message;
-}
-
-} // namespace
-
 dyncal::wire::SourceDescription to_message(const SourceOptions& source, std::uint64_t session,
                                            const std::string& software,
                                            const drivers::SourceDescription& description) {
-  dyncal::wire::SourceDescription message;
+  dyncal::wire::SourceDescription message = contract::to_message(description);
   message.bench(source.bench);
   message.source(source.source);
   message.session(session);
   message.kind(to_wire(source.kind));
-  message.device(description.device);
-  message.serial(description.serial);
-  message.firmware(description.firmware);
-  message.driver(description.driver);
   message.software(software);
   message.host(bus::host_name());
   message.process_id(static_cast<std::uint32_t>(getpid()));
   message.bench_file_sha256(source.origin.sha256);
   message.settings(source.origin.settings);
-  for (const auto& channel : description.channels) {
-    message.channels().push_back(to_contract(channel));
-  }
-  message.nominal_rate_hz(description.nominal_rate_hz);
-  message.time_base(description.time_base == drivers::TimeBase::utc ? wire::TIME_BASE_UTC
-                                                                    : wire::TIME_BASE_LOCAL);
-  message.stamp_instant(to_contract(description.stamp_instant));
-  message.tick_s(description.tick_s);
-  message.stamp_uncertainty_s(description.stamp_uncertainty_s);
   message.contract_version(dyncal::wire::CONTRACT_VERSION);
   return message;
 }

@@ -3,9 +3,78 @@
 #include <fmt/core.h>
 
 #include "services/contract/evaluation_method_message.hpp"
+#include "services/contract/message_members.hpp"
 
 namespace dyncal::inline evaluation {
+
+void message_members(auto& visit, Either<analysis::AdcCalibrationPoint> auto& point,
+                     auto& message) {
+  visit(point.frequency_hz, message.frequency_hz());
+  visit(point.test_amplitude_vpp, message.test_amplitude_vpp());
+  visit(point.gain, message.gain());
+  visit(point.phase_lag_rad, message.phase_lag_rad());
+  visit(point.u_gain, message.u_gain());
+  visit(point.u_phase_lag_rad, message.u_phase_lag_rad());
+}
+
+void message_members(auto& visit, Either<analysis::ReferenceContribution> auto& one,
+                     auto& message) {
+  visit(one.name, message.name());
+  visit(one.u_magnitude_rel, message.u_magnitude_rel());
+  visit(one.u_phase_rad, message.u_phase_rad());
+  visit(one.degrees_of_freedom, message.degrees_of_freedom());
+}
+
+void message_members(auto& visit, Either<analysis::ReferenceCalibrationPoint> auto& point,
+                     auto& message) {
+  visit(point.frequency_hz, message.frequency_hz());
+  visit(point.level_m_s2, message.level_m_s2());
+  visit(point.magnitude, message.magnitude());
+  visit(point.phase_rad, message.phase_rad());
+  visit(point.contributions, message.contributions());
+}
+
+void message_members(auto& visit, Either<RecipeStep> auto& step, auto& message) {
+  visit(step.step, message.step());
+  visit(step.repetition, message.repetition());
+  visit(step.frequency_text_hz, message.frequency_text_hz());
+  visit(step.level_m_s2, message.level_m_s2());
+  visit(step.settling_s, message.settling_s());
+  visit(step.duration_s, message.duration_s());
+}
+
+// What is the same in both, and needs no check.
+void message_members(auto& visit, Either<Recipe> auto& recipe, auto& measurement) {
+  visit(recipe.bench, measurement.bench());
+  visit(recipe.run, measurement.run());
+  visit(recipe.whole_record, measurement.whole_record());
+  visit(recipe.settling_from_data, measurement.settling_from_data());
+  visit(recipe.monte_carlo_trials, measurement.monte_carlo_trials());
+  visit(recipe.reference_delay_s, measurement.reference_delay_s());
+  visit(recipe.reference_calibration, measurement.reference_calibration());
+  visit(recipe.systematic.reference_magnitude_rel, measurement.u_reference_magnitude_rel());
+  visit(recipe.systematic.reference_phase_rad, measurement.u_reference_phase_rad());
+  visit(recipe.systematic.acs_delay_s, measurement.u_acs_delay_s());
+  visit(recipe.text, measurement.recipe());
+  visit(recipe.sha256, measurement.recipe_sha256());
+}
+
 namespace {
+
+// `own`: roles of the method, or MethodDetails.
+void stamping_members(auto& visit, auto& own, auto& measurement) {
+  visit(own.adc_calibration, measurement.adc_calibration());
+  visit(own.u_adc_delay_s, measurement.u_adc_delay_s());
+}
+
+void series_members(auto& visit, auto& own, auto& measurement) {
+  visit(own.shots, measurement.shots());
+  visit(own.trigger_phase_correction, measurement.trigger_phase_correction());
+  visit(own.dso_delay_s, measurement.dso_delay_s());
+  visit(own.u_dso_delay_s, measurement.u_dso_delay_s());
+  visit(own.u_acs_rate_rel, measurement.u_acs_rate_rel());
+  visit(own.u_dso_rate_rel, measurement.u_dso_rate_rel());
+}
 
 tl::unexpected<Error> refuse(std::string sentence) {
   return fail(ErrorCode::bad_argument, std::move(sentence));
@@ -13,64 +82,6 @@ tl::unexpected<Error> refuse(std::string sentence) {
 
 std::string text_of(const ChannelName& name) {
   return name.source.empty() ? std::string() : name.text();
-}
-
-void write_own_part(const AnalogueRoles&, wire::Measurement&) {}
-void write_own_part(const AbsoluteTimeRoles&, wire::Measurement&) {}
-
-void write_own_part(const SampleStampingRoles& roles, wire::Measurement& measurement) {
-  for (const analysis::AdcCalibrationPoint& point : roles.adc_calibration) {
-    wire::AdcCalibrationPoint message;
-    message.frequency_hz(point.frequency_hz);
-    message.test_amplitude_vpp(point.test_amplitude_vpp);
-    message.gain(point.gain);
-    message.phase_lag_rad(point.phase_lag_rad);
-    message.u_gain(point.u_gain);
-    message.u_phase_lag_rad(point.u_phase_lag_rad);
-    measurement.adc_calibration().push_back(message);
-  }
-  measurement.u_adc_delay_s(roles.u_adc_delay_s);
-}
-
-void write_own_part(const SeriesRoles& roles, wire::Measurement& measurement) {
-  measurement.shots(roles.shots);
-  measurement.trigger_phase_correction(roles.trigger_phase_correction);
-  measurement.dso_delay_s(roles.dso_delay_s);
-  measurement.u_dso_delay_s(roles.u_dso_delay_s);
-  measurement.u_acs_rate_rel(roles.u_acs_rate_rel);
-  measurement.u_dso_rate_rel(roles.u_dso_rate_rel);
-}
-
-void write_reference(const Recipe& recipe, wire::Measurement& measurement) {
-  for (const analysis::ReferenceCalibrationPoint& point : recipe.reference_calibration) {
-    wire::ReferenceCalibrationPoint message;
-    message.frequency_hz(point.frequency_hz);
-    message.level_m_s2(point.level_m_s2);
-    message.magnitude(point.magnitude);
-    message.phase_rad(point.phase_rad);
-    for (const analysis::ReferenceContribution& one : point.contributions) {
-      wire::ReferenceContribution contribution;
-      contribution.name(one.name);
-      contribution.u_magnitude_rel(one.u_magnitude_rel);
-      contribution.u_phase_rad(one.u_phase_rad);
-      contribution.degrees_of_freedom(one.degrees_of_freedom);
-      message.contributions().push_back(contribution);
-    }
-    measurement.reference_calibration().push_back(message);
-  }
-}
-
-void write_steps(const Recipe& recipe, wire::Measurement& measurement) {
-  for (const RecipeStep& step : recipe.steps) {
-    wire::PlannedStep message;
-    message.step(step.step);
-    message.repetition(step.repetition);
-    message.frequency_text_hz(step.frequency_text_hz);
-    message.level_m_s2(step.level_m_s2);
-    message.settling_s(step.settling_s);
-    message.duration_s(step.duration_s);
-    measurement.steps().push_back(message);
-  }
 }
 
 Expected<void> read_role(const char* role, const std::string& text, ChannelName& name) {
@@ -110,19 +121,10 @@ Expected<RoleNames> read_roles(const wire::Measurement& measurement) {
 }
 
 MethodDetails read_details(const wire::Measurement& measurement) {
-  MethodDetails details{.adc_calibration = {},
-                        .shots = measurement.shots(),
-                        .trigger_phase_correction = measurement.trigger_phase_correction(),
-                        .dso_delay_s = measurement.dso_delay_s(),
-                        .u_dso_delay_s = measurement.u_dso_delay_s(),
-                        .u_acs_rate_rel = measurement.u_acs_rate_rel(),
-                        .u_dso_rate_rel = measurement.u_dso_rate_rel(),
-                        .u_adc_delay_s = measurement.u_adc_delay_s()};
-  for (const wire::AdcCalibrationPoint& point : measurement.adc_calibration()) {
-    details.adc_calibration.push_back({point.frequency_hz(), point.test_amplitude_vpp(),
-                                       point.gain(), point.phase_lag_rad(), point.u_gain(),
-                                       point.u_phase_lag_rad()});
-  }
+  MethodDetails details;
+  MessageReader reader;
+  stamping_members(reader, details, measurement);
+  series_members(reader, details, measurement);
   return details;
 }
 
@@ -134,33 +136,18 @@ Expected<void> read_steps(const wire::Measurement& measurement, Recipe& recipe) 
           "step {} of the recipe has frequency \"{}\", settling {} s, duration {} s",
           planned.step(), planned.frequency_text_hz(), planned.settling_s(), planned.duration_s()));
     }
-    recipe.steps.push_back({planned.step(), planned.repetition(), planned.frequency_text_hz(),
-                            *frequency, planned.level_m_s2(), planned.settling_s(),
-                            planned.duration_s()});
+    MessageReader reader;
+    message_members(
+        reader,
+        recipe.steps.emplace_back(RecipeStep{.frequency_text_hz = {}, .frequency = *frequency}),
+        planned);
   }
   return {};
 }
 
-void read_reference(const wire::Measurement& measurement, Recipe& recipe) {
-  for (const wire::ReferenceCalibrationPoint& message : measurement.reference_calibration()) {
-    analysis::ReferenceCalibrationPoint point{
-        message.frequency_hz(), message.level_m_s2(), message.magnitude(), message.phase_rad(), {}};
-    for (const wire::ReferenceContribution& one : message.contributions()) {
-      point.contributions.push_back({.name = one.name(),
-                                     .u_magnitude_rel = one.u_magnitude_rel(),
-                                     .u_phase_rad = one.u_phase_rad(),
-                                     .degrees_of_freedom = one.degrees_of_freedom()});
-    }
-    recipe.reference_calibration.push_back(std::move(point));
-  }
-}
-
 void read_common_part(const wire::Measurement& measurement, Recipe& recipe) {
-  recipe.bench = measurement.bench().to_string();
-  recipe.run = measurement.run().to_string();
-  recipe.whole_record = measurement.whole_record();
-  recipe.settling_from_data = measurement.settling_from_data();
-  recipe.monte_carlo_trials = measurement.monte_carlo_trials();
+  MessageReader reader;
+  message_members(reader, recipe, measurement);
   if (measurement.frequency_exact()) {
     recipe.frequency_search_rel = 0.0;
   } else if (measurement.frequency_search_rel() > 0.0) {
@@ -172,12 +159,6 @@ void read_common_part(const wire::Measurement& measurement, Recipe& recipe) {
   if (!measurement.mains_hz().empty()) {
     recipe.mains_hz.assign(measurement.mains_hz().begin(), measurement.mains_hz().end());
   }
-  recipe.reference_delay_s = measurement.reference_delay_s();
-  recipe.systematic.reference_magnitude_rel = measurement.u_reference_magnitude_rel();
-  recipe.systematic.reference_phase_rad = measurement.u_reference_phase_rad();
-  recipe.systematic.acs_delay_s = measurement.u_acs_delay_s();
-  recipe.text = measurement.recipe();
-  recipe.sha256 = measurement.recipe_sha256();
   for (const wire::PlannedSource& source : measurement.sources()) {
     recipe.source_settings.emplace(source.source(), source.settings());
   }
@@ -188,8 +169,9 @@ void read_common_part(const wire::Measurement& measurement, Recipe& recipe) {
 wire::Measurement to_message(const Recipe& recipe) {
   const RoleNames roles = role_names(recipe);
   wire::Measurement measurement;
-  measurement.bench(recipe.bench);
-  measurement.run(recipe.run);
+  MessageWriter writer;
+  message_members(writer, recipe, measurement);
+  writer(recipe.steps, measurement.steps());
   measurement.method(to_wire(roles.method));
   measurement.reference(roles.reference.text());
   measurement.sync_acs(text_of(roles.sync_acs));
@@ -202,24 +184,17 @@ wire::Measurement to_message(const Recipe& recipe) {
   if (recipe.temperature) {
     measurement.temperature(recipe.temperature->text());
   }
-  write_steps(recipe, measurement);
-  write_reference(recipe, measurement);
-  std::visit([&](const auto& own) { write_own_part(own, measurement); }, recipe.roles);
-  measurement.u_reference_magnitude_rel(recipe.systematic.reference_magnitude_rel);
-  measurement.u_reference_phase_rad(recipe.systematic.reference_phase_rad);
-  measurement.u_acs_delay_s(recipe.systematic.acs_delay_s);
+  if (const auto* own = std::get_if<SampleStampingRoles>(&recipe.roles)) {
+    stamping_members(writer, *own, measurement);
+  } else if (const auto* series = std::get_if<SeriesRoles>(&recipe.roles)) {
+    series_members(writer, *series, measurement);
+  }
   measurement.frequency_search_rel(recipe.frequency_search_rel);
   measurement.frequency_exact(recipe.frequency_search_rel == 0.0);
   measurement.level_deviation_rel(recipe.level_deviation_rel);
   if (recipe.mains_hz != Recipe{}.mains_hz) {
     measurement.mains_hz().assign(recipe.mains_hz.begin(), recipe.mains_hz.end());
   }
-  measurement.reference_delay_s(recipe.reference_delay_s);
-  measurement.whole_record(recipe.whole_record);
-  measurement.settling_from_data(recipe.settling_from_data);
-  measurement.monte_carlo_trials(recipe.monte_carlo_trials);
-  measurement.recipe(recipe.text);
-  measurement.recipe_sha256(recipe.sha256);
   for (const auto& [name, settings] : recipe.source_settings) {
     wire::PlannedSource source;
     source.source(name);
@@ -237,7 +212,6 @@ Expected<Recipe> parse_recipe(const wire::Measurement& measurement) {
     DYNCAL_TRY(read_role("temperature", measurement.temperature(), recipe.temperature.emplace()));
   }
   read_common_part(measurement, recipe);
-  read_reference(measurement, recipe);
   DYNCAL_TRY(read_steps(measurement, recipe).and_then([&] { return check_recipe(recipe); }));
   return recipe;
 }

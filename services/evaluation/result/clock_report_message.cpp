@@ -3,7 +3,8 @@
 #include <cmath>
 
 #include "services/base/version.hpp"
-#include "services/evaluation/result/message_members.hpp"
+#include "services/contract/message_members.hpp"
+#include "services/evaluation/result/flag_message.hpp"
 
 namespace dyncal::inline evaluation {
 
@@ -84,7 +85,7 @@ wire::SampleClockReport to_message(const Recipe& recipe, const ClockReport& repo
   message.software(software_version());
   MessageWriter writer;
   message_members(writer, report.clock, message);
-  writer.flags(report.flags, message);
+  message_flags(writer, report.flags, message);
   if (report.last_block) {
     message.last_session(report.last_block->session);
     message.last_block(report.last_block->number);
@@ -98,7 +99,7 @@ ClockReport from_message(const wire::SampleClockReport& message) {
   MessageReader reader;
   message_members(reader, report.clock, message);
   report.clock.quantile_50_s = report.clock.median_s;
-  reader.flags(report.flags, message);
+  message_flags(reader, report.flags, message);
   if (message.last_session() != 0) {
     report.last_block = BlockPosition{message.last_session(), message.last_block()};
   }

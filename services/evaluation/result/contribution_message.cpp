@@ -3,7 +3,7 @@
 #include <array>
 #include <utility>
 
-#include "services/evaluation/result/message_members.hpp"
+#include "services/contract/message_members.hpp"
 
 namespace dyncal::inline evaluation {
 namespace {

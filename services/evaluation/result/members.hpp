@@ -17,22 +17,17 @@
 // Units and signs are those of the structs. Templates, any thread.
 #pragma once
 
-#include <concepts>
 #include <cstdint>
 #include <numbers>
 #include <optional>
 #include <string>
-#include <type_traits>
 
 #include "analysis/response/group_delay.hpp"
 #include "analysis/uncertainty/contribution_identifier.hpp"
+#include "services/contract/message_members.hpp"
 #include "services/evaluation/result/run_outcome.hpp"
 
 namespace dyncal::inline evaluation {
-
-// Constant where it is written, variable where it is read.
-template <class T, class Struct>
-concept Either = std::same_as<std::remove_const_t<T>, Struct>;
 
 [[nodiscard]] constexpr double degrees_of(double angle_rad) {
   return angle_rad * (180.0 / std::numbers::pi);

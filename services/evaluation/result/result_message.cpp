@@ -4,8 +4,9 @@
 #include <cmath>
 
 #include "services/base/version.hpp"
+#include "services/contract/message_members.hpp"
 #include "services/evaluation/result/contribution_message.hpp"
-#include "services/evaluation/result/message_members.hpp"
+#include "services/evaluation/result/flag_message.hpp"
 
 namespace dyncal::inline evaluation {
 
@@ -86,7 +87,7 @@ void message_members(auto& visit, Either<StepResult> auto& result, auto& message
   visit(result.signals, message.signals());
   visit(result.samples, message.samples());
   visit(result.lost, message.lost());
-  visit.flags(result.flags, message);
+  message_flags(visit, result.flags, message);
   visit(result.data_sha256, message.data_sha256());
   visit(result.provisional, message.provisional());
   if (auto* degc = visit.present(result.temperature_degc, message.temperature_valid())) {

@@ -4,7 +4,8 @@
 
 #include "services/base/version.hpp"
 #include "services/contract/evaluation_method_message.hpp"
-#include "services/evaluation/result/message_members.hpp"
+#include "services/contract/message_members.hpp"
+#include "services/evaluation/result/flag_message.hpp"
 
 namespace dyncal::inline evaluation {
 
@@ -48,7 +49,7 @@ void message_members(auto& visit, Either<TransferFunction> auto& function, auto&
     visit(delay->degrees_of_freedom, message.group_delay_degrees_of_freedom());
   }
   visit(function.group_delay_problem, message.group_delay_problem());
-  visit.flags(function.flags, message);
+  message_flags(visit, function.flags, message);
   visit(function.lost, message.lost());
 }
 

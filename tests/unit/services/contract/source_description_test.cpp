@@ -1,6 +1,10 @@
 #include "services/contract/source_description.hpp"
 
+#include <set>
+
 #include <gtest/gtest.h>
+
+#include "idl/dyncal.h"
 
 namespace dyncal::inline contract {
 namespace {
@@ -33,6 +37,41 @@ TEST(SourceDescription, TakesWhatIsNotKnownForNoDifference) {
   renewed.firmware = "2";
   renewed.nominal_rate_hz = 1000.0;
   EXPECT_EQ(device_difference("dau", first, renewed), "");
+}
+
+TEST(SourceDescription, ComesBackFromItsMessageAsItWasSent) {
+  drivers::SourceDescription sent = instrument("MPU-9250", "0xbccb0100");
+  sent.firmware = "2.1";
+  sent.driver = "smartup";
+  sent.channels = {{"acceleration_x", "Acceleration", "unit 1", -10.0, 20.0, 0.5},
+                   {"temperature", "Temperature", "unit 2", -40.0, 85.0, 0.25}};
+  sent.nominal_rate_hz = 1000.0;
+  sent.tick_s = 1e-8;
+  sent.stamp_uncertainty_s = 2e-7;
+  std::set<wire::StampInstant> instants;
+  for (int i = 0; i <= static_cast<int>(drivers::StampInstant::frame_end); ++i) {
+    sent.stamp_instant = static_cast<drivers::StampInstant>(i);
+    sent.time_base = i % 2 == 0 ? drivers::TimeBase::utc : drivers::TimeBase::local;
+    const wire::SourceDescription message = to_message(sent);
+    EXPECT_TRUE(instants.insert(message.stamp_instant()).second) << i;
+    const drivers::SourceDescription read = from_message(message);
+    EXPECT_EQ(read.stamp_instant, sent.stamp_instant);
+    EXPECT_EQ(read.time_base, sent.time_base);
+    EXPECT_EQ(read.device, "MPU-9250");
+    EXPECT_EQ(read.serial, "0xbccb0100");
+    EXPECT_EQ(read.firmware, "2.1");
+    EXPECT_EQ(read.driver, "smartup");
+    EXPECT_EQ(read.nominal_rate_hz, 1000.0);
+    EXPECT_EQ(read.tick_s, 1e-8);
+    EXPECT_EQ(read.stamp_uncertainty_s, 2e-7);
+    ASSERT_EQ(read.channels.size(), 2U);
+    EXPECT_EQ(read.channels[0].name, "acceleration_x");
+    EXPECT_EQ(read.channels[1].quantity, "Temperature");
+    EXPECT_EQ(read.channels[1].unit, "unit 2");
+    EXPECT_EQ(read.channels[0].minimum, -10.0);
+    EXPECT_EQ(read.channels[0].maximum, 20.0);
+    EXPECT_EQ(read.channels[1].resolution, 0.25);
+  }
 }
 
 } // namespace

@@ -7,23 +7,23 @@
 //                                                have a list of members with their messages
 //   visit.named(one.kind, message.kind(), table) an enumeration by a table of pairs; the first one
 //                                                is what an unknown value is taken for
-//   visit.flags(one.flags, message)              sentences and names
 //   visit.present(one.delay, message.valid())    the value of an optional, or null where the
 //                                                message has none
 //
-// The struct is constant where it is written, the message where it is read. The contract has names
-// of its own, so these lists stand beside those of members.hpp. Templates, any thread.
+// The struct is constant where it is written, the message where it is read. Templates, any thread.
 #pragma once
 
 #include <algorithm>
+#include <concepts>
 #include <optional>
 #include <type_traits>
 #include <vector>
 
-#include "services/evaluation/result/members.hpp"
-#include "services/evaluation/result/result_flag.hpp"
+namespace dyncal::inline contract {
 
-namespace dyncal::inline evaluation {
+// Constant where it is written, variable where it is read.
+template <class T, class Struct>
+concept Either = std::same_as<std::remove_const_t<T>, Struct>;
 
 struct MessageWriter {
   template <class T, class Place>
@@ -49,11 +49,6 @@ struct MessageWriter {
     const auto found = std::find_if(table.begin(), table.end(),
                                     [&](const auto& pair) { return pair.first == value; });
     place = found == table.end() ? table.front().second : found->second;
-  }
-  template <class Message>
-  void flags(const std::vector<Flag>& flags, Message& message) {
-    message.flags() = sentences_of(flags);
-    message.flag_names() = names_of(flags);
   }
   template <class T>
   const T* present(const std::optional<T>& value, bool& is_present) {
@@ -87,14 +82,10 @@ struct MessageReader {
                                     [&](const auto& pair) { return pair.second == place; });
     value = found == table.end() ? table.front().first : found->first;
   }
-  template <class Message>
-  void flags(std::vector<Flag>& flags, const Message& message) {
-    flags = flags_from_message(message.flags(), message.flag_names());
-  }
   template <class T>
   T* present(std::optional<T>& value, bool is_present) {
     return is_present ? &value.emplace() : nullptr;
   }
 };
 
-} // namespace dyncal::inline evaluation
+} // namespace dyncal::inline contract
