@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "services/contract/role_quantities.hpp"
+#include "services/evaluation/closures/closures.hpp"
 #include "services/evaluation/method/monte_carlo_check.hpp"
 #include "services/evaluation/record/step_temperature.hpp"
 
@@ -366,6 +367,29 @@ Evaluation RunEvaluator::settlement() {
   };
 }
 
+// A result that was settled is handed over once, with its last flag.
+void RunEvaluator::close(EvaluationOutput& output) const {
+  const SourceRecord& acs = records_.of(recipe_->reference().source);
+  const auto column = acs.channel(recipe_->reference().channel);
+  const DescribedRun run{.recipe = *recipe_,
+                         .reference_unit = acs.description().channels[*column].unit,
+                         .nominal_rate_hz = [&](const std::string& source) {
+                           return records_.of(source).description().nominal_rate_hz;
+                         }};
+  for (StepResult& flagged : add_closures(run, summary_.results(), output.transfer_functions)) {
+    const auto earlier =
+        std::find_if(output.settled.begin(), output.settled.end(), [&](const StepResult& one) {
+          return one.channel == flagged.channel && one.step == flagged.step &&
+                 one.repetition == flagged.repetition;
+        });
+    if (earlier == output.settled.end()) {
+      output.settled.push_back(std::move(flagged));
+    } else {
+      *earlier = std::move(flagged);
+    }
+  }
+}
+
 void RunEvaluator::finish(EvaluationOutput& output) {
   if (!settling_) {
     if (never_waits_ && !evaluations_.is_idle()) {
@@ -388,6 +412,7 @@ void RunEvaluator::finish(EvaluationOutput& output) {
   }
   finished_ = true;
   output.transfer_functions = summary_.transfer_functions();
+  close(output);
   if (clock_) {
     output.clock_reports =
         clock_->reports(lost_at_clock_end_.value_or(records_.of(clock_->source()).lost()));

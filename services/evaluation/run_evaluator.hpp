@@ -174,6 +174,7 @@ private:
   [[nodiscard]] Evaluation settlement();
   void follow_clock(const SourceRecord& record, const SourceBlock& block);
   void finish(EvaluationOutput& output);
+  void close(EvaluationOutput& output) const;
 
   std::shared_ptr<const Recipe> recipe_;
   std::stop_source given_up_;

@@ -192,6 +192,16 @@ TransferFunction TransferSummary::function_of(const std::string& channel) const 
   return function;
 }
 
+std::vector<StepResult> TransferSummary::results() const {
+  std::vector<StepResult> all;
+  for (const std::string& channel : channels_) {
+    for (const auto& [key, result] : results_.at(channel)) {
+      all.push_back(result);
+    }
+  }
+  return all;
+}
+
 std::vector<TransferFunction> TransferSummary::transfer_functions() const {
   std::vector<TransferFunction> functions;
   for (const std::string& channel : channels_) {

@@ -24,6 +24,8 @@ public:
   // A result of the same channel, step and repetition as an earlier one takes its place.
   void add(const StepResult& result);
 
+  // Of all channels, the last one of each step.
+  [[nodiscard]] std::vector<StepResult> results() const;
   // One for every channel that has at least one valid result.
   [[nodiscard]] std::vector<TransferFunction> transfer_functions() const;
 

@@ -47,6 +47,12 @@ void bound(TransferFunction& function, const Limits& limits) {
   }
   function.unit = one_line(function.unit);
   function.group_delay_problem = one_line(function.group_delay_problem);
+  shorten(function.closures, limits.channels);
+  for (Closure& closure : function.closures) {
+    for (std::string* text : {&closure.subject, &closure.unit, &closure.sentence}) {
+      *text = one_line(*text);
+    }
+  }
   bound(function.flags, limits);
 }
 

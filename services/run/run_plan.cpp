@@ -13,18 +13,24 @@ namespace {
 std::vector<RecipeStep> plan_steps(const BenchFile& file) {
   const ExcitationSettings& excitation = file.excitation;
   std::vector<RecipeStep> steps;
+  const auto add = [&](int repetition, std::size_t i) {
+    const std::string& text = excitation.frequencies_hz[i];
+    const auto frequency = *analysis::Frequency::parse(text); // the bench file was checked
+    steps.push_back({.step = static_cast<std::uint32_t>(steps.size() + 1),
+                     .repetition = static_cast<std::uint32_t>(repetition),
+                     .frequency_text_hz = text,
+                     .frequency = frequency,
+                     .level_m_s2 = excitation.levels_m_s2[i],
+                     .settling_s = planned_settling_s(file, frequency.hz(), repetition),
+                     .duration_s = excitation.duration_s});
+  };
   for (int repetition = 1; repetition <= excitation.repetitions; ++repetition) {
     for (std::size_t i = 0; i < excitation.frequencies_hz.size(); ++i) {
-      const std::string& text = excitation.frequencies_hz[i];
-      const auto frequency = *analysis::Frequency::parse(text); // the bench file was checked
-      steps.push_back({.step = static_cast<std::uint32_t>(steps.size() + 1),
-                       .repetition = static_cast<std::uint32_t>(repetition),
-                       .frequency_text_hz = text,
-                       .frequency = frequency,
-                       .level_m_s2 = excitation.levels_m_s2[i],
-                       .settling_s = planned_settling_s(file, frequency.hz(), repetition),
-                       .duration_s = excitation.duration_s});
+      add(repetition, i);
     }
+  }
+  if (excitation.repeat_first) {
+    add(excitation.repetitions + 1, 0);
   }
   return steps;
 }
@@ -57,6 +63,7 @@ Expected<Recipe> plan_recipe(const BenchFile& file, const std::string& run,
   recipe.monte_carlo_trials = file.uncertainty.monte_carlo_trials;
   recipe.whole_record = file.excitation.whole_record;
   recipe.frequency_search_rel = file.method.frequency_search_rel;
+  recipe.clock_tolerance_rel = 1e-6 * file.method.clock_tolerance_ppm;
   if (!file.method.mains_hz.empty()) {
     recipe.mains_hz = file.method.mains_hz;
   }

@@ -54,7 +54,7 @@ WINGS = {
     "bus": [["."], ["cyclonedds", "fastdds/screen", "host_clocks", "memory"], ["fastdds"]],
     "checks": [["bench_check", "doctor"]],
     "daemon": [["supervision"], ["program"]],
-    "evaluation": [["recipe"], ["record", "result"], ["method"], ["."]],
+    "evaluation": [["recipe"], ["record", "result"], ["closures", "method"], ["."]],
     "programs": [
         [
             "acs", "analysis", "can", "dau", "demo", "dso", "guard", "recorder", "virtual_bench",

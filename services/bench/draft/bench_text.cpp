@@ -65,6 +65,7 @@ bench = {}
 frequencies_hz = {}
 level = {:<18} # m/s^2, amplitude; or a list, one level for every frequency
 repetitions = {}
+repeat_first = true # the first frequency once more at the end: shows a drift
 settling_s = {:<13} # before every step
 duration_s = {:<13} # of every step; at least three periods of the lowest frequency
 )",

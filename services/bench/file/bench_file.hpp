@@ -36,6 +36,7 @@ struct ExcitationSettings {
   std::vector<std::string> frequencies_hz; // decimal text, checked to be a positive number
   std::vector<double> levels_m_s2;         // one per frequency
   int repetitions = 1;
+  bool repeat_first = false; // the first step once more at the end
   int attempts = 3; // excitations of a step, until its result is as good as another can make it
   double settling_s = 1.0;
   double duration_s = 3.0;
@@ -70,6 +71,7 @@ struct MethodSettings {
   std::vector<double> mains_hz;       // empty: what a recipe takes
   double frequency_search_rel = 1e-3; // how far the excitation may be from its nominal frequency;
                                       // 0: exactly there in both clocks
+  double clock_tolerance_ppm = 200.0; // how right the crystals of ACS and DAU are
 };
 
 enum class PhaseSign { lag, lead };

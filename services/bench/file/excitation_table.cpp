@@ -93,6 +93,7 @@ ExcitationSettings read_excitation(TomlTable table) {
   }
   excitation.repetitions = table.whole_number("repetitions", 1, 1);
   check_number_of_steps(table, excitation);
+  excitation.repeat_first = table.yes_no("repeat_first", excitation.repeat_first);
   excitation.attempts = table.whole_number("attempts", excitation.attempts, 1);
   if (excitation.attempts > max_attempts) {
     table.refuse("attempts", fmt::format("must be between 1 and {}", max_attempts));

@@ -159,6 +159,11 @@ MethodSettings read_method(TomlTable table, const Sources& sources) {
     table.refuse("frequency_search_rel",
                  "must be between 0 (the frequency is known exactly in every clock) and 0.1");
   }
+  method.clock_tolerance_ppm =
+      table.number("clock_tolerance_ppm", method.clock_tolerance_ppm, "parts in a million");
+  if (!(method.clock_tolerance_ppm > 0.0 && method.clock_tolerance_ppm <= 1e5)) {
+    table.refuse("clock_tolerance_ppm", "must be above 0 and at most 100000");
+  }
   read_mains(table, method);
   table.finish();
   return method;

@@ -105,6 +105,7 @@ struct Recipe {
   double frequency_search_rel = 1e-3;   // 0: the frequency is known exactly in every clock
   // Part by which the measured level of a step may be off the planned one without a flag.
   double level_deviation_rel = 0.1;
+  double clock_tolerance_rel = 2e-4; // how right the crystals of ACS and DAU are
   std::vector<double> mains_hz{analysis::usual_mains_hz.begin(), analysis::usual_mains_hz.end()};
   double reference_delay_s = 0.0; // of the reference's channel against the ACS's sync
   std::vector<analysis::ReferenceCalibrationPoint> reference_calibration; // empty: it reads right

@@ -156,6 +156,9 @@ void read_common_part(const wire::Measurement& measurement, Recipe& recipe) {
   if (measurement.level_deviation_rel() > 0.0) {
     recipe.level_deviation_rel = measurement.level_deviation_rel();
   }
+  if (measurement.clock_tolerance_rel() > 0.0) {
+    recipe.clock_tolerance_rel = measurement.clock_tolerance_rel();
+  }
   if (!measurement.mains_hz().empty()) {
     recipe.mains_hz.assign(measurement.mains_hz().begin(), measurement.mains_hz().end());
   }
@@ -192,6 +195,9 @@ wire::Measurement to_message(const Recipe& recipe) {
   measurement.frequency_search_rel(recipe.frequency_search_rel);
   measurement.frequency_exact(recipe.frequency_search_rel == 0.0);
   measurement.level_deviation_rel(recipe.level_deviation_rel);
+  if (recipe.clock_tolerance_rel != Recipe{}.clock_tolerance_rel) {
+    measurement.clock_tolerance_rel(recipe.clock_tolerance_rel);
+  }
   if (recipe.mains_hz != Recipe{}.mains_hz) {
     measurement.mains_hz().assign(recipe.mains_hz.begin(), recipe.mains_hz.end());
   }

@@ -87,6 +87,17 @@ void members(auto& visit, Either<analysis::Contribution> auto& one) {
   visit("u_phase_rad", one.u_phase_rad);
 }
 
+void members(auto& visit, Either<Closure> auto& one) {
+  visit.named("kind", one.kind, ClosureKind::channel_delays);
+  visit("subject", one.subject);
+  visit.named("verdict", one.verdict, Verdict::not_possible);
+  visit("value", one.value);
+  visit.known("u", one.u);
+  visit.known("limit", one.limit);
+  visit("unit", one.unit);
+  visit("sentence", one.sentence);
+}
+
 void members(auto& visit, Either<analysis::GroupDelay> auto& one) {
   visit("value_s", one.delay_s);
   visit("u_s", one.u_delay_s);

@@ -157,6 +157,9 @@ constexpr std::array rows{
         "the group delay is not constant",
         "the phases do not lie on one line over frequency, so that no single delay describes "
         "the sensor; use the phases, or a model"},
+    Row{ResultFlag::closure_open, "closure_open", "what must hold over the run does not",
+        "two things that were measured independently of each other disagree by more than chance "
+        "and the tolerances of instruments leave them; its sentence says which, and what to do"},
     Row{ResultFlag::from_message, "other", "",
         "a newer version of dyncal made this result; its sentence says what it found"},
 };

@@ -50,6 +50,7 @@ enum class ResultFlag {
   acs_delay_not_stated,
   group_delay_ambiguous,
   group_delay_not_constant,
+  closure_open,
   from_message // read from the bus, and not known to this version
 };
 

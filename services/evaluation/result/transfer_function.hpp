@@ -10,6 +10,7 @@
 #include "analysis/method/repetitions.hpp"
 #include "analysis/response/group_delay.hpp"
 #include "services/contract/evaluation_method.hpp"
+#include "services/evaluation/result/closure.hpp"
 #include "services/evaluation/result/result_flag.hpp"
 
 namespace dyncal::inline evaluation {
@@ -29,6 +30,7 @@ struct TransferFunction {
   std::vector<FrequencyPoint> points;
   std::optional<analysis::GroupDelay> group_delay;
   std::string group_delay_problem; // why there is none
+  std::vector<Closure> closures;   // in the order of ClosureKind; at the end of a run
   std::vector<Flag> flags;
   std::uint64_t lost = 0; // samples, over all valid results
 };

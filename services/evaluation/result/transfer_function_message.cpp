@@ -1,6 +1,8 @@
 #include "services/evaluation/result/transfer_function_message.hpp"
 
+#include <array>
 #include <complex>
+#include <utility>
 
 #include "services/base/version.hpp"
 #include "services/contract/evaluation_method_message.hpp"
@@ -33,6 +35,23 @@ void message_members(auto& visit, Either<analysis::RepetitionMean> auto& mean, a
   visit(mean.u_independent_phase_rad, message.u_independent_phase_rad());
 }
 
+constexpr std::array verdicts{
+    std::pair{Verdict::not_possible, wire::CLOSURE_NOT_POSSIBLE},
+    std::pair{Verdict::closes, wire::CLOSURE_CLOSES},
+    std::pair{Verdict::open, wire::CLOSURE_OPEN},
+};
+
+// But for its kind.
+void message_members(auto& visit, Either<Closure> auto& closure, auto& message) {
+  visit(closure.subject, message.subject());
+  visit.named(closure.verdict, message.verdict(), verdicts);
+  visit(closure.value, message.value());
+  visit(closure.u, message.u());
+  visit(closure.limit, message.limit());
+  visit(closure.unit, message.unit());
+  visit(closure.sentence, message.sentence());
+}
+
 void message_members(auto& visit, Either<TransferFunction> auto& function, auto& message) {
   visit(function.channel, message.channel());
   visit(function.unit, message.unit());
@@ -60,6 +79,10 @@ wire::TransferFunction to_message(const Recipe& recipe, const TransferFunction& 
   for (const FrequencyPoint& point : function.points) {
     message_members(writer, point.mean, message.mean_uncertainties().emplace_back());
   }
+  for (const Closure& closure : function.closures) {
+    message_members(writer, closure, message.closures().emplace_back());
+    message.closures().back().kind(std::string(to_string(closure.kind)));
+  }
   message.bench(recipe.bench);
   message.run(recipe.run);
   message.method(to_wire(function.method));
@@ -77,6 +100,13 @@ TransferFunction from_message(const wire::TransferFunction& message) {
     mean.h = std::polar(mean.magnitude, mean.phase_rad);
     if (i < message.mean_uncertainties().size()) {
       message_members(reader, mean, message.mean_uncertainties()[i]);
+    }
+  }
+  for (const wire::Closure& closure : message.closures()) {
+    // Not of a kind that this version does not know: its flag says what is open.
+    if (const auto kind = parse_closure_kind(closure.kind())) {
+      message_members(reader, function.closures.emplace_back(), closure);
+      function.closures.back().kind = *kind;
     }
   }
   function.method = from_wire(message.method()).value_or(EvaluationMethod::sample_timestamping);

@@ -22,6 +22,8 @@ void add_report(CLI::App& app, ReportCommand& report) {
                       "name of the files without .html and .pdf (default: report in the run "
                       "folder, NAME-report for NAME.json)");
   command->add_flag("--no-pdf", report.no_pdf, "write the HTML alone");
+  command->add_flag("--force", report.force,
+                    "report although a closure is open; the first page says so");
 }
 
 void add_certify(CLI::App& app, CertifyCommand& certify) {

@@ -42,7 +42,8 @@ Expected<void> make_report(const ReportCommand& command) {
     DYNCAL_TRY(const auto contents, gather_report({.run = command.run,
                                                    .laboratory = command.laboratory,
                                                    .sensor = command.sensor,
-                                                   .channels = command.channels}));
+                                                   .channels = command.channels,
+                                                   .force = command.force}));
     progress.count()->begin("making the report", "", 0);
     return report_html(contents);
   }();

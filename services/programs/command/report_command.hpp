@@ -19,6 +19,7 @@ struct ReportCommand {
   std::filesystem::path output;      // name without its ending; empty: as above
   std::vector<std::string> channels; // empty: all that respond
   bool no_pdf = false;
+  bool force = false;
 };
 
 [[nodiscard]] int run_report(const ReportCommand& command);

@@ -55,8 +55,13 @@ FlagPlaces flag_places(const StoredResult& result, const std::string& channel) {
 std::vector<std::string> flags_by_verdict(const StoredResult& result, const std::string& channel,
                                           bool forbidding) {
   std::vector<std::string> sentences;
+  const bool names_closures = !result.open_closures({channel}).empty();
   for (const auto& [flag, places] : flag_places(result, channel)) {
-    const FlagVerdict verdict = verdict_on(parse_flag_name(flag));
+    const ResultFlag kind = parse_flag_name(flag);
+    if (kind == ResultFlag::closure_open && names_closures) {
+      continue;
+    }
+    const FlagVerdict verdict = verdict_on(kind);
     if (verdict.forbids == forbidding) {
       sentences.push_back(fmt::format("{} at {}: flag {}: {}", channel, fmt::join(places, ", "),
                                       flag, verdict.reason));
@@ -127,6 +132,9 @@ std::vector<std::string> objections_to(const StoredResult& result,
   }
   if (!result.problem.empty()) {
     objections.push_back("the run ended early: " + result.problem);
+  }
+  for (std::string& open : result.open_closures(channels)) {
+    objections.push_back("closure open: " + std::move(open));
   }
   for (const std::string& channel : channels) {
     add_missing_values(result, channel, objections);

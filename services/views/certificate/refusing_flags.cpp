@@ -78,6 +78,8 @@ constexpr std::array rows{
         "phases are stated at each frequency; the delay is not certified"},
     Row{ResultFlag::group_delay_not_constant, false,
         "phases are stated at each frequency; the delay is not certified"},
+    Row{ResultFlag::closure_open, true,
+        "what was measured independently of the value disagrees with it"},
     Row{ResultFlag::from_message, true, "this version does not know the flag and cannot judge it"},
 };
 

@@ -114,8 +114,9 @@ std::string body_of(const ReportContents& contents) {
   for (std::size_t i = 0; i < contents.channels.size(); ++i) {
     html += channel_section(contents, contents.channels[i], i + 1);
   }
-  html += flag_section(contents) + conditions_section(contents) + losses_section(contents) +
-          clock_section(contents) + remarks(contents) + signatures(contents);
+  html += flag_section(contents) + closures_section(contents) + conditions_section(contents) +
+          losses_section(contents) + clock_section(contents) + remarks(contents) +
+          signatures(contents);
   html += other_channels(contents) + devices_section(contents) + software_section(contents) +
           single_results(contents) + recipe_section(contents);
   return html;
@@ -127,6 +128,14 @@ Expected<ReportContents> gather_report(const ReportRequest& request) {
   ReportContents contents;
   DYNCAL_TRY(contents.result, read_values(request.run));
   DYNCAL_TRY(contents.channels, chosen_channels(contents.result, request.channels));
+  if (const auto open = contents.result.open_closures(contents.channels);
+      !open.empty() && !request.force) {
+    return fail(ErrorCode::bad_argument,
+                fmt::format("no report: what must hold over the run does not, so that its values "
+                            "may be wrong: {}. Mend it and measure again, choose another "
+                            "--channel, or --force a report that says all this",
+                            fmt::join(open, "; ")));
+  }
   DYNCAL_TRY(add_laboratory(request, contents));
   add_pictures(request.run, contents);
   contents.issued = today();

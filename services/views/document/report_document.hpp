@@ -7,7 +7,8 @@
 // single results, recipe. Whatever comes from a file is escaped.
 //
 // Fails (bad_file) when the result file lacks a key; (bad_argument) when a channel that was asked
-// for has no value. Any thread.
+// for has no value, or when a closure of a channel is open and the report is not forced. Any
+// thread.
 #pragma once
 
 #include <filesystem>
@@ -25,6 +26,7 @@ struct ReportRequest {
   std::filesystem::path laboratory;  // empty: no letterhead
   std::filesystem::path sensor;      // empty: what the run knows of it
   std::vector<std::string> channels; // empty: all that respond
+  bool force = false;                // although a closure is open, which its first page says
 };
 
 // Reads all files that a report is made of.

@@ -152,6 +152,9 @@ std::string warnings(const ReportContents& contents) {
   if (!result.problem.empty()) {
     html += element("p", "The run ended early: " + result.problem);
   }
+  for (const std::string& open : result.open_closures(contents.channels)) {
+    html += element("p", "What must hold over the run does not: " + open);
+  }
   const auto invalid =
       std::count_if(result.points.begin(), result.points.end(), [&](const StoredPoint& point) {
         return !point.valid && std::find(contents.channels.begin(), contents.channels.end(),

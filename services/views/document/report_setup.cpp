@@ -182,6 +182,28 @@ std::string losses_section(const ReportContents& contents) {
   return "<h2>Losses within the evaluated steps</h2>\n" + table.finish();
 }
 
+std::string closures_section(const ReportContents& contents) {
+  std::string html;
+  for (const std::string& channel : contents.channels) {
+    HtmlTable table("legend", {"what must hold", "", "value", "limit", "found"});
+    for (const Closure& closure : contents.result.closures_of(channel)) {
+      const auto number = [&](double value) {
+        return closure.verdict == Verdict::not_possible
+                   ? std::string()
+                   : fmt::format("{:.3g}{}", value, closure.unit == "1" ? "" : " " + closure.unit);
+      };
+      table.row({std::string(title_of(closure.kind)),
+                 closure.verdict == Verdict::not_possible ? "not possible"
+                                                          : std::string(to_string(closure.verdict)),
+                 number(closure.value), number(closure.limit), closure.sentence});
+    }
+    if (!table.empty()) {
+      html += element("h2", "Closures of " + channel) + table.finish();
+    }
+  }
+  return html;
+}
+
 std::string clock_section(const ReportContents& contents) {
   std::string html;
   for (const ClockReport& report : contents.result.clocks) {

@@ -10,6 +10,7 @@ namespace dyncal::inline views {
 
 [[nodiscard]] std::string conditions_section(const ReportContents& contents);
 [[nodiscard]] std::string losses_section(const ReportContents& contents);
+[[nodiscard]] std::string closures_section(const ReportContents& contents);
 [[nodiscard]] std::string clock_section(const ReportContents& contents);
 [[nodiscard]] std::string devices_section(const ReportContents& contents);
 [[nodiscard]] std::string software_section(const ReportContents& contents);

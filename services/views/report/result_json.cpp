@@ -62,7 +62,8 @@ void add_function(const RunOutcome& outcome, const TransferFunction& function,
   result.channels.push_back(
       {function.channel, function.unit, responds(function), function.lost,
        sentences_of(function.flags), names_of(function.flags),
-       function.group_delay ? std::nullopt : std::optional(function.group_delay_problem)});
+       function.group_delay ? std::nullopt : std::optional(function.group_delay_problem),
+       function.closures});
   for (const FrequencyPoint& point : function.points) {
     result.values.push_back(stored_value(outcome, function, point));
   }

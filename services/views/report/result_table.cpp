@@ -83,6 +83,20 @@ std::string group_delay_line(const TransferFunction& function) {
              : fmt::format("  no group delay: {}\n", one_line(function.group_delay_problem));
 }
 
+std::string closures_lines(const TransferFunction& function) {
+  std::size_t closing = 0;
+  std::string open;
+  for (const Closure& closure : function.closures) {
+    closing += closure.verdict == Verdict::closes ? 1 : 0;
+    if (is_open(closure)) {
+      open += fmt::format("  open: {}\n", one_line(closure.sentence));
+    }
+  }
+  return function.closures.empty() ? ""
+                                   : fmt::format("  closures: {} close{}\n{}", closing,
+                                                 open.empty() ? "" : ", but these do not", open);
+}
+
 std::string unit_text(const std::string& unit) {
   if (unit.empty()) {
     return ", unit not known: state the units of sensor and reference in the bench file";
@@ -104,6 +118,7 @@ std::string channel_table(const RunOutcome& outcome, const TransferFunction& fun
   text += aligned(rows);
   text += coverage_line(function);
   text += group_delay_line(function);
+  text += closures_lines(function);
   if (!function.flags.empty()) {
     text += fmt::format("  flags: {}\n", flag_names(function.flags));
   }

@@ -141,6 +141,7 @@ void members(auto& visit, Either<StoredChannel> auto& one) {
   visit("flags", one.flags);
   visit("flag_names", one.flag_names);
   visit("group_delay_problem", one.group_delay_problem);
+  visit("closures", one.closures);
 }
 
 void members(auto& visit, Either<StoredDelay> auto& one) {

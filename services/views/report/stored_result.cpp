@@ -147,6 +147,25 @@ std::vector<StoredPoint> StoredResult::points_of(const std::string& channel) con
   return those_of(points, channel);
 }
 
+std::vector<Closure> StoredResult::closures_of(const std::string& channel) const {
+  const auto found = std::find_if(channels.begin(), channels.end(),
+                                  [&](const auto& one) { return one.channel == channel; });
+  return found == channels.end() ? std::vector<Closure>{} : found->closures;
+}
+
+std::vector<std::string> StoredResult::open_closures(const std::vector<std::string>& names) const {
+  std::vector<std::string> open;
+  for (const std::string& channel : names) {
+    for (const Closure& closure : closures_of(channel)) {
+      if (is_open(closure)) {
+        open.push_back(
+            fmt::format("{}: {}: {}", channel, title_of(closure.kind), closure.sentence));
+      }
+    }
+  }
+  return open;
+}
+
 std::vector<StoredPoint> StoredResult::points_of(const std::vector<std::string>& names) const {
   std::vector<StoredPoint> chosen;
   for (const std::string& channel : names) {

@@ -76,6 +76,7 @@ struct StoredChannel {
   std::vector<std::string> flags; // sentences
   std::vector<std::string> flag_names;
   std::optional<std::string> group_delay_problem;
+  std::vector<Closure> closures{};
 };
 
 struct StoredDelay {
@@ -160,6 +161,10 @@ struct StoredResult {
 
   [[nodiscard]] std::vector<StoredValue> values_of(const std::string& channel) const;
   [[nodiscard]] std::vector<StoredPoint> points_of(const std::string& channel) const;
+  [[nodiscard]] std::vector<Closure> closures_of(const std::string& channel) const;
+  // "dau/x: phase towards 0 Hz: ..." for each that is open.
+  [[nodiscard]] std::vector<std::string>
+  open_closures(const std::vector<std::string>& channels) const;
   [[nodiscard]] std::vector<StoredPoint> points_of(const std::vector<std::string>& names) const;
   // Null: the channel has none.
   [[nodiscard]] const analysis::GroupDelay* group_delay_of(const std::string& channel) const;

@@ -1,0 +1,144 @@
+#include "services/evaluation/closures/phase_closures.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/core.h>
+
+#include "analysis/base/phasor.hpp"
+
+namespace dyncal::inline evaluation {
+namespace {
+
+constexpr double most_birge = 3.0; // as GroupDelay::is_constant
+constexpr const char* one_kind = R"(\one)";
+
+double degrees(double angle_rad) {
+  return angle_rad * (180.0 / std::numbers::pi);
+}
+
+Closure line(const analysis::GroupDelay& delay) {
+  if (!(delay.degrees_of_freedom > 0.0)) {
+    return not_possible(ClosureKind::delay_fit, "", "two frequencies always lie on a line");
+  }
+  const double birge = std::sqrt(delay.chi_squared / delay.degrees_of_freedom);
+  const double by_chance = std::sqrt(chi_squared_by_chance(1, delay.degrees_of_freedom));
+  const double limit = std::max(most_birge, by_chance);
+  return judged(ClosureKind::delay_fit, "", birge, 0.0, limit, "1",
+                fmt::format("the phases lie {:.3g} of their u beside a line with the delay {:.6g} "
+                            "ms (chi-squared {:.4g} of {:.0f}){}",
+                            birge, 1e3 * delay.delay_s, delay.chi_squared, delay.degrees_of_freedom,
+                            birge > limit ? ": no delay describes the sensor here, as near a "
+                                            "resonance or a filter's edge; give the phases alone"
+                                          : ""));
+}
+
+Closure alternatives(const analysis::GroupDelay& delay) {
+  const auto nearest = std::min_element(
+      delay.alternatives_s.begin(), delay.alternatives_s.end(), [&](double a, double b) {
+        return std::abs(a - delay.delay_s) < std::abs(b - delay.delay_s);
+      });
+  if (nearest == delay.alternatives_s.end()) {
+    return judged(ClosureKind::delay_alternatives, "", 0.0, 0.0, 0.0, "1",
+                  "no other delay that a sensor may have fits as well");
+  }
+  return judged(ClosureKind::delay_alternatives, "",
+                static_cast<double>(delay.alternatives_s.size()), 0.0, 0.0, "1",
+                fmt::format("{:.6g} ms fit as well as {:.6g} ms: add a frequency less than {:.3g} "
+                            "Hz from another one",
+                            1e3 * *nearest, 1e3 * delay.delay_s,
+                            1.0 / std::abs(*nearest - delay.delay_s)));
+}
+
+Closure at_zero(const ChannelRun& run, const analysis::GroupDelay& delay, bool is_line) {
+  constexpr auto kind = ClosureKind::phase_at_zero;
+  if (run.function.unit != one_kind) {
+    return not_possible(kind, "", "sensor and reference do not read quantities of one kind");
+  }
+  if (!is_line) {
+    return not_possible(kind, "", "the phases are not on a line that could be followed to 0 Hz");
+  }
+  const double off = std::remainder(delay.intercept_rad, std::numbers::pi);
+  const double limit = limit_by_chance(1) * delay.u_intercept_rad;
+  return judged(kind, "", off, delay.u_intercept_rad, limit, "rad",
+                fmt::format("towards 0 Hz the phase tends to {:.4g} degrees (u {:.2g}){}",
+                            degrees(delay.intercept_rad), degrees(delay.u_intercept_rad),
+                            std::abs(off) > limit
+                                ? ", where 0 or 180 is expected: look at couplings and high-pass "
+                                  "filters, and at the reference's phase"
+                                : ""));
+}
+
+// Of the sensor's samples; 0 where nothing tells it.
+double half_interval_s(const ChannelRun& run) {
+  const StepResult& result = *run.results.front();
+  if (result.series) {
+    return 0.5 / result.series->sample_rate_hz;
+  }
+  const std::string source = source_of(run.function.channel);
+  const auto found =
+      std::find_if(result.samples.begin(), result.samples.end(), [&](const SourceSamples& one) {
+        return one.source == source && one.used > 1 && one.last_stamp_ns > one.first_stamp_ns;
+      });
+  return found == result.samples.end()
+             ? 0.0
+             : 0.5e-9 * static_cast<double>(found->last_stamp_ns - found->first_stamp_ns) /
+                   static_cast<double>(found->used + found->all_lost() - 1);
+}
+
+double step_u_phase(const StepResult& result) {
+  return value_of(result).u_random_phase_rad;
+}
+
+} // namespace
+
+std::vector<Closure> phase_closures(const ChannelRun& run) {
+  if (!run.moves() || !run.function.group_delay) {
+    const std::string why = run.moves() ? run.function.group_delay_problem
+                                        : "the channel hardly follows the excitation";
+    return {not_possible(ClosureKind::delay_fit, "", why),
+            not_possible(ClosureKind::delay_alternatives, "", why),
+            not_possible(ClosureKind::phase_at_zero, "", why)};
+  }
+  const analysis::GroupDelay& delay = *run.function.group_delay;
+  const Closure fit = line(delay);
+  return {fit, alternatives(delay), at_zero(run, delay, !is_open(fit))};
+}
+
+Closure delays_of_channels(const ChannelRun& one, const ChannelRun& other) {
+  constexpr auto kind = ClosureKind::channel_delays;
+  const std::string subject = one.function.channel + " and " + other.function.channel;
+  if (!one.moves() || !other.moves()) {
+    return not_possible(kind, subject, "one of them hardly follows the excitation");
+  }
+  double weights = 0.0, sum = 0.0;
+  for (const StepResult* a : one.results) {
+    const auto b = std::find_if(other.results.begin(), other.results.end(), [&](const auto* each) {
+      return each->step == a->step && each->repetition == a->repetition;
+    });
+    if (b == other.results.end()) {
+      continue;
+    }
+    // A channel whose axis points the other way has the same delay.
+    const double turned = std::remainder((*b)->phase_rad - a->phase_rad, std::numbers::pi);
+    const double variance = std::pow(step_u_phase(*a), 2) + std::pow(step_u_phase(**b), 2);
+    const double angular = 2.0 * std::numbers::pi * a->frequency_hz;
+    weights += angular * angular / variance;
+    sum += angular * turned / variance;
+  }
+  if (!(weights > 0.0)) {
+    return not_possible(kind, subject, "they have no step in common");
+  }
+  const double later_s = -sum / weights, u_s = 1.0 / std::sqrt(weights);
+  const double limit = half_interval_s(one) + limit_by_chance(1) * u_s;
+  return judged(kind, subject, later_s, u_s, limit, "s",
+                fmt::format("{} is {:.4g} us later than {} (u {:.2g} us){}", other.function.channel,
+                            1e6 * later_s, one.function.channel, 1e6 * u_s,
+                            std::abs(later_s) > limit
+                                ? ": axes of one sensor are of one sample, so one of them was "
+                                  "read late or stands in another's row"
+                                : ""));
+}
+
+} // namespace dyncal::inline evaluation

@@ -1,0 +1,239 @@
+#include "services/evaluation/closures/repetition_closures.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <optional>
+
+#include <fmt/core.h>
+
+#include "analysis/base/statistics.hpp"
+
+namespace dyncal::inline evaluation {
+namespace {
+
+constexpr double prior_freedom = 3.0;
+// Of the standard deviation's degrees of freedom, as many has a median.
+constexpr double efficiency_of_median = 0.37;
+// Of a normal deviate's absolute value.
+constexpr double median_of_absolute = 0.6745;
+
+struct Difference { // of one repetition from another, in standard uncertainties
+  double magnitude = 0.0;
+  double phase = 0.0;
+
+  [[nodiscard]] double larger() const { return std::max(magnitude, phase); }
+};
+
+std::complex<double> log_ratio(const analysis::Repetition& one, const analysis::Repetition& other) {
+  return std::log(one.h / other.h);
+}
+
+Difference difference(const analysis::Repetition& one, const analysis::Repetition& other) {
+  const std::complex<double> d = log_ratio(one, other);
+  return {std::abs(d.real()) / std::hypot(one.u_random_magnitude_rel, other.u_random_magnitude_rel),
+          std::abs(d.imag()) / std::hypot(one.u_random_phase_rad, other.u_random_phase_rad)};
+}
+
+// That to which the others are nearest.
+std::size_t middle_of(const std::vector<analysis::Repetition>& values) {
+  std::size_t middle = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    double sum = 0.0;
+    for (const analysis::Repetition& other : values) {
+      sum += std::abs(log_ratio(values[i], other));
+    }
+    if (sum < least) {
+      least = sum;
+      middle = i;
+    }
+  }
+  return middle;
+}
+
+// A repetition against that in the middle of its point.
+struct Compared {
+  const PointRepetitions* point = nullptr;
+  std::size_t repetition = 0;
+  std::size_t middle = 0;
+  Difference z;
+};
+
+std::vector<Compared> compared(const std::vector<PointRepetitions>& points) {
+  std::vector<Compared> all;
+  for (const PointRepetitions& point : points) {
+    const std::size_t middle = middle_of(point.values);
+    for (std::size_t i = 0; i < point.values.size(); ++i) {
+      if (i != middle) {
+        all.push_back({&point, i, middle, difference(point.values[i], point.values[middle])});
+      }
+    }
+  }
+  return all;
+}
+
+// The usual z of all, of a normal deviate 1; at least that.
+Difference usual(const std::vector<Compared>& all) {
+  std::vector<double> magnitudes, phases;
+  for (const Compared& one : all) {
+    magnitudes.push_back(one.z.magnitude);
+    phases.push_back(one.z.phase);
+  }
+  return {std::max(1.0, analysis::median(magnitudes) / median_of_absolute),
+          std::max(1.0, analysis::median(phases) / median_of_absolute)};
+}
+
+std::string what_is_off(const Compared& one) {
+  const std::complex<double> d =
+      log_ratio(one.point->values[one.repetition], one.point->values[one.middle]);
+  const StepResult& result = *one.point->results[one.repetition];
+  return fmt::format("at {} Hz repetition {} has {:.4g} times the magnitude of repetition {} and "
+                     "is turned by {:.3g} degrees against it",
+                     result.frequency_text_hz, result.repetition, std::exp(d.real()),
+                     one.point->results[one.middle]->repetition, d.imag() * 57.29577951308232);
+}
+
+void add_agreement(const std::vector<Compared>& all, RepetitionClosures& result) {
+  if (all.empty()) {
+    result.closures.push_back(
+        not_possible(ClosureKind::repetitions, "", "no point was measured more than once"));
+    return;
+  }
+  const Difference s = usual(all);
+  const double freedom = prior_freedom + efficiency_of_median * static_cast<double>(all.size());
+  const double limit = limit_by_chance(2 * all.size(), freedom);
+  const Compared* worst = nullptr;
+  double largest = -1.0;
+  for (const Compared& one : all) {
+    const double z = Difference{one.z.magnitude / s.magnitude, one.z.phase / s.phase}.larger();
+    if (z > limit) {
+      result.off.push_back(one.point->results[one.repetition]);
+      if (one.point->results.size() == 2) { // nobody knows which of the two
+        result.off.push_back(one.point->results[one.middle]);
+      }
+    }
+    if (z > largest) {
+      largest = z;
+      worst = &one;
+    }
+  }
+  result.closures.push_back(
+      judged(ClosureKind::repetitions, worst->point->results.front()->frequency_text_hz + " Hz",
+             largest, 1.0, limit, "1",
+             fmt::format("{}{}", what_is_off(*worst),
+                         largest > limit
+                             ? fmt::format(", {:.3g} times what repetitions usually differ by: "
+                                           "look at how the sensor was mounted, at cables "
+                                           "and at ranges, and measure it again",
+                                           largest)
+                             : "")));
+}
+
+struct Excess {
+  double chi_squared = 0.0; // against the u of the means
+  double stated = 0.0;      // against what single results state
+  double freedom = 0.0;
+
+  void add(double n, double scatter, double u_mean, double u_single) {
+    if (u_mean > 0.0 && u_single > 0.0) {
+      chi_squared += (n - 1.0) * scatter * scatter / (n * u_mean * u_mean);
+      stated += (n - 1.0) * scatter * scatter / (u_single * u_single);
+      freedom += n - 1.0;
+    }
+  }
+};
+
+double usual_u(const PointRepetitions& point, double analysis::Repetition::*u) {
+  double squares = 0.0;
+  for (const analysis::Repetition& one : point.values) {
+    squares += (one.*u) * (one.*u) / static_cast<double>(point.values.size());
+  }
+  return std::sqrt(squares);
+}
+
+Closure scatter(const ChannelRun& run, const std::vector<PointRepetitions>& points) {
+  Excess magnitude, phase;
+  for (const PointRepetitions& point : points) {
+    const auto mean = std::find_if(
+        run.function.points.begin(), run.function.points.end(), [&](const FrequencyPoint& one) {
+          return one.frequency_hz == point.results.front()->frequency_hz &&
+                 one.level_m_s2 == point.results.front()->level_m_s2;
+        });
+    if (mean == run.function.points.end() || point.values.size() < 2) {
+      continue;
+    }
+    const double n = static_cast<double>(point.values.size());
+    magnitude.add(n, mean->mean.scatter_magnitude / mean->mean.magnitude,
+                  mean->mean.independent_magnitude_rel.u,
+                  usual_u(point, &analysis::Repetition::u_random_magnitude_rel));
+    phase.add(n, mean->mean.scatter_phase_rad, mean->mean.independent_phase.u,
+              usual_u(point, &analysis::Repetition::u_random_phase_rad));
+  }
+  if (!(magnitude.freedom + phase.freedom > 0.0)) {
+    return not_possible(ClosureKind::repetition_scatter, "",
+                        "no point was measured more than once");
+  }
+  const auto of = [](const Excess& one, double sum) {
+    return one.freedom > 0.0 ? std::sqrt(sum / one.freedom) : 0.0;
+  };
+  const bool by_phase = of(phase, phase.chi_squared) > of(magnitude, magnitude.chi_squared);
+  const Excess& worse = by_phase ? phase : magnitude;
+  const double limit = std::sqrt(chi_squared_by_chance(2, worse.freedom));
+  const double value = of(worse, worse.chi_squared);
+  return judged(ClosureKind::repetition_scatter, by_phase ? "phase" : "magnitude", value, 0.0,
+                limit, "1",
+                fmt::format("repetitions scatter {:.3g} times what single results state, and "
+                            "{:.3g} times what the u of their means has{}",
+                            of(worse, worse.stated), value,
+                            value > limit ? ": their means are known worse than is stated" : ""));
+}
+
+Closure first_again(const ChannelRun& run, const std::vector<Compared>& all) {
+  const RecipeStep& planned_first = run.recipe.steps.front();
+  const RecipeStep& planned_last = run.recipe.steps.back();
+  const bool planned = run.recipe.steps.size() > 2 &&
+                       planned_first.frequency_text_hz == planned_last.frequency_text_hz &&
+                       planned_first.level_m_s2 == planned_last.level_m_s2;
+  const StepResult& first = *run.results.front();
+  const StepResult& last = *run.results.back();
+  if (!planned || first.step != planned_first.step || last.step != planned_last.step) {
+    return not_possible(ClosureKind::first_repeated, "",
+                        planned ? "the first or the last step has no value"
+                                : "the plan does not end with its first point (repeat_first)");
+  }
+  const analysis::Repetition before = value_of(first), behind = value_of(last);
+  const std::complex<double> d = log_ratio(behind, before);
+  const Difference z = difference(behind, before);
+  const Difference s = all.empty() ? Difference{1.0, 1.0} : usual(all);
+  const bool by_phase = z.phase / s.phase > z.magnitude / s.magnitude;
+  const double u =
+      by_phase
+          ? s.phase * std::hypot(before.u_random_phase_rad, behind.u_random_phase_rad)
+          : s.magnitude * std::hypot(before.u_random_magnitude_rel, behind.u_random_magnitude_rel);
+  const double freedom = prior_freedom + efficiency_of_median * static_cast<double>(all.size());
+  const double value = by_phase ? d.imag() : d.real();
+  const double limit =
+      limit_by_chance(2, all.empty() ? analysis::infinite_degrees_of_freedom : freedom) * u;
+  return judged(
+      ClosureKind::first_repeated, first.frequency_text_hz + " Hz", value, u, limit,
+      by_phase ? "rad" : "1",
+      fmt::format("from the first step to the last, {} Hz both, the {} changed by {:.3g}{}",
+                  first.frequency_text_hz, by_phase ? "phase in rad" : "magnitude's part", value,
+                  std::abs(value) > limit ? ": the sensor, its mounting or the reference drifts"
+                                          : ""));
+}
+
+} // namespace
+
+RepetitionClosures repetition_closures(const ChannelRun& run) {
+  const std::vector<PointRepetitions> points = points_of(run);
+  const std::vector<Compared> all = compared(points);
+  RepetitionClosures result;
+  add_agreement(all, result);
+  result.closures.push_back(scatter(run, points));
+  result.closures.push_back(first_again(run, all));
+  return result;
+}
+
+} // namespace dyncal::inline evaluation

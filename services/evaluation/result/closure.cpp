@@ -1,0 +1,65 @@
+#include "services/evaluation/result/closure.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace dyncal::inline evaluation {
+namespace {
+
+struct Names {
+  std::string_view name, title;
+};
+
+constexpr std::array names{
+    Names{"clock_rate", "rate of the sensor's clock"},
+    Names{"clock_ratio", "ratio of the clocks in each step"},
+    Names{"excitation_frequency", "frequency of the excitation"},
+    Names{"level", "level of the excitation"},
+    Names{"samples_counted", "samples counted"},
+    Names{"repetitions", "repetitions of a point"},
+    Names{"repetition_scatter", "scatter of the repetitions"},
+    Names{"first_repeated", "first point repeated at the end"},
+    Names{"delay_fit", "phase against the group delay"},
+    Names{"delay_alternatives", "other group delays"},
+    Names{"phase_at_zero", "phase towards 0 Hz"},
+    Names{"channel_delays", "delays of channels of one kind"},
+};
+
+} // namespace
+
+std::string_view to_string(ClosureKind kind) {
+  return names.at(static_cast<std::size_t>(kind)).name;
+}
+
+std::optional<ClosureKind> parse_closure_kind(std::string_view name) {
+  const auto found =
+      std::find_if(names.begin(), names.end(), [&](const Names& one) { return one.name == name; });
+  return found == names.end() ? std::nullopt
+                              : std::optional(static_cast<ClosureKind>(found - names.begin()));
+}
+
+std::string_view title_of(ClosureKind kind) {
+  return names.at(static_cast<std::size_t>(kind)).title;
+}
+
+std::string_view to_string(Verdict verdict) {
+  switch (verdict) {
+  case Verdict::closes:
+    return "closes";
+  case Verdict::open:
+    return "open";
+  case Verdict::not_possible:
+    break;
+  }
+  return "not_possible";
+}
+
+bool is_open(const Closure& closure) {
+  return closure.verdict == Verdict::open;
+}
+
+bool has_open(const std::vector<Closure>& closures) {
+  return std::any_of(closures.begin(), closures.end(), is_open);
+}
+
+} // namespace dyncal::inline evaluation

@@ -1,0 +1,205 @@
+#include "services/evaluation/closures/closures.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <random>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/services/evaluation/closures/drawn_run.hpp"
+
+namespace dyncal::inline evaluation {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+using Fault = std::function<void(DrawnRun&, std::mt19937&)>;
+
+struct Case {
+  std::string name;
+  ClosureKind kind;
+  Fault fault;
+  std::size_t channels = 1;
+};
+
+std::ostream& operator<<(std::ostream& out, const Case& one) {
+  return out << one.name;
+}
+
+StepResult& any_step(DrawnRun& run, std::mt19937& random) {
+  return run.results[random() % run.results.size()];
+}
+
+double sign(std::mt19937& random) {
+  return random() % 2 == 0 ? 1.0 : -1.0;
+}
+
+void change_sync(StepResult& result, double rel) {
+  for (std::size_t i : {2U, 3U}) {
+    result.fits[i].frequency =
+        analysis::Frequency::from_hz(result.fits[i].frequency.hz() * (1.0 + rel));
+  }
+}
+
+const std::vector<Case>& cases() {
+  static const std::vector<Case> all{
+      {"clock off by 4590 ppm", ClosureKind::clock_rate,
+       [](DrawnRun& run, std::mt19937& random) {
+         const double rel = 4590e-6 * sign(random);
+         for (StepResult& result : run.results) {
+           change_sync(result, rel);
+         }
+       }},
+      {"one step by another clock", ClosureKind::clock_ratio,
+       [](DrawnRun& run, std::mt19937& random) {
+         change_sync(any_step(run, random), 5e-6 * sign(random));
+       }},
+      {"generator off by 1000 ppm", ClosureKind::excitation_frequency,
+       [](DrawnRun& run, std::mt19937& random) {
+         StepResult& result = any_step(run, random);
+         for (analysis::ChannelFit& fit : result.fits) {
+           fit.frequency = analysis::Frequency::from_hz(fit.frequency.hz() * 1.001);
+         }
+       }},
+      {"level 15 % off", ClosureKind::level,
+       [](DrawnRun& run, std::mt19937& random) {
+         any_step(run, random).fits.front().fit.sine *= 1.0 + 0.15 * sign(random);
+       }},
+      {"samples lost without a trace", ClosureKind::samples_counted,
+       [](DrawnRun& run, std::mt19937& random) {
+         any_step(run, random).samples.front().used -= 5 + random() % 50;
+       }},
+      {"one repetition inverted", ClosureKind::repetitions,
+       [](DrawnRun& run, std::mt19937& random) {
+         StepResult& result = any_step(run, random);
+         result.phase_rad = std::remainder(result.phase_rad + pi, 2.0 * pi);
+       }},
+      {"one repetition turned by 90 degrees", ClosureKind::repetitions,
+       [](DrawnRun& run, std::mt19937& random) {
+         StepResult& result = any_step(run, random);
+         result.phase_rad = std::remainder(result.phase_rad + 0.5 * pi * sign(random), 2.0 * pi);
+       }},
+      {"one repetition at half the sensor's level", ClosureKind::repetitions,
+       [](DrawnRun& run, std::mt19937& random) { any_step(run, random).magnitude *= 0.5; }},
+      {"sensor drifts by 20 %", ClosureKind::first_repeated,
+       [](DrawnRun& run, std::mt19937& random) {
+         run.results.back().magnitude *= 1.0 + 0.2 * sign(random);
+       }},
+      {"resonance", ClosureKind::delay_fit,
+       [](DrawnRun& run, std::mt19937& random) {
+         const double at_hz = 60.0 + 20.0 * static_cast<double>(random() % 4);
+         for (StepResult& result : run.results) {
+           const double x = result.frequency_hz / at_hz;
+           result.phase_rad =
+               std::remainder(result.phase_rad - std::atan2(0.2 * x, 1.0 - x * x), 2.0 * pi);
+         }
+       }},
+      {"high-pass in the sensor's amplifier", ClosureKind::phase_at_zero,
+       [](DrawnRun& run, std::mt19937&) {
+         for (StepResult& result : run.results) {
+           result.phase_rad = std::remainder(result.phase_rad + 0.3, 2.0 * pi);
+         }
+       }},
+      {"one axis a sample late", ClosureKind::channel_delays,
+       [](DrawnRun& run, std::mt19937& random) {
+         const double late_s = (600 + static_cast<double>(random() % 900)) * 1e-6;
+         for (StepResult& result : run.results) {
+           if (result.channel == "dau/y") {
+             result.phase_rad = std::remainder(
+                 result.phase_rad - 2.0 * pi * result.frequency_hz * late_s, 2.0 * pi);
+           }
+         }
+       },
+       2},
+  };
+  return all;
+}
+
+std::vector<ClosureKind> open_of(const DrawnRun& run) {
+  std::vector<ClosureKind> open;
+  for (const Closure& closure : run.closures()) {
+    if (is_open(closure)) {
+      open.push_back(closure.kind);
+    }
+  }
+  return open;
+}
+
+class OpenClosure : public testing::TestWithParam<Case> {};
+
+TEST_P(OpenClosure, IsFoundInNearlyEveryDraw) {
+  const Case& one = GetParam();
+  constexpr int draws = 60;
+  int found = 0;
+  for (unsigned seed = 1; seed <= draws; ++seed) {
+    std::mt19937 random(seed + 10'000);
+    DrawnRun run = draw_run(seed, {.channels = one.channels});
+    one.fault(run, random);
+    const auto open = open_of(run);
+    found += std::find(open.begin(), open.end(), one.kind) != open.end() ? 1 : 0;
+  }
+  EXPECT_GE(found, draws - 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Closures, OpenClosure, testing::ValuesIn(cases()));
+
+TEST(Closures, CloseInCleanRuns) {
+  constexpr unsigned draws = 300;
+  std::size_t open = 0;
+  std::set<ClosureKind> closing;
+  for (unsigned seed = 1; seed <= draws; ++seed) {
+    const auto all = draw_run(seed + 50'000, {.channels = 2}).closures();
+    for (const Closure& closure : all) {
+      open += is_open(closure) ? 1 : 0;
+      if (closure.verdict == Verdict::closes) {
+        closing.insert(closure.kind);
+      }
+      EXPECT_FALSE(closure.sentence.empty());
+    }
+  }
+  EXPECT_LE(open, 1U);
+  EXPECT_EQ(closing.size(), static_cast<std::size_t>(ClosureKind::channel_delays) + 1);
+}
+
+TEST(Closures, TheRepetitionThatIsOffIsFlaggedInItsOwnRow) {
+  DrawnRun run = draw_run(7);
+  StepResult& wrong = run.results[8];
+  wrong.phase_rad = std::remainder(wrong.phase_rad + pi, 2.0 * pi);
+  const auto flagged = run.flagged();
+  ASSERT_EQ(flagged.size(), 1U);
+  EXPECT_EQ(flagged.front().step, wrong.step);
+  EXPECT_EQ(flagged.front().flags.back().kind, ResultFlag::closure_open);
+  EXPECT_TRUE(draw_run(7).flagged().empty());
+}
+
+TEST(Closures, OfAChannelThatHardlyMovesAreNotPossible) {
+  DrawnRun run = draw_run(3);
+  for (StepResult& result : run.results) {
+    result.magnitude *= 1e-3;
+    result.u_magnitude = result.magnitude;
+    result.u_phase_rad = 1.0;
+    result.budget.front().u_magnitude_rel = result.budget.front().u_phase_rad = 1.0;
+  }
+  for (const Closure& closure : run.closures()) {
+    if (closure.kind >= ClosureKind::delay_fit) {
+      EXPECT_EQ(closure.verdict, Verdict::not_possible) << closure.sentence;
+    }
+    EXPECT_NE(closure.verdict, Verdict::open) << closure.sentence;
+  }
+}
+
+TEST(Closures, KindsHaveNamesThatAreReadBack) {
+  for (int i = 0; i <= static_cast<int>(ClosureKind::channel_delays); ++i) {
+    const auto kind = static_cast<ClosureKind>(i);
+    EXPECT_EQ(parse_closure_kind(to_string(kind)), kind);
+    EXPECT_FALSE(title_of(kind).empty());
+  }
+  EXPECT_FALSE(parse_closure_kind("of a later version").has_value());
+}
+
+} // namespace
+} // namespace dyncal::inline evaluation
