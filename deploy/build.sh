@@ -3,6 +3,7 @@
 #
 #   deploy/build.sh PRESET with-tests|programs
 #
+# Programs alone are built by the preset "programs" in place of "release": quickest from nothing.
 # CMake is called only for a build directory that is new, or that lacks the tests now asked for;
 # ninja sees to the rest.
 set -euo pipefail
@@ -22,6 +23,7 @@ case $2 in
     targets=(all)
     ;;
   programs)
+    [[ $preset != release ]] || preset=programs
     [[ -f $directory/build.ninja ]] || cmake --preset "$preset" -DDYNCAL_BUILD_TESTS=OFF
     targets=(dyncal dyncal-acs dyncal-analysis dyncal-can dyncal-dau dyncal-dso dyncal-guard
       dyncal-recorder dyncal-virtual-bench guide
