@@ -1,5 +1,5 @@
 // A bench as its messages show it: sources, services, runs, and what happened. Plain data and
-// functions over it; what fills it is laboratory.hpp. One thread.
+// functions over it; what fills it is bus_state.hpp. One thread.
 #pragma once
 
 #include <cstdint>

@@ -134,7 +134,7 @@ void add_bench(const network::Bench& bench, Lines& lines) {
 
 } // namespace
 
-std::map<std::string, std::string> laboratory_lines(const network::Laboratory& laboratory) {
+std::map<std::string, std::string> laboratory_lines(const network::BusState& laboratory) {
   Lines lines;
   for (const auto& [name, bench] : laboratory.benches()) {
     add_bench(bench, lines);

@@ -6,11 +6,11 @@
 #include <map>
 #include <string>
 
-#include "services/network/laboratory.hpp"
+#include "services/network/bus_state.hpp"
 
 namespace dyncal::inline programs {
 
 [[nodiscard]] std::map<std::string, std::string>
-laboratory_lines(const network::Laboratory& laboratory);
+laboratory_lines(const network::BusState& laboratory);
 
 } // namespace dyncal::inline programs

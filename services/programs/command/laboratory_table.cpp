@@ -146,7 +146,7 @@ bool is_shown(const ChannelSummary& channel, const TableLayout& layout) {
 }
 
 // Of the names of channels: as wide as the widest, as long as there is room for values beside it.
-std::size_t name_columns(const network::Laboratory& laboratory, Clock::Instant now,
+std::size_t name_columns(const network::BusState& laboratory, Clock::Instant now,
                          const TableLayout& layout) {
   std::size_t widest = 0;
   for (const auto& [bench_name, bench] : laboratory.benches()) {
@@ -293,7 +293,7 @@ Line clock_line(const HostClock& host, std::size_t columns) {
 }
 
 // Of hosts whose clock is off, with `all` of each that is not ours.
-void add_clocks(const network::Laboratory& laboratory, Table& table) {
+void add_clocks(const network::BusState& laboratory, Table& table) {
   for (const HostClock& host : laboratory.clocks()) {
     if (table.layout.all || is_notable(host.clock)) {
       table.lines.push_back(clock_line(host, table.layout.columns));
@@ -301,7 +301,7 @@ void add_clocks(const network::Laboratory& laboratory, Table& table) {
   }
 }
 
-std::string head(const network::Laboratory& laboratory) {
+std::string head(const network::BusState& laboratory) {
   std::size_t running = 0;
   const Clock::Instant now = laboratory.clock().now();
   for (const auto& [name, bench] : laboratory.benches()) {
@@ -354,7 +354,7 @@ void leave_out(std::vector<Line>& lines, std::size_t rows) {
 
 } // namespace
 
-std::vector<std::string> laboratory_table(const network::Laboratory& laboratory,
+std::vector<std::string> laboratory_table(const network::BusState& laboratory,
                                           const TableLayout& wanted) {
   TableLayout layout = wanted;
   layout.columns = std::max(layout.columns, min_columns);

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "services/network/laboratory.hpp"
+#include "services/network/bus_state.hpp"
 
 namespace dyncal::inline programs {
 
@@ -26,7 +26,7 @@ struct TableLayout {
 };
 
 // One text a line, without line ends.
-[[nodiscard]] std::vector<std::string> laboratory_table(const network::Laboratory& laboratory,
+[[nodiscard]] std::vector<std::string> laboratory_table(const network::BusState& laboratory,
                                                         const TableLayout& layout);
 
 } // namespace dyncal::inline programs

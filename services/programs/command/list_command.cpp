@@ -38,7 +38,7 @@ std::string run_text(const network::Run& run) {
                      run.message.empty() ? "" : "  " + harmless(run.message));
 }
 
-void print_text(const network::Laboratory& laboratory) {
+void print_text(const network::BusState& laboratory) {
   const auto now = laboratory.clock().now();
   for (const auto& [name, bench] : laboratory.benches()) {
     const network::Condition condition = condition_of(bench, now);
@@ -69,7 +69,7 @@ int run_list(const ListCommand& command, const std::stop_token& stop) {
   if (!watched) {
     return report_error(watched.error());
   }
-  const network::Laboratory& laboratory = (*watched)->laboratory();
+  const network::BusState& laboratory = (*watched)->laboratory();
   const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                            std::chrono::duration<double>(command.seconds));
   auto number_of_things = std::size_t{0};

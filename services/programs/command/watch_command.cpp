@@ -38,7 +38,7 @@ TableLayout layout_of_terminal(const WatchCommand& command) {
 }
 
 // Over what was there, without a line end after the last line, which would scroll.
-void draw(const network::Laboratory& laboratory, const WatchCommand& command) {
+void draw(const network::BusState& laboratory, const WatchCommand& command) {
   std::string screen = "\x1b[H";
   bool first = true;
   for (const std::string& line : laboratory_table(laboratory, layout_of_terminal(command))) {
@@ -64,7 +64,7 @@ public:
   Output(const Output&) = delete;
   Output& operator=(const Output&) = delete;
 
-  void show(const network::Laboratory& laboratory) {
+  void show(const network::BusState& laboratory) {
     if (terminal_) {
       draw(laboratory, command_);
     } else if (shown_number_ != laboratory.number()) {
@@ -75,11 +75,11 @@ public:
   }
 
 private:
-  static void print_json(const network::Laboratory& laboratory) {
+  static void print_json(const network::BusState& laboratory) {
     fmt::print("{}\n", json_text(live::laboratory_json(laboratory)));
   }
 
-  void print_lines(const network::Laboratory& laboratory) {
+  void print_lines(const network::BusState& laboratory) {
     auto lines = laboratory_lines(laboratory);
     for (const auto& [key, line] : lines) {
       const auto before = lines_.find(key);

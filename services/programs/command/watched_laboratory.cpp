@@ -12,10 +12,10 @@ Expected<std::unique_ptr<WatchedLaboratory>> WatchedLaboratory::open(const Netwo
   DYNCAL_TRY(auto joined, WatchedNetwork::join(network, program, asked));
   std::unique_ptr<WatchedLaboratory> watched(
       new WatchedLaboratory(std::move(joined), std::make_shared<bus::WakeUp>()));
-  DYNCAL_TRY(auto readers, network::LaboratoryReaders::open(
-                               watched->network_->participant, bench,
-                               this_program(program, software_version(), network.dds),
-                               bus::system_clock(), watched->wake_up_));
+  DYNCAL_TRY(auto readers,
+             network::BusReaders::open(watched->network_->participant, bench,
+                                       this_program(program, software_version(), network.dds),
+                                       bus::system_clock(), watched->wake_up_));
   watched->readers_.emplace(std::move(readers));
   return watched;
 }

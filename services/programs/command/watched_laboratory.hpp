@@ -7,8 +7,8 @@
 #include <string>
 
 #include "services/daemon/program/watched_network.hpp"
-#include "services/network/laboratory.hpp"
-#include "services/network/laboratory_readers.hpp"
+#include "services/network/bus_readers.hpp"
+#include "services/network/bus_state.hpp"
 
 namespace dyncal::inline programs {
 
@@ -22,7 +22,7 @@ public:
   // Takes what has come; waits for it until then at most.
   void work(std::chrono::steady_clock::time_point until);
 
-  [[nodiscard]] const network::Laboratory& laboratory() const { return laboratory_; }
+  [[nodiscard]] const network::BusState& laboratory() const { return laboratory_; }
   // Nothing more is heard of the laboratory, or the end was asked for.
   [[nodiscard]] bool is_over() const { return network_->stop().stop_requested(); }
   // Fails (network) where nothing more is heard.
@@ -35,8 +35,8 @@ private:
 
   std::unique_ptr<WatchedNetwork> network_;
   std::shared_ptr<bus::WakeUp> wake_up_;
-  network::Laboratory laboratory_;
-  std::optional<network::LaboratoryReaders> readers_; // of its participant
+  network::BusState laboratory_;
+  std::optional<network::BusReaders> readers_; // of its participant
 };
 
 } // namespace dyncal::inline programs

@@ -77,14 +77,14 @@ std::vector<std::string> run_arguments(const NetworkOptions& network, const fs::
 }
 
 // The one that is commanded; null: it is not the bench's run now.
-const network::Run* run_of(const network::Laboratory& laboratory, const wire::Command& command) {
+const network::Run* run_of(const network::BusState& laboratory, const wire::Command& command) {
   const network::Bench* bench = laboratory.bench(command.bench().to_string());
   const network::Run* run = bench == nullptr ? nullptr : bench->current_run();
   return run != nullptr && run->name == command.run() ? run : nullptr;
 }
 
 // Nothing: no conductor runs it.
-std::optional<std::string> conductor_of(const network::Laboratory& laboratory,
+std::optional<std::string> conductor_of(const network::BusState& laboratory,
                                         const wire::Command& command, bus::Clock::Instant now) {
   const network::Run* run = run_of(laboratory, command);
   if (run == nullptr || run->is_over() || !run->conductor_heard || run->is_left_alone(now)) {
@@ -198,7 +198,7 @@ void Actions::command(const std::string& bench, const Json& body, const httplib:
 
 void Actions::send(const wire::Command& command, const std::string& word,
                    httplib::Response& response) {
-  const auto conductor = cache_.look([&](const network::Laboratory& laboratory) {
+  const auto conductor = cache_.look([&](const network::BusState& laboratory) {
     return conductor_of(laboratory, command, clock_.now());
   });
   if (!conductor) {
@@ -241,7 +241,7 @@ std::optional<std::string> Actions::repeat_until_answered(const wire::Command& c
     if (!router_.wait_until(clock_.now() + command_interval)) {
       break;
     }
-    auto refusal = cache_.look([&](const network::Laboratory& laboratory) {
+    auto refusal = cache_.look([&](const network::BusState& laboratory) {
       const network::Run* run = run_of(laboratory, command);
       return run != nullptr && run->answer.command == command.id()
                  ? std::optional(run->answer.refusal)

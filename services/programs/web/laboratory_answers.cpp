@@ -132,7 +132,7 @@ void LaboratoryAnswers::answer_budget(const std::string& name, const httplib::Re
   const network::Run::ResultKey key{number_of(request.get_param_value("step")),
                                     number_of(request.get_param_value("repetition")),
                                     request.get_param_value("channel")};
-  const auto json = cache_.look([&](const network::Laboratory& laboratory) -> std::optional<Json> {
+  const auto json = cache_.look([&](const network::BusState& laboratory) -> std::optional<Json> {
     const network::Bench* bench = laboratory.bench(name);
     if (bench == nullptr) {
       return std::nullopt;

@@ -120,7 +120,7 @@ SignalAnswers::Question SignalAnswers::question_of(const std::string& bench,
 }
 
 std::optional<SignalAnswers::Found> SignalAnswers::find(const Question& question) const {
-  return cache_.look([&](const network::Laboratory& laboratory) -> std::optional<Found> {
+  return cache_.look([&](const network::BusState& laboratory) -> std::optional<Found> {
     const network::Bench* bench = laboratory.bench(question.bench);
     const auto source = bench == nullptr ? std::map<std::string, network::Source>::const_iterator()
                                          : bench->sources.find(question.source);
@@ -235,7 +235,7 @@ struct SignalAnswers::ExcitedStep {
 // The one that is excited now, by what was announced last; nothing: no run is under way.
 std::optional<SignalAnswers::ExcitedStep>
 SignalAnswers::excited_step(const std::string& bench_name) const {
-  return cache_.look([&](const network::Laboratory& laboratory) -> std::optional<ExcitedStep> {
+  return cache_.look([&](const network::BusState& laboratory) -> std::optional<ExcitedStep> {
     const network::Bench* bench = laboratory.bench(bench_name);
     const network::Run* run = bench == nullptr ? nullptr : bench->current_run();
     if (run == nullptr || !run->plan || !run->now || run->is_over()) {

@@ -21,7 +21,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "services/network/laboratory.hpp"
+#include "services/network/bus_state.hpp"
 #include "services/views/figures/transfer_function.hpp"
 
 namespace dyncal::inline programs::web {
@@ -102,7 +102,7 @@ private:
   [[nodiscard]] std::size_t bytes() const;
 
   mutable std::mutex mutex_;
-  network::Laboratory laboratory_;
+  network::BusState laboratory_;
   AddDaemon add_daemon_;
   std::map<TextKey, Made> texts_;
 };

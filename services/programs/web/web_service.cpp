@@ -4,7 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include "services/bus/host_network.hpp"
-#include "services/network/laboratory_readers.hpp"
+#include "services/network/bus_readers.hpp"
 #include "services/programs/web/access_token.hpp"
 #include "services/programs/web/actions.hpp"
 #include "services/programs/web/event_stream.hpp"
@@ -69,7 +69,7 @@ struct WebService::Parts {
   const ProgramIdentity& identity = daemon.identity();
   WebOptions options;
   std::shared_ptr<bus::WakeUp> wake_up = std::make_shared<bus::WakeUp>();
-  std::optional<network::LaboratoryReaders> readers;
+  std::optional<network::BusReaders> readers;
   StateCache cache;
   RunFiles files;
   RequestRouter router;
@@ -109,7 +109,7 @@ void WebService::Parts::report() {
     const auto reason = static_cast<Refusal>(i);
     figures.refused.emplace_back(to_string(reason), router.refusals().of(reason));
   }
-  cache.look([&](const network::Laboratory& laboratory) {
+  cache.look([&](const network::BusState& laboratory) {
     const network::LeftOut& out = laboratory.left_out();
     figures.benches = laboratory.benches().size();
     figures.left_out = out.benches + out.sources + out.services + out.runs + out.results;
@@ -133,8 +133,8 @@ Expected<std::unique_ptr<WebService>> WebService::create(Daemon& daemon,
   }
   auto parts = std::make_unique<Parts>(daemon, options, std::move(actions));
   DYNCAL_TRY(auto readers,
-             network::LaboratoryReaders::open(parts->participant, all_benches, parts->identity,
-                                              parts->clock, parts->wake_up));
+             network::BusReaders::open(parts->participant, all_benches, parts->identity,
+                                       parts->clock, parts->wake_up));
   parts->readers.emplace(std::move(readers));
   return std::unique_ptr<WebService>(new WebService(std::move(parts)));
 }
@@ -156,7 +156,7 @@ Expected<void> WebService::serve() {
   spdlog::info("web ready ({}), page at http://{}/", parts.identity.dds, address);
   while (!stop.stop_requested()) {
     parts.clock.wait(*parts.wake_up, parts.clock.now() + max_wait);
-    parts.cache.change([&](network::Laboratory& laboratory) { parts.readers->work(laboratory); });
+    parts.cache.change([&](network::BusState& laboratory) { parts.readers->work(laboratory); });
     parts.report();
     parts.daemon.turned();
   }

@@ -233,7 +233,7 @@ void add_news(const std::string& bench, const network::Condition& condition, boo
   news.heard_utc_ns = std::max(news.heard_utc_ns, heard_utc_ns);
 }
 
-ProgramNews news_of(const network::Laboratory& laboratory, const ProgramIdentity& program,
+ProgramNews news_of(const network::BusState& laboratory, const ProgramIdentity& program,
                     Instant now) {
   ProgramNews news;
   const auto is_of_it = [&](const std::string& host, std::uint32_t process_id) {
@@ -259,7 +259,7 @@ ProgramNews news_of(const network::Laboratory& laboratory, const ProgramIdentity
   return news;
 }
 
-Json program_json(const network::Laboratory& laboratory, const DiscoveredProgram& program,
+Json program_json(const network::BusState& laboratory, const DiscoveredProgram& program,
                   Instant now) {
   const ProgramNews news = news_of(laboratory, program.identity, now);
   const std::string& name = program.identity.program;
@@ -287,13 +287,13 @@ Json program_json(const network::Laboratory& laboratory, const DiscoveredProgram
   return json;
 }
 
-Json with_time(const network::Laboratory& laboratory, std::uint64_t number) {
+Json with_time(const network::BusState& laboratory, std::uint64_t number) {
   return {{"number", number}, {"now_utc_ms", milliseconds(laboratory.clock().utc_now_ns())}};
 }
 
 } // namespace
 
-Json bench_tile_json(const network::Laboratory& laboratory, const network::Bench& bench) {
+Json bench_tile_json(const network::BusState& laboratory, const network::Bench& bench) {
   const Instant now = laboratory.clock().now();
   Json json{{"bench", bench.name},
             {"state", to_string(state_of(bench, now))},
@@ -328,7 +328,7 @@ Json bench_tile_json(const network::Laboratory& laboratory, const network::Bench
   return json;
 }
 
-Json bench_json(const network::Laboratory& laboratory, const network::Bench& bench) {
+Json bench_json(const network::BusState& laboratory, const network::Bench& bench) {
   const Instant now = laboratory.clock().now();
   Json json = with_time(laboratory, bench.number);
   json.update(bench_tile_json(laboratory, bench));
@@ -346,7 +346,7 @@ Json bench_json(const network::Laboratory& laboratory, const network::Bench& ben
   return json;
 }
 
-Json laboratory_json(const network::Laboratory& laboratory) {
+Json laboratory_json(const network::BusState& laboratory) {
   const Instant now = laboratory.clock().now();
   Json json = with_time(laboratory, laboratory.number());
   json["software"] = software_version();

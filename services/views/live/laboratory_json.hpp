@@ -10,17 +10,17 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "services/network/laboratory.hpp"
+#include "services/network/bus_state.hpp"
 
 namespace dyncal::inline views::live {
 
 // Benches, programs and events.
-[[nodiscard]] nlohmann::ordered_json laboratory_json(const network::Laboratory& laboratory);
+[[nodiscard]] nlohmann::ordered_json laboratory_json(const network::BusState& laboratory);
 // What the laboratory shows of one bench.
-[[nodiscard]] nlohmann::ordered_json bench_tile_json(const network::Laboratory& laboratory,
+[[nodiscard]] nlohmann::ordered_json bench_tile_json(const network::BusState& laboratory,
                                                      const network::Bench& bench);
 // The tile, and with it sources, plan and messages.
-[[nodiscard]] nlohmann::ordered_json bench_json(const network::Laboratory& laboratory,
+[[nodiscard]] nlohmann::ordered_json bench_json(const network::BusState& laboratory,
                                                 const network::Bench& bench);
 
 } // namespace dyncal::inline views::live

@@ -36,7 +36,7 @@ protected:
   }
 
   bus::SteppedClock clock;
-  network::Laboratory laboratory{clock};
+  network::BusState laboratory{clock};
 };
 
 TEST_F(LaboratoryTable, OneLineASourceAndAChannelThatResponds) {

@@ -32,9 +32,8 @@ protected:
       response.set_content(request.body, "text/plain");
       return request.path == "/api/run";
     });
-    cache_.change([](network::Laboratory& laboratory) {
-      laboratory.take(network::status_of("acc-1", "dau"));
-    });
+    cache_.change(
+        [](network::BusState& laboratory) { laboratory.take(network::status_of("acc-1", "dau")); });
     ASSERT_TRUE(router_.start());
   }
   // Head and body of the answer to these lines, after which the connection is closed.

@@ -27,7 +27,7 @@ TEST(BenchAddress, DividesNameAndPart) {
 class FigureAnswers : public testing::Test {
 protected:
   FigureAnswers() {
-    cache_.change([](network::Laboratory& laboratory) {
+    cache_.change([](network::BusState& laboratory) {
       laboratory.take(network::measurement_of("acc-1", "r1", wire::MEASUREMENT_RUNNING));
       laboratory.take(network::result_of("acc-1", "r1", 1, 0.3));
     });

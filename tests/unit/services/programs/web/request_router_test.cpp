@@ -39,7 +39,7 @@ protected:
         [this](const auto& request, auto& response) { return events_.answer(request, response); });
     router_.on_post(
         [this](const auto& request, auto& response) { return actions_.post(request, response); });
-    cache_.change([](network::Laboratory& laboratory) {
+    cache_.change([](network::BusState& laboratory) {
       laboratory.take(network::status_of("<b>acc-1</b>", "dau"));
     });
     ASSERT_TRUE(router_.start());

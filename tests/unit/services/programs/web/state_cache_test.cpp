@@ -18,7 +18,7 @@ class StateCacheTest : public testing::Test {
 protected:
   template <class Message>
   void take(const Message& message) {
-    cache_.change([&](network::Laboratory& laboratory) { laboratory.take(message); });
+    cache_.change([&](network::BusState& laboratory) { laboratory.take(message); });
   }
   Text results(const std::string& run = "") {
     return cache_.results("acc-1", run, [this](const std::string&, Json& json) {

@@ -18,7 +18,7 @@ using Json = nlohmann::ordered_json;
 
 TEST(LaboratoryJson, TellsOfABenchWhatItIsAndWhy) {
   bus::SteppedClock clock;
-  network::Laboratory laboratory(clock);
+  network::BusState laboratory(clock);
   laboratory.take(status_of("acc-1", "dau", wire::SOURCE_FAILED));
   laboratory.take(measurement_of("acc-1", "r1", wire::MEASUREMENT_RUNNING));
   laboratory.take(excitation_of("acc-1", "r1", 2, wire::EXCITATION_STEADY));
@@ -45,7 +45,7 @@ TEST(LaboratoryJson, TellsOfABenchWhatItIsAndWhy) {
 
 TEST(LaboratoryJson, NamesTheBenchOfAProgram) {
   bus::SteppedClock clock;
-  network::Laboratory laboratory(clock);
+  network::BusState laboratory(clock);
   laboratory.take(analysis_of("acc-1", "r1", wire::ARM_ARMED, wire::HEALTH_FAILED));
   DiscoveredProgram program;
   program.identity = {"dyncal-analysis", "lab-1", 1, "dyncal 9", "cyclonedds"};
@@ -65,7 +65,7 @@ TEST(LaboratoryJson, NamesTheBenchOfAProgram) {
 
 TEST(LaboratoryJson, TellsOfAnAnalysisThatDiedInARunButNotOfOneWhoseRunIsOver) {
   bus::SteppedClock clock;
-  network::Laboratory laboratory(clock);
+  network::BusState laboratory(clock);
   DiscoveredProgram program;
   program.identity = {"dyncal-analysis", "lab-1", 1, "dyncal 9", "cyclonedds"};
   laboratory.set_programs({program}, {});
@@ -89,7 +89,7 @@ TEST(LaboratoryJson, TellsOfAnAnalysisThatDiedInARunButNotOfOneWhoseRunIsOver) {
 
 TEST(LaboratoryJson, LeavesHostileTextsTextAndReplacesWhatIsNotUtf8) {
   bus::SteppedClock clock;
-  network::Laboratory laboratory(clock);
+  network::BusState laboratory(clock);
   const std::string name = "<script>alert(1)</script>";
   wire::SourceStatus status = status_of(name, "\"><img src=x>\xff\xfe");
   status.message("</script>\n\u2028");
@@ -102,7 +102,7 @@ TEST(LaboratoryJson, LeavesHostileTextsTextAndReplacesWhatIsNotUtf8) {
 
 TEST(RunJson, CarriesEveryDigitAndNullForWhatIsNotANumber) {
   bus::SteppedClock clock;
-  network::Laboratory laboratory(clock);
+  network::BusState laboratory(clock);
   const double magnitude = 0.1 + 0.2;
   laboratory.take(result_of("acc-1", "r1", 1, magnitude));
   wire::CalibrationResult invalid =

@@ -7,7 +7,7 @@
 #include "services/evaluation/result/clock_report_message.hpp"
 #include "services/evaluation/result/result_message.hpp"
 #include "services/evaluation/result/transfer_function_message.hpp"
-#include "services/network/laboratory.hpp"
+#include "services/network/bus_state.hpp"
 #include "services/views/report/picture_json.hpp"
 #include "services/views/report/run_figures.hpp"
 #include "tests/unit/services/views/report/example_outcome.hpp"
@@ -89,7 +89,7 @@ protected:
   }
 
   bus::SteppedClock clock_;
-  network::Laboratory laboratory_{clock_};
+  network::BusState laboratory_{clock_};
 };
 
 TEST_F(RunFigures, AreThoseOfTheFilesOnceTheRunIsOver) {

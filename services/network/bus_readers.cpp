@@ -1,13 +1,12 @@
-#include "services/network/laboratory_readers.hpp"
+#include "services/network/bus_readers.hpp"
 
 #include "services/contract/topics.hpp"
 
 namespace dyncal::network {
 
-Expected<LaboratoryReaders> LaboratoryReaders::open(bus::Participant& participant,
-                                                    const std::string& bench,
-                                                    const ProgramIdentity& own, bus::Clock& clock,
-                                                    const std::shared_ptr<bus::WakeUp>& wake_up) {
+Expected<BusReaders> BusReaders::open(bus::Participant& participant, const std::string& bench,
+                                      const ProgramIdentity& own, bus::Clock& clock,
+                                      const std::shared_ptr<bus::WakeUp>& wake_up) {
   namespace topics = bus::topics;
   auto descriptions = participant.reader(topics::source_description, bench, wake_up);
   auto sources = participant.reader(topics::source_status, bench, wake_up);
@@ -22,15 +21,14 @@ Expected<LaboratoryReaders> LaboratoryReaders::open(bus::Participant& participan
                                      results, functions, clocks, asker)) {
     return fail(*error);
   }
-  return LaboratoryReaders(Readers{std::move(*descriptions), std::move(*sources),
-                                   std::move(*measurements), std::move(*excitation),
-                                   std::move(*services), std::move(*results), std::move(*functions),
-                                   std::move(*clocks)},
-                           std::move(*asker));
+  return BusReaders(Readers{std::move(*descriptions), std::move(*sources), std::move(*measurements),
+                            std::move(*excitation), std::move(*services), std::move(*results),
+                            std::move(*functions), std::move(*clocks)},
+                    std::move(*asker));
 }
 
-void LaboratoryReaders::work(Laboratory& laboratory) {
-  const auto feed = [&](const auto& message) { laboratory.take(message); };
+void BusReaders::work(BusState& state) {
+  const auto feed = [&](const auto& message) { state.take(message); };
   readers_.descriptions.take(feed);
   readers_.sources.take(feed);
   readers_.measurements.take(feed);
@@ -40,8 +38,8 @@ void LaboratoryReaders::work(Laboratory& laboratory) {
   readers_.functions.take(feed);
   readers_.clocks.take(feed);
   asker_.work();
-  laboratory.set_programs(asker_.programs(), asker_.other_hosts());
-  laboratory.work();
+  state.set_programs(asker_.programs(), asker_.other_hosts());
+  state.work();
 }
 
 } // namespace dyncal::network

@@ -1,4 +1,4 @@
-#include "services/network/laboratory.hpp"
+#include "services/network/bus_state.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -31,13 +31,13 @@ bool drop_gone(std::map<std::string, Held>& held, bus::Clock::Instant now) {
 
 } // namespace
 
-const Bench* Laboratory::bench(const std::string& name) const {
+const Bench* BusState::bench(const std::string& name) const {
   const auto found = benches_.find(name);
   return found == benches_.end() ? nullptr : &found->second;
 }
 
 // Of a message that has just come; null if there is no room.
-Bench* Laboratory::bench_of(const std::string& name) {
+Bench* BusState::bench_of(const std::string& name) {
   auto found = benches_.find(name);
   if (found == benches_.end()) {
     if (!bus::check_bench_name(name) ||
@@ -55,13 +55,13 @@ Bench* Laboratory::bench_of(const std::string& name) {
   return &bench;
 }
 
-bool Laboratory::make_room_for_bench() {
+bool BusState::make_room_for_bench() {
   const bool made = drop_gone(benches_, clock_.now());
   number_ += made ? 1 : 0;
   return made;
 }
 
-Source* Laboratory::source_of(Bench& bench, const std::string& name) {
+Source* BusState::source_of(Bench& bench, const std::string& name) {
   if (!bench.sources.contains(name) && bench.sources.size() >= limits_.sources) {
     ++left_out_.sources; // this one, or the one that makes way
     if (!drop_gone(bench.sources, clock_.now())) {
@@ -76,7 +76,7 @@ Source* Laboratory::source_of(Bench& bench, const std::string& name) {
   return &source;
 }
 
-Run* Laboratory::run_of(Bench& bench, const std::string& name) {
+Run* BusState::run_of(Bench& bench, const std::string& name) {
   auto found = bench.runs.find(name);
   if (found == bench.runs.end()) {
     if (name.empty() || (bench.runs.size() >= limits_.runs && !make_room_for_run(bench))) {
@@ -93,7 +93,7 @@ Run* Laboratory::run_of(Bench& bench, const std::string& name) {
 }
 
 // The run that nobody conducts and that was heard of longest ago makes way.
-bool Laboratory::make_room_for_run(Bench& bench) {
+bool BusState::make_room_for_run(Bench& bench) {
   const bus::Clock::Instant now = clock_.now();
   const auto is_in_use = [&](const Run& run) {
     return !run.is_over() && !run.is_left_alone(now) && run.conductor_heard.has_value();
@@ -113,7 +113,7 @@ bool Laboratory::make_room_for_run(Bench& bench) {
   return true;
 }
 
-std::size_t Laboratory::results() const {
+std::size_t BusState::results() const {
   std::size_t sum = 0;
   for (const auto& [name, bench] : benches_) {
     for (const auto& [run_name, run] : bench.runs) {
@@ -123,13 +123,13 @@ std::size_t Laboratory::results() const {
   return sum;
 }
 
-bool Laboratory::make_room_for_result(const Run& run) {
+bool BusState::make_room_for_result(const Run& run) {
   return run.results.size() < limits_.results_of_run &&
          (results() < limits_.results || drop_results_of_oldest(run));
 }
 
 // Of all runs but this one.
-bool Laboratory::drop_results_of_oldest(const Run& run) {
+bool BusState::drop_results_of_oldest(const Run& run) {
   Run* oldest = nullptr;
   for (auto& [name, bench] : benches_) {
     for (auto& [run_name, other] : bench.runs) {
@@ -149,7 +149,7 @@ bool Laboratory::drop_results_of_oldest(const Run& run) {
   return true;
 }
 
-void Laboratory::take(const wire::SourceDescription& message) {
+void BusState::take(const wire::SourceDescription& message) {
   Bench* bench = bench_of(message.bench().to_string());
   Source* source = bench == nullptr ? nullptr : source_of(*bench, message.source().to_string());
   if (source != nullptr) {
@@ -157,7 +157,7 @@ void Laboratory::take(const wire::SourceDescription& message) {
   }
 }
 
-void Laboratory::take(const wire::SourceStatus& message) {
+void BusState::take(const wire::SourceStatus& message) {
   Bench* bench = bench_of(message.bench().to_string());
   if (bench == nullptr) {
     return;
@@ -170,7 +170,7 @@ void Laboratory::take(const wire::SourceStatus& message) {
   }
 }
 
-void Laboratory::take(const wire::Measurement& message) {
+void BusState::take(const wire::Measurement& message) {
   Bench* bench = bench_of(message.bench().to_string());
   Run* run = bench == nullptr ? nullptr : run_of(*bench, message.run().to_string());
   if (run == nullptr) {
@@ -181,7 +181,7 @@ void Laboratory::take(const wire::Measurement& message) {
   note(*bench, changes_of(before, *run));
 }
 
-void Laboratory::take(const wire::Excitation& message) {
+void BusState::take(const wire::Excitation& message) {
   Bench* bench = bench_of(message.bench().to_string());
   Run* run = bench == nullptr ? nullptr : run_of(*bench, message.run().to_string());
   if (run == nullptr) {
@@ -196,7 +196,7 @@ void Laboratory::take(const wire::Excitation& message) {
   }
 }
 
-void Laboratory::take(const wire::CalibrationResult& message) {
+void BusState::take(const wire::CalibrationResult& message) {
   Bench* bench = bench_of(message.bench().to_string());
   Run* run = bench == nullptr ? nullptr : run_of(*bench, message.run().to_string());
   if (run == nullptr) {
@@ -224,7 +224,7 @@ void Laboratory::take(const wire::CalibrationResult& message) {
   results_changed(*run);
 }
 
-void Laboratory::take(const wire::TransferFunction& message) {
+void BusState::take(const wire::TransferFunction& message) {
   Bench* bench = bench_of(message.bench().to_string());
   Run* run = bench == nullptr ? nullptr : run_of(*bench, message.run().to_string());
   if (run == nullptr) {
@@ -241,7 +241,7 @@ void Laboratory::take(const wire::TransferFunction& message) {
   results_changed(*run);
 }
 
-void Laboratory::take(const wire::SampleClockReport& message) {
+void BusState::take(const wire::SampleClockReport& message) {
   Bench* bench = bench_of(message.bench().to_string());
   Run* run = bench == nullptr ? nullptr : run_of(*bench, message.run().to_string());
   if (run == nullptr) {
@@ -258,7 +258,7 @@ void Laboratory::take(const wire::SampleClockReport& message) {
   results_changed(*run);
 }
 
-void Laboratory::take(const wire::ServiceStatus& message) {
+void BusState::take(const wire::ServiceStatus& message) {
   Bench* bench = bench_of(message.bench().to_string());
   if (bench == nullptr) {
     return;
@@ -277,7 +277,7 @@ void Laboratory::take(const wire::ServiceStatus& message) {
   note(*bench, changes_of(before, *run));
 }
 
-void Laboratory::take_service(Bench& bench, const wire::ServiceStatus& message) {
+void BusState::take_service(Bench& bench, const wire::ServiceStatus& message) {
   const std::string name = message.service().to_string();
   if (!bench.services.contains(name) && bench.services.size() >= limits_.services) {
     ++left_out_.services; // this one, or the one that makes way
@@ -312,8 +312,8 @@ void Laboratory::take_service(Bench& bench, const wire::ServiceStatus& message) 
   }
 }
 
-void Laboratory::set_programs(std::vector<DiscoveredProgram> programs,
-                              std::vector<HostClock> clocks) {
+void BusState::set_programs(std::vector<DiscoveredProgram> programs,
+                            std::vector<HostClock> clocks) {
   if (programs.size() != programs_.size() || clocks.size() != clocks_.size()) {
     ++number_;
   }
@@ -321,7 +321,7 @@ void Laboratory::set_programs(std::vector<DiscoveredProgram> programs,
   clocks_ = std::move(clocks);
 }
 
-void Laboratory::work() {
+void BusState::work() {
   const bus::Clock::Instant now = clock_.now();
   for (auto& [name, bench] : benches_) {
     for (auto& [source_name, source] : bench.sources) {
@@ -344,7 +344,7 @@ void Laboratory::work() {
   }
 }
 
-void Laboratory::note(Bench& bench, Severity severity, const std::string& text) {
+void BusState::note(Bench& bench, Severity severity, const std::string& text) {
   bench.events.push_back({clock_.utc_now_ns(), bench.name, severity, one_line(text)});
   if (bench.events.size() > limits_.events) {
     bench.events.pop_front();
@@ -352,19 +352,19 @@ void Laboratory::note(Bench& bench, Severity severity, const std::string& text) 
   changed(bench);
 }
 
-void Laboratory::note(Bench& bench, const std::vector<Condition>& changes) {
+void BusState::note(Bench& bench, const std::vector<Condition>& changes) {
   for (const Condition& change : changes) {
     note(bench, change.severity, change.what);
   }
 }
 
-std::optional<ClockOffset> Laboratory::clock_of(const std::string& host) const {
+std::optional<ClockOffset> BusState::clock_of(const std::string& host) const {
   const auto found = std::find_if(clocks_.begin(), clocks_.end(),
                                   [&](const HostClock& clock) { return clock.host == host; });
   return found == clocks_.end() ? std::nullopt : std::optional(found->clock);
 }
 
-std::optional<ClockOffset> Laboratory::worst_clock(const Bench& bench) const {
+std::optional<ClockOffset> BusState::worst_clock(const Bench& bench) const {
   std::optional<ClockOffset> worst;
   const auto look_at = [&](const std::string& host) {
     const auto clock = clock_of(host);
@@ -381,7 +381,7 @@ std::optional<ClockOffset> Laboratory::worst_clock(const Bench& bench) const {
   return worst;
 }
 
-std::vector<Event> Laboratory::events() const {
+std::vector<Event> BusState::events() const {
   std::vector<Event> all;
   for (const auto& [name, bench] : benches_) {
     all.insert(all.end(), bench.events.begin(), bench.events.end());

@@ -27,10 +27,10 @@
 
 namespace dyncal::network {
 
-class Laboratory {
+class BusState {
 public:
   // `clock` outlives the object.
-  explicit Laboratory(bus::Clock& clock, Limits limits = {}) : clock_(clock), limits_(limits) {}
+  explicit BusState(bus::Clock& clock, Limits limits = {}) : clock_(clock), limits_(limits) {}
 
   void take(const wire::SourceDescription& message);
   void take(const wire::SourceStatus& message);

@@ -1,11 +1,11 @@
-#include "services/network/laboratory.hpp"
+#include "services/network/bus_state.hpp"
 
 #include <gtest/gtest.h>
 
 #include "services/base/printable_text.hpp"
 #include "services/bus/memory/memory_network.hpp"
 #include "services/contract/topics.hpp"
-#include "services/network/laboratory_readers.hpp"
+#include "services/network/bus_readers.hpp"
 #include "tests/unit/services/network/messages.hpp"
 
 namespace dyncal::network {
@@ -13,7 +13,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-class LiveLaboratoryTest : public testing::Test {
+class BusStateTest : public testing::Test {
 protected:
   void pass(std::chrono::nanoseconds time) {
     clock_.advance(time);
@@ -46,17 +46,17 @@ protected:
   }
 
   mutable bus::SteppedClock clock_;
-  Laboratory laboratory_{clock_};
+  BusState laboratory_{clock_};
 };
 
-TEST_F(LiveLaboratoryTest, HoldsNothingBeforeAnythingIsHeard) {
+TEST_F(BusStateTest, HoldsNothingBeforeAnythingIsHeard) {
   laboratory_.work();
   EXPECT_TRUE(laboratory_.benches().empty());
   EXPECT_EQ(laboratory_.bench("acc-1"), nullptr);
   EXPECT_EQ(laboratory_.number(), 0U);
 }
 
-TEST_F(LiveLaboratoryTest, FollowsARunThroughItsStates) {
+TEST_F(BusStateTest, FollowsARunThroughItsStates) {
   laboratory_.take(status_of("acc-1", "dau"));
   EXPECT_EQ(state(), BenchState::idle);
   plan(wire::MEASUREMENT_PLANNED);
@@ -74,7 +74,7 @@ TEST_F(LiveLaboratoryTest, FollowsARunThroughItsStates) {
   EXPECT_TRUE(has_event(Severity::warning, "paused by a command"));
 }
 
-TEST_F(LiveLaboratoryTest, NamesTheReasonOfAnAbortedRun) {
+TEST_F(BusStateTest, NamesTheReasonOfAnAbortedRun) {
   plan(wire::MEASUREMENT_RUNNING);
   plan(wire::MEASUREMENT_ABORTED, "the source dau is away");
   EXPECT_EQ(state(), BenchState::aborted);
@@ -83,7 +83,7 @@ TEST_F(LiveLaboratoryTest, NamesTheReasonOfAnAbortedRun) {
   EXPECT_TRUE(has_event(Severity::error, "the source dau is away"));
 }
 
-TEST_F(LiveLaboratoryTest, PausesWhileTheAnalysisWaits) {
+TEST_F(BusStateTest, PausesWhileTheAnalysisWaits) {
   plan(wire::MEASUREMENT_RUNNING);
   laboratory_.take(analysis_of("acc-1", "r1", wire::ARM_ARMED));
   wire::ServiceStatus status = analysis_of("acc-1", "r1", wire::ARM_ARMED, wire::HEALTH_WAITING);
@@ -94,7 +94,7 @@ TEST_F(LiveLaboratoryTest, PausesWhileTheAnalysisWaits) {
   EXPECT_TRUE(has_event(Severity::warning, "no samples of dau"));
 }
 
-TEST_F(LiveLaboratoryTest, IsSilentBeforeThreeSecondsAndGoneAfterAMinute) {
+TEST_F(BusStateTest, IsSilentBeforeThreeSecondsAndGoneAfterAMinute) {
   laboratory_.take(status_of("acc-1", "dau"));
   pass(2500ms);
   EXPECT_EQ(state(), BenchState::idle);
@@ -112,7 +112,7 @@ TEST_F(LiveLaboratoryTest, IsSilentBeforeThreeSecondsAndGoneAfterAMinute) {
   EXPECT_TRUE(has_event(Severity::note, "dau is heard again"));
 }
 
-TEST_F(LiveLaboratoryTest, ShowsASilentSourceWhileOthersGoOn) {
+TEST_F(BusStateTest, ShowsASilentSourceWhileOthersGoOn) {
   laboratory_.take(status_of("acc-1", "acs"));
   laboratory_.take(status_of("acc-1", "dau"));
   const std::uint64_t number = laboratory_.number();
@@ -127,7 +127,7 @@ TEST_F(LiveLaboratoryTest, ShowsASilentSourceWhileOthersGoOn) {
   EXPECT_GT(laboratory_.number(), number);
 }
 
-TEST_F(LiveLaboratoryTest, DoesNotMindTheSilenceOfAnEndedSource) {
+TEST_F(BusStateTest, DoesNotMindTheSilenceOfAnEndedSource) {
   laboratory_.take(status_of("acc-1", "dau", wire::SOURCE_ENDED));
   for (int i = 0; i < 8; ++i) {
     pass(500ms);
@@ -136,7 +136,7 @@ TEST_F(LiveLaboratoryTest, DoesNotMindTheSilenceOfAnEndedSource) {
   EXPECT_EQ(worst().severity, Severity::ok) << worst().what;
 }
 
-TEST_F(LiveLaboratoryTest, IsSilentWhenTheConductorIs) {
+TEST_F(BusStateTest, IsSilentWhenTheConductorIs) {
   plan(wire::MEASUREMENT_RUNNING);
   for (int i = 0; i < 11; ++i) {
     pass(500ms);
@@ -149,7 +149,7 @@ TEST_F(LiveLaboratoryTest, IsSilentWhenTheConductorIs) {
   EXPECT_EQ(state(), BenchState::running);
 }
 
-TEST_F(LiveLaboratoryTest, CountsTheTimeThatIsLeft) {
+TEST_F(BusStateTest, CountsTheTimeThatIsLeft) {
   plan(wire::MEASUREMENT_RUNNING);
   const auto& run = *bench().current_run();
   EXPECT_DOUBLE_EQ(run.time_left_s(clock_.now()).value(), 20.0);
@@ -169,13 +169,13 @@ TEST_F(LiveLaboratoryTest, CountsTheTimeThatIsLeft) {
   EXPECT_EQ(run.now->step.duration_s, 8.0);
 }
 
-TEST_F(LiveLaboratoryTest, TakesStepsBeforeTheFirstThatIsHeardAsDone) {
+TEST_F(BusStateTest, TakesStepsBeforeTheFirstThatIsHeardAsDone) {
   plan(wire::MEASUREMENT_RUNNING);
   excite(2, wire::EXCITATION_STEADY);
   EXPECT_EQ(bench().current_run()->plan->steps.at(0).state, StepState::done);
 }
 
-TEST_F(LiveLaboratoryTest, KeepsTheNewestResultButNoneOfAnEarlierAttempt) {
+TEST_F(BusStateTest, KeepsTheNewestResultButNoneOfAnEarlierAttempt) {
   laboratory_.take(result_of("acc-1", "r1", 1, 0.9));
   const std::uint64_t first = bench().runs.at("r1").results_number;
   wire::CalibrationResult again = result_of("acc-1", "r1", 1, 1.1);
@@ -188,7 +188,7 @@ TEST_F(LiveLaboratoryTest, KeepsTheNewestResultButNoneOfAnEarlierAttempt) {
   EXPECT_EQ(run.results_number, first + 1);
 }
 
-TEST_F(LiveLaboratoryTest, WarnsOfAResultWithoutAValueOnce) {
+TEST_F(BusStateTest, WarnsOfAResultWithoutAValueOnce) {
   wire::CalibrationResult result = result_of("acc-1", "r1", 1, 0.0);
   result.valid(false);
   result.problem("the step was not found in dau");
@@ -199,7 +199,7 @@ TEST_F(LiveLaboratoryTest, WarnsOfAResultWithoutAValueOnce) {
   EXPECT_TRUE(has_event(Severity::warning, "the step was not found in dau"));
 }
 
-TEST_F(LiveLaboratoryTest, TakesTheStateOfARunFromTheAnalysisWhereTheConductorHasLeft) {
+TEST_F(BusStateTest, TakesTheStateOfARunFromTheAnalysisWhereTheConductorHasLeft) {
   laboratory_.take(result_of("acc-1", "r1", 1, 0.9));
   EXPECT_EQ(state(), BenchState::idle);
   laboratory_.take(analysis_of("acc-1", "r1", wire::ARM_FINISHED));
@@ -208,7 +208,7 @@ TEST_F(LiveLaboratoryTest, TakesTheStateOfARunFromTheAnalysisWhereTheConductorHa
   EXPECT_EQ(state(), BenchState::running) << "its name is the later one";
 }
 
-TEST_F(LiveLaboratoryTest, ShowsTheRunThatIsConductedBeforeNewerOnes) {
+TEST_F(BusStateTest, ShowsTheRunThatIsConductedBeforeNewerOnes) {
   laboratory_.take(measurement_of("acc-1", "a", wire::MEASUREMENT_RUNNING, 10));
   laboratory_.take(measurement_of("acc-1", "b", wire::MEASUREMENT_ABORTED, 20));
   EXPECT_EQ(bench().current_run()->name, "a");
@@ -217,7 +217,7 @@ TEST_F(LiveLaboratoryTest, ShowsTheRunThatIsConductedBeforeNewerOnes) {
 }
 
 // The clock of the second one's conductor is an hour behind that of the first one's.
-TEST_F(LiveLaboratoryTest, TheNewestRunIsTheOneHeardOfLastWhateverTheClocksOfConductors) {
+TEST_F(BusStateTest, TheNewestRunIsTheOneHeardOfLastWhateverTheClocksOfConductors) {
   constexpr std::int64_t hour_ns = 3'600'000'000'000;
   laboratory_.take(measurement_of("acc-1", "z", wire::MEASUREMENT_DONE, 2 * hour_ns));
   laboratory_.take(measurement_of("acc-1", "y", wire::MEASUREMENT_RUNNING, hour_ns));
@@ -230,7 +230,7 @@ TEST_F(LiveLaboratoryTest, TheNewestRunIsTheOneHeardOfLastWhateverTheClocksOfCon
   EXPECT_EQ(bench().current_run()->name, "y");
 }
 
-TEST_F(LiveLaboratoryTest, TakesTheOrderOfRunsThatWereOverFromTheirAnalysis) {
+TEST_F(BusStateTest, TakesTheOrderOfRunsThatWereOverFromTheirAnalysis) {
   wire::ServiceStatus newer = analysis_of("acc-1", "newer", wire::ARM_FINISHED);
   newer.published_utc_ns(3'000);
   laboratory_.take(newer);
@@ -243,7 +243,7 @@ TEST_F(LiveLaboratoryTest, TakesTheOrderOfRunsThatWereOverFromTheirAnalysis) {
   EXPECT_EQ(bench().current_run()->name, "another") << "two hosts: by when it was heard of";
 }
 
-TEST_F(LiveLaboratoryTest, WarnsOfLossesForAWhile) {
+TEST_F(BusStateTest, WarnsOfLossesForAWhile) {
   laboratory_.take(status_of("acc-1", "dau", wire::SOURCE_RUNNING, 5));
   EXPECT_EQ(worst().severity, Severity::note) << "lost before we listened";
   laboratory_.take(status_of("acc-1", "dau", wire::SOURCE_RUNNING, 6));
@@ -257,7 +257,7 @@ TEST_F(LiveLaboratoryTest, WarnsOfLossesForAWhile) {
   EXPECT_EQ(bench().lost(), 6U);
 }
 
-TEST_F(LiveLaboratoryTest, ShowsWhatARecorderMisses) {
+TEST_F(BusStateTest, ShowsWhatARecorderMisses) {
   wire::ServiceStatus status;
   status.bench("acc-1");
   status.service("dyncal-recorder:3@lab-1");
@@ -270,7 +270,7 @@ TEST_F(LiveLaboratoryTest, ShowsWhatARecorderMisses) {
   EXPECT_TRUE(bench().runs.empty()) << "a recorder serves no run";
 }
 
-TEST_F(LiveLaboratoryTest, ShowsAGuardThatCannotSwitchOff) {
+TEST_F(BusStateTest, ShowsAGuardThatCannotSwitchOff) {
   wire::ServiceStatus status;
   status.bench("acc-1");
   status.service("guard@lab-2:7");
@@ -287,7 +287,7 @@ TEST_F(LiveLaboratoryTest, ShowsAGuardThatCannotSwitchOff) {
   EXPECT_EQ(bench().recorder(), nullptr);
 }
 
-TEST_F(LiveLaboratoryTest, HoldsNoMoreBenchesThanItsLimitWhateverIsWritten) {
+TEST_F(BusStateTest, HoldsNoMoreBenchesThanItsLimitWhateverIsWritten) {
   const Limits limits;
   laboratory_.take(status_of("acc-1", "dau"));
   for (int i = 0; i < 10'000; ++i) {
@@ -302,7 +302,7 @@ TEST_F(LiveLaboratoryTest, HoldsNoMoreBenchesThanItsLimitWhateverIsWritten) {
   EXPECT_EQ(laboratory_.benches().size(), limits.benches);
 }
 
-TEST_F(LiveLaboratoryTest, HoldsNoMoreOfABenchThanItsLimits) {
+TEST_F(BusStateTest, HoldsNoMoreOfABenchThanItsLimits) {
   const Limits limits{.sources = 3,
                       .services = 2,
                       .runs = 2,
@@ -311,7 +311,7 @@ TEST_F(LiveLaboratoryTest, HoldsNoMoreOfABenchThanItsLimits) {
                       .channels = 5,
                       .steps = 1,
                       .events = 3};
-  Laboratory small(clock_, limits);
+  BusState small(clock_, limits);
   for (std::uint32_t i = 1; i <= 50; ++i) {
     const std::string name = std::to_string(i);
     small.take(status_of("acc-1", name));
@@ -338,7 +338,7 @@ TEST_F(LiveLaboratoryTest, HoldsNoMoreOfABenchThanItsLimits) {
 }
 
 // Services have the number of their process in their names: each restart brings a new one.
-TEST_F(LiveLaboratoryTest, LetsServicesAndSourcesThatAreGoneMakeWay) {
+TEST_F(BusStateTest, LetsServicesAndSourcesThatAreGoneMakeWay) {
   const Limits limits;
   const auto service_of = [](const std::string& name) {
     wire::ServiceStatus service;
@@ -373,7 +373,7 @@ TEST_F(LiveLaboratoryTest, LetsServicesAndSourcesThatAreGoneMakeWay) {
 }
 
 // Of 100 kB, with lines of its own and what steers a terminal.
-TEST_F(LiveLaboratoryTest, HoldsATextOfOthersAsOneShortLine) {
+TEST_F(BusStateTest, HoldsATextOfOthersAsOneShortLine) {
   std::string hostile;
   while (hostile.size() < 100'000) {
     hostile += "\x1b[2Jdone\r\nerror: \xff";
@@ -401,14 +401,14 @@ TEST_F(LiveLaboratoryTest, HoldsATextOfOthersAsOneShortLine) {
   }
 }
 
-TEST_F(LiveLaboratoryTest, RefusesNamesThatNoBenchHas) {
+TEST_F(BusStateTest, RefusesNamesThatNoBenchHas) {
   laboratory_.take(status_of("", "dau"));
   laboratory_.take(status_of("acc-*", "dau"));
   EXPECT_TRUE(laboratory_.benches().empty());
   EXPECT_EQ(laboratory_.left_out().benches, 2U);
 }
 
-TEST(LiveLaboratoryReaders, FeedALateListenerWithAllThatIsThere) {
+TEST(BusReaders, FeedALateListenerWithAllThatIsThere) {
   bus::SteppedClock clock;
   bus::MemoryNetwork network{clock};
   bus::Participant there = network.join("there");
@@ -422,9 +422,9 @@ TEST(LiveLaboratoryReaders, FeedALateListenerWithAllThatIsThere) {
       write(bus::topics::measurement, measurement_of("acc-1", "r1", wire::MEASUREMENT_RUNNING));
   const auto result = write(bus::topics::calibration_result, result_of("acc-1", "r1", 1, 0.9));
   bus::Participant here = network.join("here");
-  Laboratory laboratory(clock);
-  auto readers = LaboratoryReaders::open(here, "*", {"dyncal-web", "lab-1", 1, "dyncal", "memory"},
-                                         clock, std::make_shared<bus::WakeUp>());
+  BusState laboratory(clock);
+  auto readers = BusReaders::open(here, "*", {"dyncal-web", "lab-1", 1, "dyncal", "memory"}, clock,
+                                  std::make_shared<bus::WakeUp>());
   ASSERT_TRUE(readers);
   readers->work(laboratory);
   const Bench* bench = laboratory.bench("acc-1");

@@ -1,4 +1,4 @@
-// The messages that a network::Laboratory is fed with, from DDS: readers of states and results, and
+// The messages that a network::BusState is fed with, from DDS: readers of states and results, and
 // the exchange of clocks that tells which programs are there. No samples are read.
 //
 // Belongs to one thread, which calls work() when the wake-up rings, at least twice a second.
@@ -12,20 +12,21 @@
 #include "services/bus/clock.hpp"
 #include "services/bus/host_clocks/clock_asker.hpp"
 #include "services/contract/program_identity.hpp"
-#include "services/network/laboratory.hpp"
+#include "services/network/bus_state.hpp"
 
 namespace dyncal::network {
 
-class LaboratoryReaders {
+class BusReaders {
 public:
   // `bench`: of one bench, "*": of all. `own`: who asks for clocks. Fails (network) as readers and
   // writers do. `clock` outlives the object.
-  [[nodiscard]] static Expected<LaboratoryReaders>
-  open(bus::Participant& participant, const std::string& bench, const ProgramIdentity& own,
-       bus::Clock& clock, const std::shared_ptr<bus::WakeUp>& wake_up);
+  [[nodiscard]] static Expected<BusReaders> open(bus::Participant& participant,
+                                                 const std::string& bench,
+                                                 const ProgramIdentity& own, bus::Clock& clock,
+                                                 const std::shared_ptr<bus::WakeUp>& wake_up);
 
   // Feeds what has come, and asks for clocks when it is time.
-  void work(Laboratory& laboratory);
+  void work(BusState& state);
 
 private:
   struct Readers {
@@ -39,7 +40,7 @@ private:
     bus::Reader<wire::SampleClockReport> clocks;
   };
 
-  LaboratoryReaders(Readers readers, ClockAsker asker)
+  BusReaders(Readers readers, ClockAsker asker)
       : readers_(std::move(readers)), asker_(std::move(asker)) {}
 
   Readers readers_;
