@@ -26,6 +26,7 @@ struct Service {
   std::string dds;
   std::string host;
   std::uint32_t process_id = 0;
+  std::uint32_t contract_version = 0;
   std::string recording; // of a recorder, the file it writes
   std::uint64_t messages_stored = 0;
   std::uint64_t messages_not_stored = 0;
@@ -35,6 +36,8 @@ struct Service {
 
   [[nodiscard]] bool is_recorder() const { return !recording.empty(); }
   [[nodiscard]] bool is_guard() const { return !guarded_generator.empty(); }
+  // The run that a guard names is one that it does not hear.
+  [[nodiscard]] bool is_analysis() const { return !run.empty() && !is_guard(); }
 };
 
 enum class BenchState { idle, arming, running, paused, done, aborted, silent, gone };

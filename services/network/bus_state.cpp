@@ -297,6 +297,7 @@ void BusState::take_service(Bench& bench, const wire::ServiceStatus& message) {
              .dds = one_line(message.dds()),
              .host = one_line(message.host()),
              .process_id = message.process_id(),
+             .contract_version = message.contract_version(),
              .recording = one_line(message.recording()),
              .messages_stored = message.messages_stored(),
              .messages_not_stored = message.messages_not_stored(),

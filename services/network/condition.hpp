@@ -5,12 +5,9 @@
 #include <cstdint>
 #include <string>
 
-namespace dyncal::network {
+#include "services/base/finding.hpp"
 
-// The worse the higher. Stale: nothing is known, for nothing is heard any more.
-enum class Severity { ok, note, warning, error, stale };
-// "warning"
-[[nodiscard]] const char* to_string(Severity severity);
+namespace dyncal::network {
 
 struct Condition {
   Severity severity = Severity::ok;

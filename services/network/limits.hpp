@@ -18,15 +18,16 @@ inline constexpr std::chrono::seconds loss_limit{30};
 
 struct Limits {
   std::size_t benches = 64;
-  std::size_t sources = 32;          // of a bench
-  std::size_t services = 16;         // of a bench: analyses, recorders, guards
-  std::size_t runs = 8;              // of a bench
-  std::size_t results_of_run = 4096; // channels times steps
-  std::size_t results = 16'384;      // of all benches
-  std::size_t channels = 64;         // of a source; transfer functions of a run
-  std::size_t steps = 4096;          // of a plan
-  std::size_t rows = 1024;           // of any other list within a message
-  std::size_t events = 200;          // of a bench
+  std::size_t sources = 32;            // of a bench
+  std::size_t services = 16;           // of a bench: analyses, recorders, guards
+  std::size_t runs = 8;                // of a bench
+  std::size_t results_of_run = 4096;   // channels times steps
+  std::size_t results = 16'384;        // of all benches
+  std::size_t channels = 64;           // of a source; transfer functions of a run
+  std::size_t settings_bytes = 65'536; // of a source; of longer ones nothing is known
+  std::size_t steps = 4096;            // of a plan
+  std::size_t rows = 1024;             // of any other list within a message
+  std::size_t events = 200;            // of a bench
 };
 
 // What had no room.

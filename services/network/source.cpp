@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include "services/base/printable_text.hpp"
+#include "services/contract/known_sources.hpp"
 #include "services/contract/source_description.hpp"
 
 namespace dyncal::network {
@@ -53,6 +54,14 @@ void Source::take(const wire::SourceDescription& described, const Limits& limits
   software = one_line(described.software());
   host = one_line(described.host());
   process_id = described.process_id();
+  contract_version = described.contract_version();
+  bench_file.sha256 = one_line(described.bench_file_sha256());
+  bench_file.settings =
+      described.settings().size() > limits.settings_bytes ? std::string() : described.settings();
+  if (const std::string service = one_line(service_of(described));
+      !service.empty() && services.size() < limits.services) {
+    services.insert(service);
+  }
   auto& channels = description->channels;
   channels.resize(std::min(channels.size(), limits.channels));
   for (drivers::ChannelDescription& channel : channels) {
@@ -67,9 +76,11 @@ void Source::take(const wire::SourceDescription& described, const Limits& limits
 }
 
 void Source::take(const wire::SourceStatus& status, const Limits& limits, Instant now) {
-  const bool continues = state != SourceState::unknown && session == status.session();
+  const bool continues = counted_session == status.session();
   const std::uint64_t lost_before = lost();
   session = status.session();
+  counted_session = session;
+  turns.add(session);
   state = state_of(status.state());
   rate_hz = status.rate_hz();
   counts = {.received = status.received(),
@@ -86,6 +97,10 @@ void Source::take(const wire::SourceStatus& status, const Limits& limits, Instan
     }
   }
   dropped_in_service = status.dropped_in_service();
+  if (!continues) {
+    first_counts = counts;
+    first_dropped_in_service = dropped_in_service;
+  }
   buffer_fill = status.buffer_fill();
   matched_readers = status.matched_readers();
   message = one_line(status.message());

@@ -4,12 +4,15 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "drivers/sample_block.hpp"
 #include "drivers/sample_counts.hpp"
 #include "idl/dyncal.h"
 #include "services/bus/clock.hpp"
+#include "services/contract/bench_file_origin.hpp"
+#include "services/contract/duplicate_source_detector.hpp"
 #include "services/contract/source_kind.hpp"
 #include "services/network/condition.hpp"
 #include "services/network/limits.hpp"
@@ -31,6 +34,9 @@ struct Source {
   std::string software;
   std::string host;
   std::uint32_t process_id = 0;
+  std::uint32_t contract_version = 0;
+  BenchFileOrigin bench_file;       // that its service has read
+  std::set<std::string> services{}; // that have described it, "lab-2:4711"
 
   SourceState state = SourceState::unknown; // before its first status
   double rate_hz = 0.0;
@@ -38,7 +44,11 @@ struct Source {
   std::uint64_t dropped_in_service = 0;
   double buffer_fill = 0.0;
   std::uint32_t matched_readers = 0;
-  std::string message; // empty: nothing is wrong
+  std::string message;                // empty: nothing is wrong
+  drivers::SampleCounts first_counts; // of its session, since we listen
+  std::uint64_t first_dropped_in_service = 0;
+  std::optional<std::uint64_t> counted_session; // of its statuses
+  DuplicateSourceDetector turns;                // of the sessions of its statuses
 
   Instant heard{};
   std::int64_t heard_utc_ns = 0;

@@ -153,8 +153,8 @@ bool BenchView::refused(const std::string& key) const {
 
 Finding BenchView::at(Severity severity, const KeyPath& key, std::string sentence,
                       std::optional<std::size_t> entry) const {
-  return {severity, bench.path.string(), lines.line_of(key, entry), text_of(key),
-          std::move(sentence)};
+  return {severity, text_of(key), std::move(sentence), bench.path.string(),
+          lines.line_of(key, entry)};
 }
 
 BenchView look_at_bench(const std::filesystem::path& path) {

@@ -11,8 +11,8 @@
 
 #include "analysis/instrument/adc_calibration.hpp"
 #include "drivers/sample_block.hpp"
+#include "services/base/finding.hpp"
 #include "services/bench/file/bench_file.hpp"
-#include "services/checks/bench_check/finding.hpp"
 #include "services/checks/bench_check/key_lines.hpp"
 
 namespace dyncal::inline checks::bench_check {

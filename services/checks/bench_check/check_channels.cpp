@@ -130,7 +130,7 @@ void check_quantities(const BenchView& view, Findings& findings) {
 void check_reference_unit(const BenchView& view, Findings& findings) {
   const auto channel = described(view, view.bench.method.reference);
   const auto is_error = [](const Finding& finding) {
-    return finding.severity == Severity::error && finding.key == "method.reference";
+    return finding.severity == Severity::error && finding.subject == "method.reference";
   };
   if (channel && !channel->unit.empty() && channel->unit != R"(\one)" &&
       !is_acceleration(channel->unit) && std::ranges::none_of(findings, is_error)) {

@@ -12,13 +12,13 @@ Findings check_benches(std::span<const BenchView> views) {
   for (const BenchView& view : views) {
     for (const BenchProblem& problem : view.problems) {
       findings.push_back(
-          {Severity::error, problem.file, problem.line, problem.key, problem.sentence});
+          {Severity::error, problem.key, problem.sentence, problem.file, problem.line});
       refused.emplace(problem.file, problem.key);
     }
   }
   const auto add = [&](const Findings& more) {
     std::copy_if(more.begin(), more.end(), std::back_inserter(findings), [&](const Finding& one) {
-      return !refused.contains({one.file, one.key});
+      return !refused.contains({one.file, one.subject});
     });
   };
   for (const BenchView& view : views) {

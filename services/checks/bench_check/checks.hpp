@@ -5,8 +5,8 @@
 
 #include <span>
 
+#include "services/base/finding.hpp"
 #include "services/checks/bench_check/bench_view.hpp"
-#include "services/checks/bench_check/finding.hpp"
 
 namespace dyncal::inline checks::bench_check {
 

@@ -27,7 +27,7 @@ int exit_status(const Findings& findings) {
 std::string as_text(const Findings& findings) {
   std::string text;
   for (const Finding& finding : findings) {
-    const BenchProblem problem{finding.file, finding.line, finding.key, finding.sentence};
+    const BenchProblem problem{finding.file, finding.line, finding.subject, finding.sentence};
     text += fmt::format("{}\n", one_line(problem.text(to_string(finding.severity))));
   }
   return text + fmt::format("{}, {}, {}\n", counted(count(findings, Severity::error), "error"),
@@ -48,11 +48,10 @@ nlohmann::ordered_json as_json(const Findings& findings, std::span<const BenchVi
     list.push_back({{"severity", to_string(finding.severity)},
                     {"file", finding.file},
                     {"line", finding.line},
-                    {"key", finding.key},
+                    {"key", finding.subject},
                     {"sentence", finding.sentence}});
   }
-  const auto worst = std::ranges::max_element(findings, {}, &Finding::severity);
-  return {{"status", worst == findings.end() ? "ok" : to_string(worst->severity)},
+  return {{"status", to_string(worst(findings))},
           {"benches", std::move(benches)},
           {"findings", std::move(list)}};
 }

@@ -6,8 +6,8 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "services/base/finding.hpp"
 #include "services/checks/bench_check/bench_view.hpp"
-#include "services/checks/bench_check/finding.hpp"
 
 namespace dyncal::inline checks::bench_check {
 

@@ -92,7 +92,7 @@ Findings mismatches(const std::vector<DiscoveredEndpoint>& endpoints, const Name
   }
   Findings findings;
   for (const std::string& sentence : sentences) {
-    findings.push_back({Severity::problem, "endpoints", sentence});
+    findings.push_back({Severity::error, "endpoints", sentence});
   }
   return findings;
 }
@@ -156,8 +156,7 @@ Findings check_endpoints(const LaboratoryView& view, const std::vector<std::stri
   const Names names(view.discovery);
   const auto& endpoints = view.discovery.endpoints;
   Findings findings = mismatches(endpoints, names);
-  const Findings lost = lost_partitions(endpoints, known, names);
-  findings.insert(findings.end(), lost.begin(), lost.end());
+  append(findings, lost_partitions(endpoints, known, names));
   if (findings.empty()) {
     const auto of_contract = std::ranges::count_if(
         endpoints, [](const DiscoveredEndpoint& one) { return is_of_the_contract(one.topic); });

@@ -6,16 +6,14 @@
 namespace dyncal::inline checks::doctor {
 namespace {
 
-Finding check_guard(const wire::ServiceStatus& guard) {
-  const std::string subject =
-      fmt::format("bench {}: dyncal-guard on {}", guard.bench().to_string(), guard.host());
-  if (guard.health() == wire::HEALTH_FAILED) {
-    return {Severity::problem, "guards", subject + ": " + guard.message()};
+Finding check_guard(const std::string& bench, const network::Service& guard) {
+  const std::string subject = fmt::format("bench {}: dyncal-guard on {}", bench, guard.host);
+  if (guard.health == network::Health::failed) {
+    return {Severity::error, "guards", subject + ": " + guard.message};
   }
   return {Severity::ok, "guards",
           fmt::format("{} guards the output of the generator {}{}", subject,
-                      guard.guarded_generator(),
-                      guard.message().empty() ? "" : "; " + guard.message())};
+                      guard.guarded_generator, guard.message.empty() ? "" : "; " + guard.message)};
 }
 
 std::optional<Finding> check_against(const BenchFile& bench, const LaboratoryView& view) {
@@ -23,14 +21,14 @@ std::optional<Finding> check_against(const BenchFile& bench, const LaboratoryVie
     return std::nullopt;
   }
   std::string other_address;
-  for (const auto& [name, guard] : view.guards) {
-    if (guard.bench().to_string() != bench.bench) {
+  for (const auto& [key, guard] : view.guards) {
+    if (key.first != bench.bench) {
       continue;
     }
-    if (may_be_one_generator(guard.guarded_generator(), bench.generator.address)) {
+    if (may_be_one_generator(guard.guarded_generator, bench.generator.address)) {
       return std::nullopt;
     }
-    other_address = guard.guarded_generator();
+    other_address = guard.guarded_generator;
   }
   if (!other_address.empty()) {
     return Finding{
@@ -50,8 +48,8 @@ std::optional<Finding> check_against(const BenchFile& bench, const LaboratoryVie
 
 Findings check_guards(const LaboratoryView& view, const std::optional<BenchFile>& bench) {
   Findings findings;
-  for (const auto& [name, guard] : view.guards) {
-    findings.push_back(check_guard(guard));
+  for (const auto& [key, guard] : view.guards) {
+    findings.push_back(check_guard(key.first, guard));
   }
   if (const auto lack = bench ? check_against(*bench, view) : std::nullopt) {
     findings.push_back(*lack);

@@ -37,7 +37,7 @@ Findings check_interfaces(const HostView& host) {
                        one.name, one.address, one.mtu, bus::max_udp_payload_bytes, needed_mtu)});
     }
     if (!one.reaches_itself) {
-      findings.push_back({Severity::problem, "interfaces",
+      findings.push_back({Severity::error, "interfaces",
                           fmt::format("a datagram to our own address {} ({}) does not arrive; a "
                                       "firewall of this host drops it (nft list ruleset)",
                                       one.address, one.name)});
@@ -104,7 +104,7 @@ Finding check_space(const HostView& host) {
   }
   const std::uint64_t free_mb = *host.free_bytes >> 20U;
   if (*host.free_bytes < little_space_bytes) {
-    return {*host.free_bytes < no_space_bytes ? Severity::problem : Severity::warning, "disk",
+    return {*host.free_bytes < no_space_bytes ? Severity::error : Severity::warning, "disk",
             fmt::format("only {} MB are free in {}; make room before a run", free_mb, folder)};
   }
   return {Severity::ok, "disk", fmt::format("{} MB are free in {}", free_mb, folder)};
@@ -115,7 +115,7 @@ Finding check_space(const HostView& host) {
 Findings check_host(const HostView& host, int domain) {
   Findings findings{check_buffers(host)};
   const Findings interfaces = check_interfaces(host);
-  findings.insert(findings.end(), interfaces.begin(), interfaces.end());
+  append(findings, interfaces);
   findings.push_back(check_udp(host));
   findings.push_back(check_space(host));
   constexpr int domains_below_ephemeral_ports = 100;

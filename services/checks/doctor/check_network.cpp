@@ -74,7 +74,7 @@ Findings check_unicast(const LaboratoryView& view) {
   const bool others = !view.discovery.participants.empty();
   if (others && view.programs.empty() && !view.discovery.endpoints.empty()) {
     findings.push_back(
-        {Severity::problem, "network",
+        {Severity::error, "network",
          fmt::format("programs are found, but no answer comes from any: their packets with "
                      "messages do not get through; a firewall on either host must let {} through",
                      ports_of(view.domain))});
@@ -115,14 +115,14 @@ Findings check_packets(const LaboratoryView& view) {
 Findings check_network(const LaboratoryView& view) {
   Findings findings{check_multicast(view)};
   const Findings unicast = check_unicast(view);
-  findings.insert(findings.end(), unicast.begin(), unicast.end());
+  append(findings, unicast);
   if (unicast.empty() && !view.programs.empty()) {
     findings.push_back({Severity::ok, "network",
                         fmt::format("messages of {} programs get through; DDS domain {} uses {}",
                                     view.programs.size(), view.domain, ports_of(view.domain))});
   }
   const Findings packets = check_packets(view);
-  findings.insert(findings.end(), packets.begin(), packets.end());
+  append(findings, packets);
   if (view.malformed_messages > 0) {
     findings.push_back({Severity::warning, "network",
                         fmt::format("{} messages do not match the contract and were dropped; which "

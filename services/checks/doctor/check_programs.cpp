@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "idl/dyncal.h"
 #include "services/checks/doctor/checks.hpp"
 #include "services/checks/doctor/unheard_analysis.hpp"
 
@@ -103,15 +104,15 @@ Versions versions_of(const LaboratoryView& view) {
     return program == view.programs.end() ? otherwise : program->identity.program;
   };
   for (const auto& [key, source] : view.sources) {
-    if (const auto& description = source.description) {
+    if (source.description) {
       const std::string name = fmt::format("the source {}/{}", key.first, key.second);
-      add(name_of(description->host(), description->process_id(), name), description->host(),
-          description->software(), description->contract_version());
+      add(name_of(source.host, source.process_id, name), source.host, source.software,
+          source.contract_version);
     }
   }
-  for (const auto& [service, status] : view.analyses) {
-    add(name_of(status.host(), status.process_id(), service.substr(0, service.find(':'))),
-        status.host(), status.software(), status.contract_version());
+  for (const auto& [service, analysis] : view.analyses) {
+    add(name_of(analysis.host, analysis.process_id, service.substr(0, service.find(':'))),
+        analysis.host, analysis.software, analysis.contract_version);
   }
   return versions;
 }
@@ -139,7 +140,7 @@ Findings check_versions(const LaboratoryView& view) {
   const Versions versions = versions_of(view);
   Findings findings;
   if (versions.contracts.size() > 1) {
-    findings.push_back({Severity::problem, "versions",
+    findings.push_back({Severity::error, "versions",
                         fmt::format("programs speak different versions of the contract: {}; what a "
                                     "newer one adds is not seen by the older: install the same "
                                     "version of dyncal everywhere",
@@ -181,8 +182,7 @@ Findings check_clocks(const LaboratoryView& view) {
 Findings check_programs(const LaboratoryView& view) {
   Findings findings = check_presence(view);
   for (const auto& check : {check_others, check_analysis, check_versions, check_clocks}) {
-    const Findings more = check(view);
-    findings.insert(findings.end(), more.begin(), more.end());
+    append(findings, check(view));
   }
   return findings;
 }

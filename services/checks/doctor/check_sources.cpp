@@ -13,54 +13,53 @@ constexpr double full_buffer = 0.5;
 // The rate of a status is counted over a second or so, in blocks.
 constexpr double rate_tolerance_rel = 0.1;
 
-using SourceKey = LaboratoryView::SourceKey;
+using SourceKey = LaboratoryView::Key;
+using network::Source;
+using network::SourceState;
 
 std::string name_of(const SourceKey& key) {
   return key.first + "/" + key.second;
 }
 
-std::string host_of(const ObservedSource& source) {
-  const bool known = source.description && !source.description->host().empty();
-  return known ? " on " + source.description->host() : "";
+std::string host_of(const Source& source) {
+  return source.host.empty() ? "" : " on " + source.host;
 }
 
 // The sentence that the source gives itself, if it gives one.
-std::string reason_of(const ObservedSource& source) {
-  return source.status && !source.status->message().empty() ? ": " + source.status->message() : "";
+std::string reason_of(const Source& source) {
+  return source.message.empty() ? "" : ": " + source.message;
 }
 
-Finding check_state(const SourceKey& key, const ObservedSource& source) {
+Finding check_state(const SourceKey& key, const Source& source) {
   const std::string subject = "source " + name_of(key) + host_of(source);
-  if (!source.status) {
-    return {Severity::problem, "sources",
+  switch (source.state) {
+  case SourceState::unknown:
+    return {Severity::error, "sources",
             subject + " has described itself, but no status comes; does its service still run?"};
-  }
-  switch (source.status->state()) {
-  case wire::SOURCE_STARTING:
+  case SourceState::starting:
     return {Severity::warning, "sources",
             subject + " has received nothing yet" + reason_of(source)};
-  case wire::SOURCE_RUNNING:
+  case SourceState::running:
     return {Severity::ok, "sources",
             fmt::format("{} is running, {:.1f} samples a second, {} readers{}", subject,
-                        source.status->rate_hz(), source.status->matched_readers(),
-                        reason_of(source))};
-  case wire::SOURCE_SILENT:
-    return {Severity::problem, "sources",
+                        source.rate_hz, source.matched_readers, reason_of(source))};
+  case SourceState::silent:
+    return {Severity::error, "sources",
             subject + " is silent; is its instrument on and connected?" + reason_of(source)};
-  case wire::SOURCE_ENDED:
+  case SourceState::ended:
     return {Severity::ok, "sources",
             subject + " has come to its end, as a recording does" + reason_of(source)};
-  case wire::SOURCE_FAILED:
+  case SourceState::failed:
     break;
   }
-  return {Severity::problem, "sources", subject + " has failed" + reason_of(source)};
+  return {Severity::error, "sources", subject + " has failed" + reason_of(source)};
 }
 
 void add_loss(const std::string& subject, std::uint64_t before, std::uint64_t now,
               const std::string& what, const std::string& advice, Findings& findings) {
   if (now > before) {
     findings.push_back(
-        {Severity::problem, "losses",
+        {Severity::error, "losses",
          fmt::format("{}: {} samples {} while I looked; {}", subject, now - before, what, advice)});
   } else if (now > 0) {
     findings.push_back({Severity::warning, "losses",
@@ -70,52 +69,44 @@ void add_loss(const std::string& subject, std::uint64_t before, std::uint64_t no
   }
 }
 
-Findings check_losses(const SourceKey& key, const ObservedSource& source) {
+Findings check_losses(const SourceKey& key, const Source& source) {
   Findings findings;
-  if (!source.status || !source.first_status) {
-    return findings;
-  }
-  const wire::SourceStatus& before = *source.first_status;
-  const wire::SourceStatus& now = *source.status;
+  const drivers::SampleCounts& before = source.first_counts;
+  const drivers::SampleCounts& now = source.counts;
   const std::string subject = name_of(key) + host_of(source);
-  add_loss(subject, before.lost_in_transit(), now.lost_in_transit(),
-           "were lost between device and service",
+  add_loss(subject, before.lost_on_way, now.lost_on_way, "were lost between device and service",
            "look at the network between them, and at 'buffers' of that host", findings);
-  add_loss(subject, before.lost_in_device(), now.lost_in_device(), "were lost in the device",
+  add_loss(subject, before.lost_in_device, now.lost_in_device, "were lost in the device",
            "reported by the device: lower its rate or see its manual", findings);
-  add_loss(subject, before.dropped_in_service(), now.dropped_in_service(),
+  add_loss(subject, source.first_dropped_in_service, source.dropped_in_service,
            "were dropped because the network did not take them",
            "a reader hangs or the network is slower than the source", findings);
-  if (now.buffer_fill() > full_buffer) {
+  if (source.buffer_fill > full_buffer) {
     findings.push_back({Severity::warning, "losses",
                         fmt::format("{}: its buffer is {:.0f} % full; a reader hangs or the "
                                     "network is slower than the source",
-                                    subject, now.buffer_fill() * 100.0)});
+                                    subject, source.buffer_fill * 100.0)});
   }
   return findings;
 }
 
-Findings check_twins(const SourceKey& key, const ObservedSource& source) {
-  if (!source.twins && source.writers.size() < 2) {
+Findings check_twins(const SourceKey& key, const Source& source) {
+  const bool take_turns = source.turns.twins();
+  if (!take_turns && source.services.size() < 2) {
     return {};
   }
-  return {{source.twins ? Severity::problem : Severity::warning, "twins",
+  return {{take_turns ? Severity::error : Severity::warning, "twins",
            fmt::format("two services publish source {}{}{}; end one of them, or give it another "
                        "name",
-                       name_of(key), source.writers.empty() ? "" : ": ",
-                       fmt::join(source.writers, " and "))}};
-}
-
-void append(Findings& findings, const Findings& more) {
-  findings.insert(findings.end(), more.begin(), more.end());
+                       name_of(key), source.services.empty() ? "" : ": ",
+                       fmt::join(source.services, " and "))}};
 }
 
 // Frequencies are held against half of the stated rate before a run.
-Findings check_rate(const SourceKey& key, const ObservedSource& source,
-                    const SourceSettings& settings) {
-  const bool is_running = source.status && source.status->state() == wire::SOURCE_RUNNING;
+Findings check_rate(const SourceKey& key, const Source& source, const SourceSettings& settings) {
+  const bool is_running = source.state == SourceState::running;
   const double stated_hz = settings.nominal_rate_hz.value_or(0.0);
-  const double rate_hz = is_running ? source.status->rate_hz() : 0.0;
+  const double rate_hz = is_running ? source.rate_hz : 0.0;
   if (!(stated_hz > 0.0) || !(rate_hz > 0.0) ||
       std::abs(rate_hz / stated_hz - 1.0) < rate_tolerance_rel) {
     return {};
@@ -134,27 +125,23 @@ Findings check_against(const BenchFile& bench, const LaboratoryView& view) {
     const SourceKey key{bench.bench, settings.name};
     const auto found = view.sources.find(key);
     if (found == view.sources.end()) {
-      findings.push_back({Severity::problem, "bench file",
+      findings.push_back({Severity::error, "bench file",
                           fmt::format("source {} of {} is not on the network; is its service "
                                       "running with this bench file, in DDS domain {}?",
                                       name_of(key), bench.path.string(), view.domain)});
       continue;
     }
     append(findings, check_rate(key, found->second, settings));
-    if (!found->second.description) {
-      continue;
-    }
-    const wire::SourceDescription& description = *found->second.description;
+    const Source& source = found->second;
     if (const auto difference =
-            settings_difference(description.settings(), settings.origin.settings)) {
-      findings.push_back({Severity::problem, "bench file",
-                          refusal(*difference, key.first, key.second, description.host())});
-    } else if (!description.bench_file_sha256().empty() &&
-               description.bench_file_sha256() != bench.sha256) {
+            settings_difference(source.bench_file.settings, settings.origin.settings)) {
+      findings.push_back({Severity::error, "bench file",
+                          refusal(*difference, key.first, key.second, source.host)});
+    } else if (!source.bench_file.sha256.empty() && source.bench_file.sha256 != bench.sha256) {
       findings.push_back({Severity::ok, "bench file",
                           fmt::format("the service of {}{} has read another bench file, which says "
                                       "the same of this source",
-                                      name_of(key), host_of(found->second))});
+                                      name_of(key), host_of(source))});
     }
   }
   if (findings.empty()) {
@@ -170,8 +157,8 @@ Findings check_against(const BenchFile& bench, const LaboratoryView& view) {
 Findings check_files_of_benches(const LaboratoryView& view) {
   std::map<std::string, std::map<std::string, std::string>> files; // bench -> sha256 -> source
   for (const auto& [key, source] : view.sources) {
-    if (source.description && !source.description->bench_file_sha256().empty()) {
-      files[key.first].emplace(source.description->bench_file_sha256(), name_of(key));
+    if (!source.bench_file.sha256.empty()) {
+      files[key.first].emplace(source.bench_file.sha256, name_of(key));
     }
   }
   Findings findings;

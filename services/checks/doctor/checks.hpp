@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "services/base/finding.hpp"
 #include "services/bench/file/bench_file.hpp"
-#include "services/checks/doctor/finding.hpp"
 #include "services/checks/doctor/host_view.hpp"
 #include "services/checks/doctor/laboratory_view.hpp"
 

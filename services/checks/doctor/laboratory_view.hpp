@@ -10,32 +10,23 @@
 #include <utility>
 #include <vector>
 
-#include "idl/dyncal.h"
 #include "services/bus/discovery.hpp"
 #include "services/bus/host_clocks/clock_asker.hpp"
 #include "services/bus/host_clocks/link_meter.hpp"
+#include "services/network/bench.hpp"
 
 namespace dyncal::inline checks::doctor {
 
-// A source, by what it publishes of itself.
-struct ObservedSource {
-  std::optional<wire::SourceDescription> description; // the newest
-  std::optional<wire::SourceStatus> first_status;     // since the doctor looks
-  std::optional<wire::SourceStatus> status;           // the newest
-  std::set<std::string> writers; // hosts and processes that describe it, "lab-2:4711"
-  bool twins = false;            // two services take turns as this source
-};
-
 struct LaboratoryView {
-  using SourceKey = std::pair<std::string, std::string>; // bench, source
+  using Key = std::pair<std::string, std::string>; // bench; source or service
 
   int domain = 0;
   double seconds = 0.0; // for which was looked
   ProgramIdentity own;  // the doctor
-  std::map<SourceKey, ObservedSource> sources;
-  std::map<std::string, wire::ServiceStatus> analyses; // by their names, the newest of each
-  std::map<std::string, wire::ServiceStatus> guards;   // by bench and name, "acc-1 guard@lab-1:7"
-  std::vector<DiscoveredProgram> programs;             // that answer
+  std::map<Key, network::Source> sources;
+  std::map<std::string, network::Service> analyses; // by their names
+  std::map<Key, network::Service> guards;
+  std::vector<DiscoveredProgram> programs; // that answer
   std::vector<HostClock> clocks;
   std::vector<LinkLoss> losses; // one of each of the programs
   bus::Discovery discovery;

@@ -2,7 +2,6 @@
 // clock and sends it probes, and writes nothing else. Belongs to one thread.
 #pragma once
 
-#include <map>
 #include <memory>
 #include <string>
 
@@ -12,7 +11,7 @@
 #include "services/bus/host_clocks/clock_asker.hpp"
 #include "services/bus/host_clocks/link_meter.hpp"
 #include "services/checks/doctor/laboratory_view.hpp"
-#include "services/contract/duplicate_source_detector.hpp"
+#include "services/network/bus_state.hpp"
 
 namespace dyncal::inline checks::doctor {
 
@@ -28,29 +27,30 @@ public:
   [[nodiscard]] LaboratoryView view() const;
 
 private:
+  // Nothing of a laboratory is left out, however large.
+  static constexpr network::Limits limits{.benches = 1024, .sources = 1024, .services = 1024};
+
   struct Readers {
     bus::Reader<wire::SourceDescription> descriptions;
     bus::Reader<wire::SourceStatus> statuses;
-    bus::Reader<wire::ServiceStatus> analyses;
+    bus::Reader<wire::ServiceStatus> services;
   };
 
   LaboratoryWatch(bus::Participant& participant, ProgramIdentity own, bus::Clock& clock,
                   std::shared_ptr<bus::WakeUp> wake_up, Readers readers, ClockAsker asker,
                   LinkMeter meter)
       : participant_(participant), clock_(clock), wake_up_(std::move(wake_up)),
-        readers_(std::move(readers)), asker_(std::move(asker)), meter_(std::move(meter)) {
-    view_.own = std::move(own);
-  }
-  void take();
+        readers_(std::move(readers)), state_(clock, limits), asker_(std::move(asker)),
+        meter_(std::move(meter)), own_(std::move(own)) {}
 
   bus::Participant& participant_;
   bus::Clock& clock_;
   std::shared_ptr<bus::WakeUp> wake_up_;
   Readers readers_;
+  network::BusState state_;
   ClockAsker asker_;
   LinkMeter meter_;
-  LaboratoryView view_;
-  std::map<LaboratoryView::SourceKey, DuplicateSourceDetector> turns_;
+  ProgramIdentity own_;
 };
 
 } // namespace dyncal::inline checks::doctor

@@ -12,22 +12,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-std::string state_text(wire::SourceState state) {
-  switch (state) {
-  case wire::SOURCE_STARTING:
-    return "starting";
-  case wire::SOURCE_RUNNING:
-    return "running";
-  case wire::SOURCE_SILENT:
-    return "silent";
-  case wire::SOURCE_ENDED:
-    return "ended";
-  case wire::SOURCE_FAILED:
-    break;
-  }
-  return "failed";
-}
-
 ordered_json programs_json(const LaboratoryView& view) {
   ordered_json programs = ordered_json::array();
   for (const DiscoveredProgram& program : view.programs) {
@@ -72,25 +56,25 @@ ordered_json sources_json(const LaboratoryView& view) {
   for (const auto& [key, source] : view.sources) {
     ordered_json one{{"bench", key.first}, {"source", key.second}};
     if (source.description) {
-      one["host"] = source.description->host();
-      one["process_id"] = source.description->process_id();
-      one["device"] = source.description->device();
-      one["serial"] = source.description->serial();
-      one["software"] = source.description->software();
-      one["bench_file_sha256"] = source.description->bench_file_sha256();
+      one["host"] = source.host;
+      one["process_id"] = source.process_id;
+      one["device"] = source.description->device;
+      one["serial"] = source.description->serial;
+      one["software"] = source.software;
+      one["bench_file_sha256"] = source.bench_file.sha256;
     }
-    if (source.status) {
-      one["state"] = state_text(source.status->state());
-      one["message"] = source.status->message();
-      one["rate_hz"] = source.status->rate_hz();
-      one["received"] = source.status->received();
-      one["lost_in_device"] = source.status->lost_in_device();
-      one["lost_in_transit"] = source.status->lost_in_transit();
-      one["duplicates"] = source.status->duplicates();
-      one["rejected"] = source.status->rejected();
-      one["dropped_in_service"] = source.status->dropped_in_service();
-      one["buffer_fill"] = source.status->buffer_fill();
-      one["matched_readers"] = source.status->matched_readers();
+    if (source.state != network::SourceState::unknown) {
+      one["state"] = network::to_string(source.state);
+      one["message"] = source.message;
+      one["rate_hz"] = source.rate_hz;
+      one["received"] = source.counts.received;
+      one["lost_in_device"] = source.counts.lost_in_device;
+      one["lost_in_transit"] = source.counts.lost_on_way;
+      one["duplicates"] = source.counts.duplicates;
+      one["rejected"] = source.counts.rejected;
+      one["dropped_in_service"] = source.dropped_in_service;
+      one["buffer_fill"] = source.buffer_fill;
+      one["matched_readers"] = source.matched_readers;
     }
     sources.push_back(std::move(one));
   }
@@ -112,6 +96,11 @@ ordered_json participants_json(const LaboratoryView& view) {
   return participants;
 }
 
+// As scripts that watch know it: what has to be mended is a problem.
+const char* word_of(Severity severity) {
+  return severity == Severity::error ? "problem" : to_string(severity);
+}
+
 // Every text, regardless of who wrote it.
 void shorten(ordered_json& json) {
   if (json.is_string()) {
@@ -126,16 +115,9 @@ void shorten(ordered_json& json) {
 
 } // namespace
 
-Severity worst(const Findings& findings) {
-  Severity worst = Severity::ok;
-  for (const Finding& finding : findings) {
-    worst = std::max(worst, finding.severity);
-  }
-  return worst;
-}
-
 int exit_status(const Findings& findings) {
-  return static_cast<int>(worst(findings));
+  const Severity gravest = worst(findings);
+  return gravest >= Severity::error ? 2 : gravest >= Severity::warning ? 1 : 0;
 }
 
 std::string as_text(const Findings& findings) {
@@ -145,12 +127,12 @@ std::string as_text(const Findings& findings) {
   for (const Finding& finding : findings) {
     const bool ok = finding.severity == Severity::ok;
     warnings += finding.severity == Severity::warning ? 1 : 0;
-    problems += finding.severity == Severity::problem ? 1 : 0;
+    problems += finding.severity == Severity::error ? 1 : 0;
     text += fmt::format("{:<8} {:<11} {}\n",
                         ok                                      ? "ok"
                         : finding.severity == Severity::warning ? "WARNING"
                                                                 : "PROBLEM",
-                        finding.check, one_line(finding.sentence));
+                        finding.subject, one_line(finding.sentence));
   }
   return text + (warnings + problems == 0
                      ? "nothing is wrong\n"
@@ -161,11 +143,11 @@ std::string as_text(const Findings& findings) {
 ordered_json as_json(const Findings& findings, const LaboratoryView& view) {
   ordered_json list = ordered_json::array();
   for (const Finding& finding : findings) {
-    list.push_back({{"check", finding.check},
-                    {"severity", to_string(finding.severity)},
+    list.push_back({{"check", finding.subject},
+                    {"severity", word_of(finding.severity)},
                     {"sentence", finding.sentence}});
   }
-  ordered_json all{{"status", to_string(worst(findings))},
+  ordered_json all{{"status", word_of(worst(findings))},
                    {"domain", view.domain},
                    {"seconds", view.seconds},
                    {"host", view.own.host},

@@ -6,13 +6,10 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "services/checks/doctor/finding.hpp"
+#include "services/base/finding.hpp"
 #include "services/checks/doctor/laboratory_view.hpp"
 
 namespace dyncal::inline checks::doctor {
-
-// The gravest of all.
-[[nodiscard]] Severity worst(const Findings& findings);
 
 // 0 nothing is wrong, 1 warnings, 2 problems.
 [[nodiscard]] int exit_status(const Findings& findings);

@@ -16,8 +16,7 @@ namespace dyncal::inline programs {
 namespace {
 
 // One of no known family may keep what another program left in it without a word.
-void ask_generator(const bench_check::BenchView& view, bench_check::Findings& findings) {
-  using bench_check::Severity;
+void ask_generator(const bench_check::BenchView& view, Findings& findings) {
   const GeneratorSettings& generator = view.bench.generator;
   if (generator.driver != GeneratorDriver::scpi || view.refused("generator.address")) {
     return;
@@ -41,7 +40,7 @@ void ask_generator(const bench_check::BenchView& view, bench_check::Findings& fi
 
 int run_check(const CheckCommand& command) {
   std::vector<bench_check::BenchView> views;
-  bench_check::Findings findings;
+  Findings findings;
   {
     const WorkProgress progress("reading what the bench names");
     for (const std::filesystem::path& path : command.bench_files) {

@@ -16,13 +16,6 @@
 namespace dyncal::inline programs {
 namespace {
 
-using doctor::Findings;
-using doctor::Severity;
-
-void append(Findings& findings, const Findings& more) {
-  findings.insert(findings.end(), more.begin(), more.end());
-}
-
 Expected<std::optional<BenchFile>> read_bench(const DoctorCommand& command,
                                               NetworkOptions& network) {
   if (command.bench_file.empty()) {

@@ -12,8 +12,6 @@
 namespace dyncal::inline programs {
 namespace {
 
-using doctor::Severity;
-
 // Looks at the laboratory for as long as the command says.
 doctor::LaboratoryView look(doctor::LaboratoryWatch& watch, doctor::AnnouncementListener* listener,
                             double seconds, const std::stop_token& stop) {
@@ -37,7 +35,7 @@ doctor::LaboratoryView look(doctor::LaboratoryWatch& watch, doctor::Announcement
 
 // Null where multicast is not to be used, or cannot be; then a finding says so.
 std::optional<doctor::AnnouncementListener> open_listener(const NetworkOptions& network,
-                                                          doctor::Findings& findings) {
+                                                          Findings& findings) {
   if (network.no_multicast) {
     return std::nullopt;
   }

@@ -5,7 +5,7 @@
 #include <stop_token>
 #include <string>
 
-#include "services/checks/doctor/finding.hpp"
+#include "services/base/finding.hpp"
 #include "services/checks/doctor/host_view.hpp"
 #include "services/checks/doctor/laboratory_view.hpp"
 #include "services/daemon/program/program.hpp"
@@ -15,7 +15,7 @@ namespace dyncal::inline programs {
 struct LaboratoryLook {
   doctor::LaboratoryView view;
   doctor::HostView host;
-  doctor::Findings about_multicast; // that could not be listened for
+  Findings about_multicast; // that could not be listened for
 };
 
 // Hands the look over before it leaves the bus: Cyclone DDS waits at its end for a packet that it

@@ -21,7 +21,6 @@ using bus::Clock;
 using network::Bench;
 using network::BenchState;
 using network::Run;
-using network::Severity;
 
 constexpr std::size_t min_columns = 20;
 

@@ -100,13 +100,12 @@ std::string name_from(const std::filesystem::path& folder, const std::string& fi
   return relative.empty() || *relative.begin() == ".." ? absolute.string() : relative.string();
 }
 
-std::string texts_of(const bench_check::Findings& findings, bench_check::Severity severity,
-                     const BenchDraft& draft) {
+std::string texts_of(const Findings& findings, Severity severity, const BenchDraft& draft) {
   std::string texts;
-  for (const bench_check::Finding& finding : findings) {
+  for (const Finding& finding : findings) {
     if (finding.severity == severity) {
-      texts +=
-          (texts.empty() ? "" : "; ") + sentence_with_options(draft, finding.key, finding.sentence);
+      texts += (texts.empty() ? "" : "; ") +
+               sentence_with_options(draft, finding.subject, finding.sentence);
     }
   }
   return texts;
@@ -127,8 +126,8 @@ Expected<std::string> write_files(BenchDraft draft, const std::filesystem::path&
   }
   const std::string text = bench_draft::bench_text(draft, dbc_name);
   const std::vector<bench_check::BenchView> views{bench_check::look_at_bench_text(text, path)};
-  const bench_check::Findings findings = bench_check::check_benches(views);
-  const std::string errors = texts_of(findings, bench_check::Severity::error, draft);
+  const Findings findings = bench_check::check_benches(views);
+  const std::string errors = texts_of(findings, Severity::error, draft);
   auto written = errors.empty()
                      ? bench_draft::write_new_file(path, text)
                      : fail(ErrorCode::bad_argument,
@@ -137,7 +136,7 @@ Expected<std::string> write_files(BenchDraft draft, const std::filesystem::path&
     std::error_code ignored;
     std::filesystem::remove(dbc_path, ignored);
   }
-  return written.map([&] { return texts_of(findings, bench_check::Severity::warning, draft); });
+  return written.map([&] { return texts_of(findings, Severity::warning, draft); });
 }
 
 Expected<std::string> write_draft(BenchDraft draft, const std::filesystem::path& path) {

@@ -228,7 +228,7 @@ Expected<void> check_bench(const BenchFile& bench) {
     return {};
   }
   const auto& first = errors.front();
-  std::string sentence = BenchProblem{first.file, first.line, first.key, first.sentence}.text();
+  std::string sentence = BenchProblem{first.file, first.line, first.subject, first.sentence}.text();
   if (errors.size() > 1) {
     sentence += fmt::format(" (all {} errors: dyncal check {})", errors.size(), first.file);
   }

@@ -22,12 +22,13 @@ int run_verify(const VerifyCommand& command) {
   if (!findings) {
     return report_error(findings.error());
   }
-  for (const Finding& finding : *findings) {
+  for (const VerificationFinding& finding : *findings) {
     fmt::print("{:<10} {}: {}\n", to_string(finding.question), finding.holds ? "ok" : "FAILED",
                one_line(finding.sentence));
   }
-  const auto first = std::find_if(findings->begin(), findings->end(),
-                                  [](const Finding& finding) { return !finding.holds; });
+  const auto first =
+      std::find_if(findings->begin(), findings->end(),
+                   [](const VerificationFinding& finding) { return !finding.holds; });
   if (first == findings->end()) {
     fmt::print("{} is verified\n", command.certificate.string());
     return 0;

@@ -17,7 +17,7 @@ Expected<CertificateContents> write_certificate(const CertificateFileRequest& /*
   return not_in_this_build();
 }
 
-Expected<std::vector<Finding>> verify(const VerificationRequest& /*request*/) {
+Expected<std::vector<VerificationFinding>> verify(const VerificationRequest& /*request*/) {
   return not_in_this_build();
 }
 

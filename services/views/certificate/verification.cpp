@@ -17,11 +17,11 @@ namespace {
 
 constexpr std::uintmax_t max_certificate_bytes = 64U << 20U;
 
-Finding failed(Verification question, std::string sentence) {
+VerificationFinding failed(Verification question, std::string sentence) {
   return {question, false, std::move(sentence)};
 }
 
-Finding held(Verification question, std::string sentence) {
+VerificationFinding held(Verification question, std::string sentence) {
   return {question, true, std::move(sentence)};
 }
 
@@ -40,7 +40,7 @@ std::string declared(const XmlDocument& document, const std::string& type) {
   return "";
 }
 
-Finding check_schema(const VerificationRequest& request, const XmlDocument& document) {
+VerificationFinding check_schema(const VerificationRequest& request, const XmlDocument& document) {
   const std::string name = request.certificate.string();
   if (!document.root().is("digitalCalibrationCertificate", dcc_namespace)) {
     return failed(Verification::schema, fmt::format("{}: is XML, but not a digital calibration "
@@ -56,8 +56,8 @@ Finding check_schema(const VerificationRequest& request, const XmlDocument& docu
                : failed(Verification::schema, valid.error().message);
 }
 
-Finding check_trust(const VerificationRequest& request, const XmlDocument& document,
-                    const Signer& signer) {
+VerificationFinding check_trust(const VerificationRequest& request, const XmlDocument& document,
+                                const Signer& signer) {
   if (request.trusted.empty()) {
     return failed(
         Verification::signer,
@@ -73,7 +73,7 @@ Finding check_trust(const VerificationRequest& request, const XmlDocument& docum
 }
 
 void add_signature(const VerificationRequest& request, const XmlDocument& document,
-                   std::vector<Finding>& findings) {
+                   std::vector<VerificationFinding>& findings) {
   const auto signer = check_signature(document);
   if (!signer) {
     const bool is_unsigned = signer.error().code == SignatureProblem::not_signed;
@@ -107,7 +107,7 @@ Expected<StatedResults> results_of_run(const StoredResult& run,
   return *stated_results(*made.root().child("results"));
 }
 
-Finding check_numbers(const XmlDocument& document, const StoredResult& run) {
+VerificationFinding check_numbers(const XmlDocument& document, const StoredResult& run) {
   const auto results = document.root().descendants("results", dcc_namespace);
   const auto certificate = results.size() == 1 ? stated_results(results.front()) : std::nullopt;
   const auto channels = certificate ? channels_of(*certificate) : std::vector<std::string>();
@@ -152,9 +152,9 @@ const char* to_string(Verification question) {
   return "?";
 }
 
-Expected<std::vector<Finding>> verify(const VerificationRequest& request) {
+Expected<std::vector<VerificationFinding>> verify(const VerificationRequest& request) {
   DYNCAL_TRY(const auto text, read_whole_file(request.certificate, max_certificate_bytes));
-  std::vector<Finding> findings;
+  std::vector<VerificationFinding> findings;
   const auto document = XmlDocument::parse(text, request.certificate.string());
   if (!document) {
     findings.push_back(failed(Verification::readable, document.error().message));

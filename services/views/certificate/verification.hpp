@@ -23,7 +23,7 @@ enum class Verification {
   numbers = 8
 };
 
-struct Finding {
+struct VerificationFinding {
   Verification question = Verification::readable;
   bool holds = false;
   std::string sentence;
@@ -37,7 +37,7 @@ struct VerificationRequest {
 };
 
 // Fails (bad_file) when a file that is asked for cannot be read at all.
-[[nodiscard]] Expected<std::vector<Finding>> verify(const VerificationRequest& request);
+[[nodiscard]] Expected<std::vector<VerificationFinding>> verify(const VerificationRequest& request);
 
 // For people: "schema".
 [[nodiscard]] const char* to_string(Verification question);

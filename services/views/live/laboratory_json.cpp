@@ -14,7 +14,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using Instant = bus::Clock::Instant;
-using network::Severity;
 
 // Null: not known.
 Json milliseconds(std::int64_t utc_ns) {

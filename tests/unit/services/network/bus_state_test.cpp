@@ -257,6 +257,27 @@ TEST_F(BusStateTest, WarnsOfLossesForAWhile) {
   EXPECT_EQ(bench().lost(), 6U);
 }
 
+TEST_F(BusStateTest, CountsLossesOfARestartedSourceFromItsFirstStatus) {
+  laboratory_.take(status_of("acc-1", "dau"));
+  wire::SourceDescription description;
+  description.bench("acc-1");
+  description.source("dau");
+  description.session(8);
+  laboratory_.take(description); // before the status, as services do
+  wire::SourceStatus status = status_of("acc-1", "dau", wire::SOURCE_RUNNING, 5);
+  status.session(8);
+  laboratory_.take(status);
+  EXPECT_EQ(worst().severity, Severity::note) << "lost before we listened to this session";
+  const Source& dau = bench().sources.at("dau");
+  EXPECT_EQ(dau.first_counts.lost_on_way, 5U);
+  EXPECT_FALSE(dau.turns.twins()) << "a restart";
+  for (const std::uint64_t session : {7U, 8U, 7U}) {
+    status.session(session);
+    laboratory_.take(status);
+  }
+  EXPECT_TRUE(bench().sources.at("dau").turns.twins());
+}
+
 TEST_F(BusStateTest, ShowsWhatARecorderMisses) {
   wire::ServiceStatus status;
   status.bench("acc-1");

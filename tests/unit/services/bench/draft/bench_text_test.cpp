@@ -41,8 +41,7 @@ TEST(BenchText, EveryCombinationPassesTheCheckWithoutWarning) {
             bench_check::look_at_bench_text(text, folder.path() / "bench.toml")};
         const auto findings = bench_check::check_benches(views);
         for (const auto& finding : findings) {
-          EXPECT_EQ(finding.severity, bench_check::Severity::note)
-              << bench_check::as_text(findings) << text;
+          EXPECT_EQ(finding.severity, Severity::note) << bench_check::as_text(findings) << text;
         }
         EXPECT_EQ(views[0].bench.bench, "new-1");
         EXPECT_EQ(views[0].bench.excitation.frequencies_hz, draft.frequencies_hz);

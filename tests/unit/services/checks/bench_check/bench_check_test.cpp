@@ -28,7 +28,7 @@ void expect_one(const Findings& findings, Severity severity, std::size_t line,
   ASSERT_EQ(grave.size(), 1U) << all_of(findings);
   EXPECT_EQ(grave[0].severity, severity);
   EXPECT_EQ(grave[0].line, line) << all_of(findings);
-  EXPECT_EQ(grave[0].key, key);
+  EXPECT_EQ(grave[0].subject, key);
   EXPECT_THAT(grave[0].sentence, HasSubstr(part));
 }
 
@@ -67,7 +67,7 @@ TEST(BenchCheck, FileWithFiveFaultsTellsFive) {
   const auto errors = of(check_text(with(text, "level = 60.0", "level = 15.0")), Severity::error);
   std::vector<std::string> keys;
   for (const Finding& error : errors) {
-    keys.push_back(error.key);
+    keys.push_back(error.subject);
   }
   EXPECT_THAT(keys,
               testing::ElementsAre("excitation.frequencies_hz", "excitation.levl",
@@ -223,7 +223,7 @@ TEST(BenchCheck, TwoBenchesOfOneName) {
   std::vector<std::string> keys;
   for (const Finding& error : errors) {
     EXPECT_EQ(error.file, "b.toml");
-    keys.push_back(error.key);
+    keys.push_back(error.subject);
   }
   EXPECT_THAT(keys, testing::ElementsAre("bench", "generator.address", "sources.dau.sensor",
                                          "sources.acs.address"))
@@ -242,7 +242,7 @@ std::vector<std::string> errors_of_two(const std::string& first, const std::stri
   std::vector<std::string> keys;
   for (const Finding& error : of(check_benches(views), Severity::error)) {
     EXPECT_EQ(error.file, "b.toml");
-    keys.push_back(error.key);
+    keys.push_back(error.subject);
   }
   return keys;
 }
@@ -371,9 +371,9 @@ TEST_F(BenchCheckFiles, RolesOfAnotherQuantity) {
            "sync_acs = \"acs/sync\"", "sync_acs = \"acs/reference\"");
   const auto errors = of(check(swapped), Severity::error);
   ASSERT_EQ(errors.size(), 2U) << all_of(errors);
-  EXPECT_EQ(errors[0].key, "method.reference");
+  EXPECT_EQ(errors[0].subject, "method.reference");
   EXPECT_THAT(errors[0].sentence, HasSubstr("exchange reference and sync_acs (\"acs/reference\")"));
-  EXPECT_EQ(errors[1].key, "method.sync_acs");
+  EXPECT_EQ(errors[1].subject, "method.sync_acs");
   EXPECT_THAT(errors[1].sentence, HasSubstr("in m/s^2: an acceleration, where the voltage of the "
                                             "sync signal is expected"));
 }
@@ -400,8 +400,8 @@ TEST_F(BenchCheckFiles, WhatARunRefuses) {
   const Findings errors = errors_in(
       with(with(bench, "\"80\"", "\"500\""), "reference = \"m/s^2\"", "reference = \"V\""));
   ASSERT_EQ(errors.size(), 2U) << all_of(errors);
-  EXPECT_EQ(errors[0].key, "excitation.frequencies_hz");
-  EXPECT_EQ(errors[1].key, "method.reference");
+  EXPECT_EQ(errors[0].subject, "excitation.frequencies_hz");
+  EXPECT_EQ(errors[1].subject, "method.reference");
 }
 
 TEST(BenchCheck, UnitsOfInstrumentsAsTheBenchFileGivesThem) {
@@ -409,7 +409,7 @@ TEST(BenchCheck, UnitsOfInstrumentsAsTheBenchFileGivesThem) {
                                 "address = \"192.0.2.12:5026\"\nunits = { sync = \"m/s\" }");
   const auto errors = of(check_text(text), Severity::error);
   ASSERT_EQ(errors.size(), 1U);
-  EXPECT_EQ(errors[0].key, "method.sync_acs");
+  EXPECT_EQ(errors[0].subject, "method.sync_acs");
 }
 
 TEST_F(BenchCheckFiles, CorrectionsThatDoNotCoverTheExcitation) {
@@ -433,7 +433,7 @@ TEST_F(BenchCheckFiles, AbsoluteTimeNeedsStampsOfUtc) {
   text = with(text, "adc_delay_s = 1e-6\n", "");
   const auto errors = of(check(text), Severity::error);
   ASSERT_EQ(errors.size(), 2U) << all_of(errors);
-  EXPECT_EQ(errors[0].key, "sources.dau.time_base");
+  EXPECT_EQ(errors[0].subject, "sources.dau.time_base");
   EXPECT_EQ(errors[0].line, 5U);
   text = with(text, "path = \"dau.csv\"", "path = \"dau.csv\"\ntime_base = \"utc\"");
   expect_one(check(text), Severity::error, 10, "sources.acs.time_base", "compares stamps of UTC");

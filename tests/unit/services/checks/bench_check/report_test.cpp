@@ -8,8 +8,8 @@
 namespace dyncal::inline checks::bench_check {
 namespace {
 
-const Findings findings{{Severity::note, "a.toml", 3, "excitation", "has 3 steps"},
-                        {Severity::error, "a.toml", 7, "", "not valid TOML"}};
+const Findings findings{{Severity::note, "excitation", "has 3 steps", "a.toml", 3},
+                        {Severity::error, "", "not valid TOML", "a.toml", 7}};
 
 TEST(BenchCheckReport, OneLineAFinding) {
   EXPECT_EQ(as_text(findings), "a.toml:3: note: key 'excitation' has 3 steps\n"
@@ -20,10 +20,10 @@ TEST(BenchCheckReport, OneLineAFinding) {
 }
 
 TEST(BenchCheckReport, TextsMoveNoCursor) {
-  const Findings hostile{{Severity::error, "a.toml", 3,
+  const Findings hostile{{Severity::error,
                           "x\x1b[2J\n\xc2\x9b"
                           "2Jµ",
-                          "is not known"}};
+                          "is not known", "a.toml", 3}};
   EXPECT_EQ(as_text(hostile), "a.toml:3: error: key 'x?[2J??2Jµ' is not known\n"
                               "1 error, 0 warnings, 0 notes\n");
 }

@@ -21,12 +21,10 @@ protected:
     bench_.generator.driver = GeneratorDriver::scpi;
     bench_.generator.address = "192.0.2.7:5025";
   }
-  wire::ServiceStatus& add_guard(const std::string& bench, const std::string& generator) {
-    wire::ServiceStatus& guard = view_.guards[bench + " guard@lab-2:7"];
-    guard.bench(bench);
-    guard.service("guard@lab-2:7");
-    guard.host("lab-2");
-    guard.guarded_generator(generator);
+  network::Service& add_guard(const std::string& bench, const std::string& generator) {
+    network::Service& guard = view_.guards[{bench, "guard@lab-2:7"}];
+    guard.host = "lab-2";
+    guard.guarded_generator = generator;
     return guard;
   }
 
@@ -62,9 +60,9 @@ TEST_F(CheckGuards, TakesAnAddressOfTheLoopbackInterfaceForTheSame) {
 }
 
 TEST_F(CheckGuards, IsAlarmedByAnOutputThatMayBeOn) {
-  wire::ServiceStatus& guard = add_guard("acc-1", "192.0.2.7:5025");
-  guard.health(wire::HEALTH_FAILED);
-  guard.message("THE OUTPUT MAY BE ON");
+  network::Service& guard = add_guard("acc-1", "192.0.2.7:5025");
+  guard.health = network::Health::failed;
+  guard.message = "THE OUTPUT MAY BE ON";
   EXPECT_THAT(problems(check_guards(view_, std::nullopt)),
               ElementsAre("guards: bench acc-1: dyncal-guard on lab-2: THE OUTPUT MAY BE ON"));
 }

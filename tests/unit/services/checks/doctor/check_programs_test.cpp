@@ -70,29 +70,26 @@ TEST_F(CheckPrograms, NamesVersionsThatDiffer) {
 }
 
 TEST_F(CheckPrograms, NamesTheVersionThatAnAnalysisReports) {
-  wire::ServiceStatus status;
-  status.service("dyncal-analysis:9@lab-3");
-  status.host("lab-3");
-  status.process_id(9);
-  status.software("dyncal 0.1.0");
-  status.contract_version(wire::CONTRACT_VERSION);
-  view_.analyses["dyncal-analysis:9@lab-3"] = status;
+  network::Service& analysis = view_.analyses["dyncal-analysis:9@lab-3"];
+  analysis.software = "dyncal 0.1.0";
+  analysis.host = "lab-3";
+  analysis.process_id = 9;
+  analysis.contract_version = wire::CONTRACT_VERSION;
   EXPECT_THAT(warnings(check_programs(view_)),
               ElementsAre(HasSubstr("different versions: dyncal 0.1.0 (dyncal-analysis@lab-3)")));
 }
 
 TEST_F(CheckPrograms, NamesTheVersionThatASourceDescribes) {
-  wire::SourceDescription description;
-  description.host("lab-3");
-  description.process_id(9);
-  description.software("dyncal 0.1.0");
-  description.contract_version(wire::CONTRACT_VERSION);
-  view_.sources[{"acc-1", "dau"}].description = description;
+  network::Source& dau = view_.sources[{"acc-1", "dau"}];
+  dau.description.emplace();
+  dau.host = "lab-3";
+  dau.process_id = 9;
+  dau.software = "dyncal 0.1.0";
+  dau.contract_version = wire::CONTRACT_VERSION;
   EXPECT_THAT(warnings(check_programs(view_)),
               ElementsAre(HasSubstr("dyncal 0.1.0 (the source acc-1/dau@lab-3)")));
-  description.host("lab-2"); // of a program that answers
-  description.process_id(3);
-  view_.sources[{"acc-1", "dau"}].description = description;
+  dau.host = "lab-2"; // of a program that answers
+  dau.process_id = 3;
   EXPECT_THAT(warnings(check_programs(view_)),
               ElementsAre(HasSubstr("dyncal 0.1.0 (dyncal-acs@lab-2)")));
 }

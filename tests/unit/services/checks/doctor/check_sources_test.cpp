@@ -17,21 +17,13 @@ using tests::warnings;
 class CheckSources : public testing::Test {
 protected:
   CheckSources() {
-    wire::SourceDescription description;
-    description.host("lab-2");
-    description.process_id(7);
-    description.settings("sensor = \"1\"\n");
-    description.bench_file_sha256("aa");
-    wire::SourceStatus status;
-    status.state(wire::SOURCE_RUNNING);
-    status.rate_hz(1000.0);
-    dau() = {.description = description,
-             .first_status = status,
-             .status = status,
-             .writers = {"lab-2:7"},
-             .twins = false};
+    dau().host = "lab-2";
+    dau().bench_file = {"aa", "sensor = \"1\"\n"};
+    dau().services = {"lab-2:7"};
+    dau().state = network::SourceState::running;
+    dau().rate_hz = 1000.0;
   }
-  ObservedSource& dau() { return view_.sources[{"acc-1", "dau"}]; }
+  network::Source& dau() { return view_.sources[{"acc-1", "dau"}]; }
   [[nodiscard]] Findings check(const std::optional<BenchFile>& bench = std::nullopt) const {
     return check_sources(view_, bench);
   }
@@ -58,9 +50,9 @@ TEST_F(CheckSources, IsContentWithASourceThatRuns) {
 TEST_F(CheckSources, HoldsTheRateAgainstThatOfTheBenchFile) {
   BenchFile bench = bench_file("sensor = \"1\"\n");
   bench.sources.front().nominal_rate_hz = 1000.0;
-  dau().status->rate_hz(1011.0);
+  dau().rate_hz = 1011.0;
   EXPECT_THAT(warnings(check(bench)), IsEmpty());
-  dau().status->rate_hz(2000.0);
+  dau().rate_hz = 2000.0;
   EXPECT_THAT(warnings(check(bench)),
               ElementsAre(HasSubstr("source acc-1/dau sends 2000 samples a second, but its "
                                     "nominal_rate_hz is 1000")));
@@ -72,38 +64,40 @@ TEST_F(CheckSources, SaysThatThereIsNone) {
 }
 
 TEST_F(CheckSources, NamesASilentSourceWithItsOwnReason) {
-  dau().status->state(wire::SOURCE_SILENT);
-  dau().status->message("sensor 0x1 does not send");
+  dau().state = network::SourceState::silent;
+  dau().message = "sensor 0x1 does not send";
   EXPECT_THAT(problems(check()), ElementsAre(AllOf(HasSubstr("acc-1/dau on lab-2 is silent"),
                                                    HasSubstr("sensor 0x1 does not send"))));
 }
 
 TEST_F(CheckSources, NamesASourceWithoutStatus) {
-  dau().status.reset();
+  dau().state = network::SourceState::unknown;
   EXPECT_THAT(problems(check()), ElementsAre(HasSubstr("no status comes")));
 }
 
 TEST_F(CheckSources, TellsLossNowFromLossBefore) {
-  dau().first_status->lost_in_transit(3);
-  dau().status->lost_in_transit(3);
+  dau().first_counts.lost_on_way = 3;
+  dau().counts.lost_on_way = 3;
   EXPECT_THAT(warnings(check()), ElementsAre(HasSubstr("3 samples were lost between device and "
                                                        "service since its service was started")));
-  dau().status->lost_in_transit(5);
+  dau().counts.lost_on_way = 5;
   EXPECT_THAT(problems(check()), ElementsAre(HasSubstr("2 samples were lost between device and "
                                                        "service while I looked")));
-  dau().status->lost_in_transit(0);
-  dau().status->dropped_in_service(9);
+  dau().counts.lost_on_way = 0;
+  dau().dropped_in_service = 9;
   EXPECT_THAT(problems(check()), ElementsAre(HasSubstr("9 samples were dropped")));
 }
 
 TEST_F(CheckSources, NamesABufferThatFills) {
-  dau().status->buffer_fill(0.8);
+  dau().buffer_fill = 0.8;
   EXPECT_THAT(warnings(check()), ElementsAre(HasSubstr("its buffer is 80 % full")));
 }
 
 TEST_F(CheckSources, NamesTwinsAndWhereTheyAre) {
-  dau().twins = true;
-  dau().writers = {"lab-2:7", "lab-3:8"};
+  for (const std::uint64_t session : {1U, 2U, 1U, 2U}) {
+    dau().turns.add(session);
+  }
+  dau().services = {"lab-2:7", "lab-3:8"};
   EXPECT_THAT(problems(check()),
               ElementsAre("twins: two services publish source acc-1/dau: lab-2:7 and lab-3:8; end "
                           "one of them, or give it another name"));
@@ -125,9 +119,9 @@ TEST_F(CheckSources, ComparesWithTheBenchFile) {
 TEST_F(CheckSources, NamesServicesOfABenchThatReadDifferentFiles) {
   view_.sources[{"acc-1", "acs"}] = dau();
   view_.sources[{"acc-2", "acs"}] = dau();
-  view_.sources[{"acc-2", "acs"}].description->bench_file_sha256("cc");
+  view_.sources[{"acc-2", "acs"}].bench_file.sha256 = "cc";
   EXPECT_THAT(warnings(check()), IsEmpty());
-  view_.sources[{"acc-1", "acs"}].description->bench_file_sha256("bb");
+  view_.sources[{"acc-1", "acs"}].bench_file.sha256 = "bb";
   EXPECT_THAT(warnings(check()),
               ElementsAre(HasSubstr("services of bench acc-1 have read different bench files")));
 }

@@ -30,7 +30,7 @@ protected:
     statuses_.write(status);
     watch_->work();
   }
-  ObservedSource dau() { return watch_->view().sources[{"acc-1", "dau"}]; }
+  network::Source dau() { return watch_->view().sources[{"acc-1", "dau"}]; }
 
   bus::SteppedClock clock_;
   bus::MemoryNetwork network_{clock_};
@@ -54,12 +54,13 @@ TEST_F(LaboratoryWatchTest, KeepsTheFirstAndTheNewestStatusOfASource) {
   write_description(1, "lab-2");
   write_status(1, 3);
   write_status(1, 8);
-  EXPECT_EQ(dau().first_status->lost_in_transit(), 3U);
-  EXPECT_EQ(dau().status->lost_in_transit(), 8U);
-  EXPECT_EQ(dau().description->host(), "lab-2");
-  write_status(2, 0);
-  EXPECT_EQ(dau().first_status->lost_in_transit(), 0U) << "a new session counts anew";
-  EXPECT_FALSE(dau().twins) << "a service that was restarted";
+  EXPECT_EQ(dau().first_counts.lost_on_way, 3U);
+  EXPECT_EQ(dau().counts.lost_on_way, 8U);
+  EXPECT_EQ(dau().host, "lab-2");
+  write_description(2, "lab-2");
+  write_status(2, 4);
+  EXPECT_EQ(dau().first_counts.lost_on_way, 4U) << "a new session counts anew";
+  EXPECT_FALSE(dau().turns.twins()) << "a service that was restarted";
 }
 
 TEST_F(LaboratoryWatchTest, TellsGuardsAndRecordersFromAnalyses) {
@@ -80,7 +81,7 @@ TEST_F(LaboratoryWatchTest, TellsGuardsAndRecordersFromAnalyses) {
   watch_->work();
   const LaboratoryView view = watch_->view();
   ASSERT_EQ(view.guards.size(), 1U);
-  EXPECT_EQ(view.guards.begin()->first, "acc-1 guard@lab-2:7");
+  EXPECT_EQ(view.guards.begin()->first, LaboratoryView::Key("acc-1", "guard@lab-2:7"));
   ASSERT_EQ(view.analyses.size(), 1U);
   EXPECT_EQ(view.analyses.begin()->first, "analysis@lab-2:9");
 }
@@ -92,7 +93,7 @@ TEST_F(LaboratoryWatchTest, SeesTwins) {
     write_status(1);
     write_status(2);
   }
-  EXPECT_TRUE(dau().twins);
+  EXPECT_TRUE(dau().turns.twins());
 }
 
 TEST_F(LaboratoryWatchTest, SeesProgramsTheirClocksAndWhatIsLost) {

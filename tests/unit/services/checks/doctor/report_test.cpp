@@ -10,7 +10,7 @@ namespace {
 
 const Finding fine{Severity::ok, "disk", "100 MB are free"};
 const Finding warning{Severity::warning, "clocks", "the clock of lab-2 is far"};
-const Finding problem{Severity::problem, "sources", "source acc-1/dau is silent"};
+const Finding problem{Severity::error, "sources", "source acc-1/dau is silent"};
 
 TEST(DoctorReport, HasTheStatusOfTheGravestFinding) {
   EXPECT_EQ(exit_status({}), 0);
@@ -55,7 +55,7 @@ TEST(DoctorReport, HasAllOfItAsJson) {
                   .sent = 200,
                   .echoed = 150},
                  {.answers_probes = true, .sent = 3, .echoed = 1}};
-  view.sources[{"acc-1", "dau"}].status.emplace().state(wire::SOURCE_SILENT);
+  view.sources[{"acc-1", "dau"}].state = network::SourceState::silent;
   view.discovery.participants = {{"0110", "dyncal-acs", "Cyclone DDS"}};
   view.announced_by_multicast.emplace();
   const auto json = as_json({problem, fine}, view);
