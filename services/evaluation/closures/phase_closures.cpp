@@ -34,21 +34,22 @@ Closure line(const analysis::GroupDelay& delay) {
                                           : ""));
 }
 
+// An alternative makes no phase wrong, but which delay it is nobody can tell.
 Closure alternatives(const analysis::GroupDelay& delay) {
+  constexpr auto kind = ClosureKind::delay_alternatives;
   const auto nearest = std::min_element(
       delay.alternatives_s.begin(), delay.alternatives_s.end(), [&](double a, double b) {
         return std::abs(a - delay.delay_s) < std::abs(b - delay.delay_s);
       });
   if (nearest == delay.alternatives_s.end()) {
-    return judged(ClosureKind::delay_alternatives, "", 0.0, 0.0, 0.0, "1",
+    return judged(kind, "", 0.0, 0.0, 0.0, "1",
                   "no other delay that a sensor may have fits as well");
   }
-  return judged(ClosureKind::delay_alternatives, "",
-                static_cast<double>(delay.alternatives_s.size()), 0.0, 0.0, "1",
-                fmt::format("{:.6g} ms fit as well as {:.6g} ms: add a frequency less than {:.3g} "
-                            "Hz from another one",
-                            1e3 * *nearest, 1e3 * delay.delay_s,
-                            1.0 / std::abs(*nearest - delay.delay_s)));
+  return not_possible(
+      kind, "",
+      fmt::format("{:.6g} ms fit as well as {:.6g} ms: a frequency less than {:.3g} "
+                  "Hz from another one would tell",
+                  1e3 * *nearest, 1e3 * delay.delay_s, 1.0 / std::abs(*nearest - delay.delay_s)));
 }
 
 Closure at_zero(const ChannelRun& run, const analysis::GroupDelay& delay, bool is_line) {
