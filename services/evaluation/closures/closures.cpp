@@ -42,7 +42,7 @@ void append(std::vector<Closure> more, std::vector<Closure>& all) {
 
 void add_flag(const std::vector<Closure>& closures, std::vector<Flag>& flags) {
   for (const Closure& closure : closures) {
-    if (is_open(closure)) {
+    if (casts_doubt(closure)) {
       flags.push_back(flag_with_reason(ResultFlag::closure_open, closure.sentence));
     }
   }

@@ -58,8 +58,8 @@ bool is_open(const Closure& closure) {
   return closure.verdict == Verdict::open;
 }
 
-bool has_open(const std::vector<Closure>& closures) {
-  return std::any_of(closures.begin(), closures.end(), is_open);
+bool casts_doubt(const Closure& closure) {
+  return is_open(closure) && closure.kind != ClosureKind::delay_fit;
 }
 
 } // namespace dyncal::inline evaluation

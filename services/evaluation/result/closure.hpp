@@ -50,6 +50,8 @@ struct Closure {
 [[nodiscard]] std::string_view to_string(Verdict verdict);
 
 [[nodiscard]] bool is_open(const Closure& closure);
-[[nodiscard]] bool has_open(const std::vector<Closure>& closures);
+// Whether its open verdict says that values may be wrong. Not so of phases that lie on no line, as
+// near a resonance: they are right, and the delay is not stated (flag group_delay_not_constant).
+[[nodiscard]] bool casts_doubt(const Closure& closure);
 
 } // namespace dyncal::inline evaluation

@@ -162,7 +162,7 @@ struct StoredResult {
   [[nodiscard]] std::vector<StoredValue> values_of(const std::string& channel) const;
   [[nodiscard]] std::vector<StoredPoint> points_of(const std::string& channel) const;
   [[nodiscard]] std::vector<Closure> closures_of(const std::string& channel) const;
-  // "dau/x: phase towards 0 Hz: ..." for each that is open.
+  // "dau/x: phase towards 0 Hz: ..." for each that is open and casts doubt on values.
   [[nodiscard]] std::vector<std::string>
   open_closures(const std::vector<std::string>& channels) const;
   [[nodiscard]] std::vector<StoredPoint> points_of(const std::vector<std::string>& names) const;
