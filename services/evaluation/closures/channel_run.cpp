@@ -56,6 +56,7 @@ std::vector<PointRepetitions> points_of(const ChannelRun& run) {
     point.values.push_back(value_of(*result));
   }
   std::vector<PointRepetitions> all;
+  all.reserve(points.size());
   for (auto& [key, point] : points) {
     all.push_back(std::move(point));
   }

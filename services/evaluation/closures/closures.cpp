@@ -71,6 +71,7 @@ std::vector<StepResult> add_closures(const DescribedRun& described,
                                      std::span<const StepResult> results,
                                      std::vector<TransferFunction>& functions) {
   std::vector<ChannelRun> runs;
+  runs.reserve(functions.size());
   for (const TransferFunction& function : functions) {
     runs.push_back(run_of(described, results, function));
   }

@@ -45,7 +45,7 @@ void change_sync(StepResult& result, double rel) {
   }
 }
 
-const std::vector<Case>& cases() {
+const std::vector<Case>& cases_of_instruments() {
   static const std::vector<Case> all{
       {"clock off by 4590 ppm", ClosureKind::clock_rate,
        [](DrawnRun& run, std::mt19937& random) {
@@ -73,6 +73,12 @@ const std::vector<Case>& cases() {
        [](DrawnRun& run, std::mt19937& random) {
          any_step(run, random).samples.front().used -= 5 + random() % 50;
        }},
+  };
+  return all;
+}
+
+const std::vector<Case>& cases_of_sensors() {
+  static const std::vector<Case> all{
       {"one repetition inverted", ClosureKind::repetitions,
        [](DrawnRun& run, std::mt19937& random) {
          StepResult& result = any_step(run, random);
@@ -145,7 +151,8 @@ TEST_P(OpenClosure, IsFoundInNearlyEveryDraw) {
   EXPECT_GE(found, draws - 1);
 }
 
-INSTANTIATE_TEST_SUITE_P(Closures, OpenClosure, testing::ValuesIn(cases()));
+INSTANTIATE_TEST_SUITE_P(OfInstruments, OpenClosure, testing::ValuesIn(cases_of_instruments()));
+INSTANTIATE_TEST_SUITE_P(OfSensors, OpenClosure, testing::ValuesIn(cases_of_sensors()));
 
 TEST(Closures, CloseInCleanRuns) {
   constexpr unsigned draws = 300;

@@ -1,6 +1,7 @@
 #include "tests/unit/services/evaluation/closures/drawn_run.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -86,9 +87,10 @@ DrawnRun draw_run(unsigned seed, const DrawnOptions& options) {
   std::normal_distribution<double> normal;
   const Drawn drawn = draw(random);
   DrawnRun run{make_recipe(options), {}};
-  std::vector<std::pair<double, double>> mountings;
-  for (int sweep = 0; sweep < 3; ++sweep) {
-    mountings.emplace_back(drawn.mounting_rel * normal(random), drawn.mounting_s * normal(random));
+  std::array<std::pair<double, double>, 3> mountings;
+  for (auto& [rel, late_s] : mountings) {
+    rel = drawn.mounting_rel * normal(random);
+    late_s = drawn.mounting_s * normal(random);
   }
   constexpr double u_clock_rel = 1e-8;
   for (const RecipeStep& step : run.recipe.steps) {
