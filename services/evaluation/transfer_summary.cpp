@@ -9,6 +9,7 @@
 #include <fmt/core.h>
 
 #include "analysis/base/phasor.hpp"
+#include "services/evaluation/closures/channel_run.hpp"
 #include "services/evaluation/method/unstated_uncertainty.hpp"
 #include "services/evaluation/shared_phase_uncertainty.hpp"
 #include "services/evaluation/sweep_delay.hpp"
@@ -17,13 +18,6 @@ namespace dyncal::inline evaluation {
 namespace {
 
 constexpr double before_excitation = 3.0; // standard uncertainties of a group delay below 0
-
-analysis::Repetition repetition_of(const StepResult& result) {
-  analysis::Repetition repetition =
-      analysis::make_repetition(std::polar(result.magnitude, result.phase_rad), result.budget);
-  repetition.sweep = result.repetition;
-  return repetition;
-}
 
 std::vector<FrequencyPoint> mean_points(const std::vector<const StepResult*>& results) {
   std::map<std::pair<double, double>, std::vector<const StepResult*>> by_frequency_and_level;

@@ -38,10 +38,10 @@ bool ChannelRun::moves() const {
 }
 
 std::string source_of(const std::string& channel) {
-  return channel.substr(0, channel.find('/'));
+  return parse_channel_name(channel).value_or(ChannelName{}).source;
 }
 
-analysis::Repetition value_of(const StepResult& result) {
+analysis::Repetition repetition_of(const StepResult& result) {
   analysis::Repetition value =
       analysis::make_repetition(std::polar(result.magnitude, result.phase_rad), result.budget);
   value.sweep = result.repetition;
@@ -53,7 +53,7 @@ std::vector<PointRepetitions> points_of(const ChannelRun& run) {
   for (const StepResult* result : run.results) {
     PointRepetitions& point = points[{result->frequency_hz, result->level_m_s2}];
     point.results.push_back(result);
-    point.values.push_back(value_of(*result));
+    point.values.push_back(repetition_of(*result));
   }
   std::vector<PointRepetitions> all;
   all.reserve(points.size());

@@ -48,7 +48,7 @@ struct PointRepetitions { // of one frequency and level
 };
 // All points, those that were measured once as well.
 [[nodiscard]] std::vector<PointRepetitions> points_of(const ChannelRun& run);
-[[nodiscard]] analysis::Repetition value_of(const StepResult& result);
+[[nodiscard]] analysis::Repetition repetition_of(const StepResult& result);
 
 [[nodiscard]] Closure not_possible(ClosureKind kind, std::string subject, std::string why);
 // closes where |value| <= limit.

@@ -1,9 +1,7 @@
 #include "services/evaluation/closures/closures.hpp"
 
 #include <algorithm>
-#include <tuple>
-
-#include <fmt/core.h>
+#include <iterator>
 
 #include "services/evaluation/closures/clock_closures.hpp"
 #include "services/evaluation/closures/phase_closures.hpp"

@@ -5,9 +5,7 @@
 // channels (clocks, level) stands with each of them. Plain functions, any thread.
 #pragma once
 
-#include <cstdint>
 #include <functional>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>

@@ -6,17 +6,13 @@
 
 #include <fmt/core.h>
 
-#include "analysis/base/phasor.hpp"
+#include "services/evaluation/result/members.hpp"
 
 namespace dyncal::inline evaluation {
 namespace {
 
 constexpr double most_birge = 3.0; // as GroupDelay::is_constant
 constexpr const char* one_kind = R"(\one)";
-
-double degrees(double angle_rad) {
-  return angle_rad * (180.0 / std::numbers::pi);
-}
 
 Closure line(const analysis::GroupDelay& delay) {
   if (!(delay.degrees_of_freedom > 0.0)) {
@@ -64,7 +60,7 @@ Closure at_zero(const ChannelRun& run, const analysis::GroupDelay& delay, bool i
   const double limit = limit_by_chance(1) * delay.u_intercept_rad;
   return judged(kind, "", off, delay.u_intercept_rad, limit, "rad",
                 fmt::format("towards 0 Hz the phase tends to {:.4g} degrees (u {:.2g}){}",
-                            degrees(delay.intercept_rad), degrees(delay.u_intercept_rad),
+                            degrees_of(delay.intercept_rad), degrees_of(delay.u_intercept_rad),
                             std::abs(off) > limit
                                 ? ", where 0 or 180 is expected: look at couplings and high-pass "
                                   "filters, and at the reference's phase"
@@ -89,7 +85,7 @@ double half_interval_s(const ChannelRun& run) {
 }
 
 double step_u_phase(const StepResult& result) {
-  return value_of(result).u_random_phase_rad;
+  return repetition_of(result).u_random_phase_rad;
 }
 
 } // namespace

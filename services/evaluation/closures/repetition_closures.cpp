@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <optional>
 
 #include <fmt/core.h>
 
 #include "analysis/base/statistics.hpp"
+#include "services/evaluation/result/members.hpp"
 
 namespace dyncal::inline evaluation {
 namespace {
@@ -17,6 +19,7 @@ constexpr double prior_freedom = 3.0;
 constexpr double efficiency_of_median = 0.37;
 // Of a normal deviate's absolute value.
 constexpr double median_of_absolute = 0.6745;
+constexpr double least_u = 1e-12; // of what no noise is stated for
 
 struct Difference { // of one repetition from another, in standard uncertainties
   double magnitude = 0.0;
@@ -29,10 +32,17 @@ std::complex<double> log_ratio(const analysis::Repetition& one, const analysis::
   return std::log(one.h / other.h);
 }
 
+// A value without noise is known to the rounding of its fit; one of no length has no ratio.
 Difference difference(const analysis::Repetition& one, const analysis::Repetition& other) {
+  if (!(std::abs(one.h) > 0.0 && std::abs(other.h) > 0.0)) {
+    return {one.h == other.h ? 0.0 : std::numeric_limits<double>::infinity(), 0.0};
+  }
   const std::complex<double> d = log_ratio(one, other);
-  return {std::abs(d.real()) / std::hypot(one.u_random_magnitude_rel, other.u_random_magnitude_rel),
-          std::abs(d.imag()) / std::hypot(one.u_random_phase_rad, other.u_random_phase_rad)};
+  const auto in_u = [](double value, double u_one, double u_other) {
+    return std::abs(value) / std::max(least_u, std::hypot(u_one, u_other));
+  };
+  return {in_u(d.real(), one.u_random_magnitude_rel, other.u_random_magnitude_rel),
+          in_u(d.imag(), one.u_random_phase_rad, other.u_random_phase_rad)};
 }
 
 // That to which the others are nearest.
@@ -91,7 +101,7 @@ std::string what_is_off(const Compared& one) {
   return fmt::format("at {} Hz repetition {} has {:.4g} times the magnitude of repetition {} and "
                      "is turned by {:.3g} degrees against it",
                      result.frequency_text_hz, result.repetition, std::exp(d.real()),
-                     one.point->results[one.middle]->repetition, d.imag() * 57.29577951308232);
+                     one.point->results[one.middle]->repetition, degrees_of(d.imag()));
 }
 
 void add_agreement(const std::vector<Compared>& all, RepetitionClosures& result) {
@@ -103,8 +113,8 @@ void add_agreement(const std::vector<Compared>& all, RepetitionClosures& result)
   const Difference s = usual(all);
   const double freedom = prior_freedom + efficiency_of_median * static_cast<double>(all.size());
   const double limit = limit_by_chance(2 * all.size(), freedom);
-  const Compared* worst = nullptr;
-  double largest = -1.0;
+  const Compared* worst = &all.front();
+  double largest = 0.0;
   for (const Compared& one : all) {
     const double z = Difference{one.z.magnitude / s.magnitude, one.z.phase / s.phase}.larger();
     if (z > limit) {
@@ -202,7 +212,7 @@ Closure first_again(const ChannelRun& run, const std::vector<Compared>& all) {
                         planned ? "the first or the last step has no value"
                                 : "the plan does not end with its first point (repeat_first)");
   }
-  const analysis::Repetition before = value_of(first), behind = value_of(last);
+  const analysis::Repetition before = repetition_of(first), behind = repetition_of(last);
   const std::complex<double> d = log_ratio(behind, before);
   const Difference z = difference(behind, before);
   const Difference s = all.empty() ? Difference{1.0, 1.0} : usual(all);
@@ -227,6 +237,13 @@ Closure first_again(const ChannelRun& run, const std::vector<Compared>& all) {
 } // namespace
 
 RepetitionClosures repetition_closures(const ChannelRun& run) {
+  if (!run.moves()) {
+    const std::string why = "the channel hardly follows the excitation";
+    return {{not_possible(ClosureKind::repetitions, "", why),
+             not_possible(ClosureKind::repetition_scatter, "", why),
+             not_possible(ClosureKind::first_repeated, "", why)},
+            {}};
+  }
   const std::vector<PointRepetitions> points = points_of(run);
   const std::vector<Compared> all = compared(points);
   RepetitionClosures result;

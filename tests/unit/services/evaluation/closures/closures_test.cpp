@@ -192,11 +192,33 @@ TEST(Closures, OfAChannelThatHardlyMovesAreNotPossible) {
     result.budget.front().u_magnitude_rel = result.budget.front().u_phase_rad = 1.0;
   }
   for (const Closure& closure : run.closures()) {
-    if (closure.kind >= ClosureKind::delay_fit) {
+    if (closure.kind >= ClosureKind::repetitions) {
       EXPECT_EQ(closure.verdict, Verdict::not_possible) << closure.sentence;
     }
     EXPECT_NE(closure.verdict, Verdict::open) << closure.sentence;
   }
+}
+
+// As of an ideal record: no noise at all, or nothing of the signal.
+TEST(Closures, OfValuesWithoutNoiseOrLengthCloseOrAreNotPossible) {
+  for (const double magnitude : {1.0, 0.0}) {
+    DrawnRun run = draw_run(5);
+    for (StepResult& result : run.results) {
+      result.magnitude = magnitude;
+      result.u_magnitude = result.u_phase_rad = 0.0;
+      result.phase_rad = 0.0;
+      result.budget.front().u_magnitude_rel = result.budget.front().u_phase_rad = 0.0;
+    }
+    const auto closures = run.closures();
+    EXPECT_FALSE(closures.empty());
+    for (const Closure& closure : closures) {
+      EXPECT_NE(closure.verdict, Verdict::open) << closure.sentence;
+    }
+  }
+  DrawnRun run = draw_run(5);
+  run.results[8].magnitude = 0.0; // one repetition alone
+  const auto open = open_of(run);
+  EXPECT_NE(std::find(open.begin(), open.end(), ClosureKind::repetitions), open.end());
 }
 
 TEST(Closures, KindsHaveNamesThatAreReadBack) {
