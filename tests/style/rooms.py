@@ -2,9 +2,10 @@
 """Holds includes, room sizes and READMEs of analysis/, drivers/ and services/ against the plan
 below. A room is a folder.
 
-    rooms.py arrows    what includes what
-    rooms.py sizes     no room outgrows its tree
-    rooms.py readmes   every room opens with a README
+    rooms.py arrows      what includes what
+    rooms.py namespaces  a namespace a wing of services/
+    rooms.py sizes       no room outgrows its tree
+    rooms.py readmes     every room opens with a README
 """
 
 import collections
@@ -87,6 +88,12 @@ OTHER_END = {"virtual_bench/can": "can"}
 # DDS vendors and their encoders.
 VENDOR = re.compile(r"(fastdds|fastrtps|fastcdr|dds|ddsc|idl/dyncalPubSub)(/|\b.*\.h)")
 VENDOR_ROOM = "services/bus"
+# Where a wing's file opens another namespace than its wing's.
+OTHER_NAMESPACES = {
+    "services/bus/host_clocks/": "host_clocks",
+    "services/contract/topics.hpp": "bus",  # which is named by every writer and reader
+}
+NAMESPACE = re.compile(r"^namespace dyncal::(?:inline )?(\w+)[\w: ]* \{", re.M)
 # Rooms that may be more than this part of their tree.
 LARGEST_PART = 0.20
 LARGE_ROOMS = ["analysis/sine", "services/evaluation"]
@@ -195,6 +202,24 @@ def lines_of_rooms():
     return lines
 
 
+def check_namespaces():
+    findings = []
+    wings = {wing for floor_of_wings in FLOORS["services"] for wing in floor_of_wings}
+    checked = 0
+    for path in files():
+        wing = str(path).split("/")[1]
+        if path.parts[0] != "services" or path.name == "main.cpp" or path.suffix in (".c", ".h"):
+            continue
+        checked += 1
+        expected = {wing}
+        expected |= {n for start, n in OTHER_NAMESPACES.items() if str(path).startswith(start)}
+        opened = set(NAMESPACE.findall((TOP / path).read_text()))
+        # That of the wire, and the bus's, hold what is specialised for a wing's own types.
+        if not opened & expected or opened & wings - expected - {"bus"}:
+            findings.append(f"{path}: opens {sorted(opened)}, not dyncal::{wing}")
+    conclude(findings, f"of {checked} files in another namespace than their wing's")
+
+
 def check_sizes():
     lines = lines_of_rooms()
     trees = collections.Counter()
@@ -234,4 +259,10 @@ def check_readmes():
 
 
 if __name__ == "__main__":
-    {"arrows": check_arrows, "sizes": check_sizes, "readmes": check_readmes}[sys.argv[1]]()
+    checks = {
+        "arrows": check_arrows,
+        "namespaces": check_namespaces,
+        "sizes": check_sizes,
+        "readmes": check_readmes,
+    }
+    checks[sys.argv[1]]()
