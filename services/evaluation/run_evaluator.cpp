@@ -2,15 +2,11 @@
 
 #include <algorithm>
 #include <limits>
-#include <set>
 #include <utility>
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
-#include "services/contract/role_quantities.hpp"
 #include "services/evaluation/closures/closures.hpp"
 #include "services/evaluation/method/monte_carlo_check.hpp"
+#include "services/evaluation/record/described_source.hpp"
 #include "services/evaluation/record/step_temperature.hpp"
 
 namespace dyncal::inline evaluation {
@@ -60,7 +56,10 @@ Expected<void> RunEvaluator::describe(const std::string& source,
   }
   auto before = record->described() ? std::optional(record->description()) : std::nullopt;
   record->describe(std::move(description));
-  if (auto checked = check_description(*record); !checked) {
+  const auto checked = check_source(*recipe_, records_, *record).and_then([&] {
+    return method_->check_time_scales(records_);
+  });
+  if (!checked) {
     if (before) {
       record->describe(std::move(*before));
     }
@@ -68,80 +67,12 @@ Expected<void> RunEvaluator::describe(const std::string& source,
   }
   ahead_.reset();
   if (!recipe_->dut().empty()) { // else all channels are under calibration
-    keep_needed_channels(*record);
+    keep_needed_channels(*recipe_, *record);
   }
   if (clock_ && clock_->source() == source) {
     clock_->describe(record->description());
   }
   return {};
-}
-
-Expected<void> RunEvaluator::check_description(const SourceRecord& source) const {
-  if (auto checked = check_channels(source); !checked) {
-    return checked;
-  }
-  if (auto checked = check_frequencies(source); !checked) {
-    return checked;
-  }
-  return method_->check_time_scales(records_);
-}
-
-Expected<void> RunEvaluator::check_channels(const SourceRecord& source) const {
-  for (const ChannelName& name : recipe_->channels()) {
-    if (name.source == source.source() && !source.channel(name.channel)) {
-      std::vector<std::string> there;
-      for (const drivers::ChannelDescription& channel : source.description().channels) {
-        there.push_back(channel.name);
-      }
-      return fail(ErrorCode::no_source,
-                  fmt::format("source '{}' has no channel '{}'; it has: {}", name.source,
-                              name.channel, fmt::join(there, ", ")));
-    }
-  }
-  return check_quantities();
-}
-
-// Of the channels that are described so far: the last source to describe itself completes them.
-Expected<void> RunEvaluator::check_quantities() const {
-  const auto described =
-      [&](const ChannelName& name) -> std::optional<drivers::ChannelDescription> {
-    const SourceRecord& record = records_.of(name.source);
-    const auto channel = record.described() ? record.channel(name.channel) : std::nullopt;
-    return channel ? std::optional(record.description().channels[*channel]) : std::nullopt;
-  };
-  const auto problems = find_quantity_problems(role_names(*recipe_), described);
-  return problems.empty() ? Expected<void>{}
-                          : fail(ErrorCode::no_source, fmt::format("{} {}", problems.front().role,
-                                                                   problems.front().sentence));
-}
-
-// A sine at or above half the sample rate looks like one of another frequency.
-Expected<void> RunEvaluator::check_frequencies(const SourceRecord& source) const {
-  const double rate_hz = source.description().nominal_rate_hz;
-  if (rate_hz <= 0.0) {
-    return {}; // not known before samples come
-  }
-  for (const RecipeStep& step : recipe_->steps) {
-    if (step.frequency.hz() >= 0.5 * rate_hz) {
-      return fail(ErrorCode::no_source,
-                  fmt::format("step {} has {} Hz, but source '{}' takes {:.6g} samples a second, "
-                              "which show frequencies below {:.6g} Hz only: take the step out of "
-                              "the bench file, or set the source to a higher rate",
-                              step.step, step.frequency_text_hz, source.source(), rate_hz,
-                              0.5 * rate_hz));
-    }
-  }
-  return {};
-}
-
-void RunEvaluator::keep_needed_channels(SourceRecord& source) const {
-  std::set<std::size_t> columns;
-  for (const ChannelName& name : recipe_->channels()) {
-    if (name.source == source.source()) {
-      columns.insert(*source.channel(name.channel));
-    }
-  }
-  source.keep_only(std::move(columns));
 }
 
 void RunEvaluator::add(const std::string& source, const SourceBlock& block,

@@ -155,11 +155,6 @@ public:
   [[nodiscard]] bool is_given_up() const { return given_up_.stop_requested(); }
 
 private:
-  [[nodiscard]] Expected<void> check_description(const SourceRecord& source) const;
-  [[nodiscard]] Expected<void> check_channels(const SourceRecord& source) const;
-  [[nodiscard]] Expected<void> check_quantities() const;
-  [[nodiscard]] Expected<void> check_frequencies(const SourceRecord& source) const;
-  void keep_needed_channels(SourceRecord& source) const;
   [[nodiscard]] bool is_evaluated(const TriggeredRecord& record) const;
   [[nodiscard]] bool has_all_steps() const;
   [[nodiscard]] std::optional<double> temperature_of_step(std::size_t step) const;

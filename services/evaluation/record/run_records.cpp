@@ -44,12 +44,8 @@ const SourceRecord& RunRecords::of(const std::string& source) const {
 }
 
 std::vector<std::string> RunRecords::undescribed() const {
-  std::vector<std::string> names;
-  for (const auto& [name, source] : records_) {
-    if (!source->described()) {
-      names.push_back(name);
-    }
-  }
+  std::vector<std::string> names = sources();
+  std::erase_if(names, [&](const std::string& name) { return of(name).described(); });
   return names;
 }
 
@@ -340,9 +336,9 @@ std::string RunRecords::when_missing(std::size_t step, const std::string& channe
 }
 
 TimeInterval RunRecords::where_missing(const std::string& source, std::size_t step) const {
+  using Limits = std::numeric_limits<std::int64_t>;
   const auto search = search_of(source);
-  return search == searches_.end() ? TimeInterval{std::numeric_limits<std::int64_t>::min(),
-                                                  std::numeric_limits<std::int64_t>::max()}
+  return search == searches_.end() ? TimeInterval{Limits::min(), Limits::max()}
                                    : search->steps.where_missing(step);
 }
 
@@ -364,9 +360,8 @@ bool RunRecords::is_uncertain(std::size_t step) const {
 
 std::shared_ptr<const SourceRecord> RunRecords::part_of(const SourceRecord& whole,
                                                         const TimeInterval& interval) const {
-  return copies_
-             ? std::make_shared<const SourceRecord>(whole.part(interval))
-             : std::shared_ptr<const SourceRecord>(std::shared_ptr<const SourceRecord>(), &whole);
+  using Part = std::shared_ptr<const SourceRecord>;
+  return copies_ ? std::make_shared<const SourceRecord>(whole.part(interval)) : Part({}, &whole);
 }
 
 SourceInterval RunRecords::samples(const std::string& source, const TimeInterval& interval) const {
