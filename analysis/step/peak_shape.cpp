@@ -85,6 +85,14 @@ std::vector<Excess> excess_of(const SineShape& sensor, const SineShape& referenc
   return excess;
 }
 
+double chi_squared_of(const std::vector<Excess>& excess) {
+  double sum = 0.0;
+  for (const Excess& one : excess) {
+    sum += std::norm(one.value / one.u);
+  }
+  return sum;
+}
+
 struct Match {
   BentPeaks peaks;
   double gain = 0.0; // of chi-squared
@@ -153,10 +161,7 @@ Match best_match(const std::vector<Excess>& excess, std::span<const double> widt
 
 BentPeaks judged(const std::vector<Excess>& excess, std::span<const double> widths = widths_rad,
                  double least_explained = explained) {
-  double all = 0.0;
-  for (const Excess& one : excess) {
-    all += std::norm(one.value / one.u);
-  }
+  const double all = chi_squared_of(excess);
   Match best = best_match(excess, widths);
   const double noise = 2.0 * static_cast<double>(excess.size());
   BentPeaks& peaks = best.peaks;
@@ -227,6 +232,24 @@ BentPeaks bent_reference(const SineShape& sensor, const SineShape& reference) {
   return peaks.amplitude_error_rel < 0.0 ? peaks : BentPeaks{};
 }
 
+SineShape derivative_of(SineShape shape, int order) {
+  if (order == 0) {
+    return shape;
+  }
+  for (ShapeHarmonic& one : shape.harmonics) {
+    const double larger = std::pow(one.order, order);
+    one.relative *= std::polar(larger, 0.5 * std::numbers::pi * order * (1 - one.order));
+    one.u = std::hypot(one.u, shape.steps_rel) * larger;
+  }
+  shape.steps_rel = 0.0;
+  return shape;
+}
+
+double unexplained(const SineShape& sensor, const SineShape& reference, int derivative) {
+  const auto excess = excess_of(sensor, derivative_of(reference, derivative));
+  return chi_squared_of(excess) - best_match(excess, widths_rad).gain;
+}
+
 } // namespace
 
 std::vector<int> resolved_harmonics(double frequency_hz, double duration_s, double rate_hz) {
@@ -279,17 +302,30 @@ SineShape sine_shape(const Frequency& frequency, const PlainChannel& channel,
   return shape;
 }
 
-BentPeaks find_bent_peaks(const SineShape& sensor, const SineShape& reference) {
-  const std::vector<Excess> excess = excess_of(sensor, reference);
-  if (excess.size() < min_orders || sensor.periods < min_periods) {
+BentPeaks find_bent_peaks(const SineShape& sensor, const SineShape& reference,
+                          std::span<const int> derivatives) {
+  if (excess_of(sensor, reference).size() < min_orders || sensor.periods < min_periods) {
     return {};
   }
-  BentPeaks peaks = judged(excess);
-  if (peaks.found) {
-    peaks.of_either = (peaks.amplitude_error_rel > 0.0) != sensor_has_more(sensor, reference);
+  const int order =
+      *std::min_element(derivatives.begin(), derivatives.end(), [&](int one, int other) {
+        return unexplained(sensor, reference, one) < unexplained(sensor, reference, other);
+      });
+  // Both as the sensor would show them, and both as the reference would.
+  const SineShape reference_there = derivative_of(reference, order);
+  const SineShape sensor_here = derivative_of(sensor, -order);
+  BentPeaks peaks = judged(excess_of(sensor, reference_there));
+  if (peaks.found && peaks.amplitude_error_rel > 0.0) {
+    peaks.of_either = !sensor_has_more(sensor, reference_there);
     return peaks;
   }
-  const BentPeaks of_reference = bent_reference(sensor, reference);
+  BentPeaks of_reference = judged(excess_of(sensor_here, reference));
+  if (of_reference.found && of_reference.amplitude_error_rel < 0.0) {
+    of_reference.of_either = sensor_has_more(sensor_here, reference);
+    return of_reference;
+  }
+  of_reference = bent_reference(sensor_here, reference);
+  peaks.found = false;
   return of_reference.found ? of_reference : peaks;
 }
 

@@ -25,6 +25,7 @@
 // up to three times as much. Any thread.
 #pragma once
 
+#include <array>
 #include <complex>
 #include <cstdint>
 #include <span>
@@ -67,6 +68,10 @@ struct BentPeaks {
   bool of_either = false; // which of the two is bent, the orders do not tell
 };
 
-[[nodiscard]] BentPeaks find_bent_peaks(const SineShape& sensor, const SineShape& reference);
+// What the sensor reads may be any of these derivatives of what the reference reads.
+inline constexpr std::array same_quantity{0};
+inline constexpr std::array other_quantity{0, 1, -1, 2, -2, 3, -3};
+[[nodiscard]] BentPeaks find_bent_peaks(const SineShape& sensor, const SineShape& reference,
+                                        std::span<const int> derivatives = same_quantity);
 
 } // namespace dyncal::analysis

@@ -109,6 +109,12 @@ void check_peaks(const std::string& reference_name, const std::string& channel,
   }
 }
 
+// Which quantity a voltage stands for nobody says.
+std::span<const int> derivatives_of(const std::string& unit) {
+  return unit == R"(\one)" ? std::span<const int>(analysis::same_quantity)
+                           : std::span<const int>(analysis::other_quantity);
+}
+
 // The mean of every order that all shots show.
 analysis::SineShape mean_shape(std::span<const analysis::SineShape> shots) {
   analysis::SineShape mean = shots.front();
@@ -146,7 +152,8 @@ void check_shape(const analysis::ChannelFit& reference, const analysis::ChannelF
   check_stamps(sensor, u_magnitude_rel, u_phase_rad, result);
   if (reference.integrity && sensor.integrity) {
     check_peaks(reference.channel, sensor.channel,
-                analysis::find_bent_peaks(sensor.integrity->shape, reference.integrity->shape),
+                analysis::find_bent_peaks(sensor.integrity->shape, reference.integrity->shape,
+                                          derivatives_of(result.unit)),
                 result, !holds_values(sensor) && !holds_values(reference));
   }
 }
@@ -155,7 +162,9 @@ void check_shape_of_shots(const analysis::ChannelFit& reference, const std::stri
                           std::span<const analysis::SineShape> shots, StepResult& result) {
   if (result.valid && reference.integrity && !shots.empty()) {
     check_peaks(reference.channel, channel,
-                analysis::find_bent_peaks(mean_shape(shots), reference.integrity->shape), result);
+                analysis::find_bent_peaks(mean_shape(shots), reference.integrity->shape,
+                                          derivatives_of(result.unit)),
+                result);
   }
 }
 

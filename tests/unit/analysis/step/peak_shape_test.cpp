@@ -30,6 +30,7 @@ struct Channel {
   double seconds = 1.5;
   double modulated = 0.0; // of the level, at `by_hz`
   double by_hz = 3.3;
+  int derivative = 0; // of the motion that the reference reads
 };
 
 SineShape shape_of(const Channel& channel, double exciter_phase, std::mt19937_64& random) {
@@ -37,10 +38,12 @@ SineShape shape_of(const Channel& channel, double exciter_phase, std::mt19937_64
   const auto sine = [&](double t) {
     const double turn =
         2.0 * std::numbers::pi * channel.frequency_hz * t + exciter_phase - channel.delay_rad;
-    double value = std::sin(turn);
+    const double ahead = 0.5 * std::numbers::pi * channel.derivative;
+    double value = std::sin(turn + ahead);
     for (std::size_t k = 0; k < channel.harmonics.size(); ++k) {
       const double order = static_cast<double>(k + 2);
-      value += channel.harmonics[k] * std::sin(order * turn + 1.7 * order);
+      value += channel.harmonics[k] * std::pow(order, channel.derivative) *
+               std::sin(order * turn + 1.7 * order + ahead);
     }
     for (std::size_t k = 0; k < channel.own.size(); ++k) {
       const double order = static_cast<double>(k + 2);
@@ -266,6 +269,45 @@ TEST(PeakShape, ResponseThatFallsIsAllowedFor) {
             : 0;
   }
   EXPECT_EQ(found, 0);
+}
+
+// As a velocity coil beside a displacement: its harmonics are larger and turned, and no peak is
+// bent. Where one is, it is found in whatever the sensor reads.
+TEST(PeakShape, SensorOfAnotherQuantityIsNotBent) {
+  constexpr int runs = 60;
+  for (const int derivative : {-2, -1, 1, 2}) {
+    int needless = 0, of_one_kind = 0, found = 0, of_reference = 0;
+    for (unsigned run = 0; run < runs; ++run) {
+      std::mt19937_64 random(run + 300);
+      std::uniform_real_distribution<double> part(0.0, 1.0);
+      const double phase = 6.0 * part(random) - 3.0;
+      const Channel reference{.frequency_hz = 10.0 + 70.0 * part(random),
+                              .rate_hz = 5000.0,
+                              .delay_rad = 0.0,
+                              .harmonics = {0.03 * part(random), 0.02 * part(random)}};
+      Channel sensor = reference;
+      sensor.rate_hz = 1003.05;
+      sensor.delay_rad = 0.4;
+      sensor.derivative = derivative;
+      const SineShape whole = shape_of(sensor, phase, random);
+      const SineShape seen = shape_of(reference, phase, random);
+      needless += find_bent_peaks(whole, seen, other_quantity).found ? 1 : 0;
+      of_one_kind += find_bent_peaks(whole, seen).found ? 1 : 0;
+      sensor.upper = 0.9;
+      const BentPeaks bent = find_bent_peaks(shape_of(sensor, phase, random), seen, other_quantity);
+      found += bent.found ? 1 : 0;
+      Channel short_reference = reference;
+      short_reference.upper = 0.9;
+      of_reference +=
+          find_bent_peaks(whole, shape_of(short_reference, phase, random), other_quantity).found
+              ? 1
+              : 0;
+    }
+    EXPECT_LE(needless, 1) << derivative;
+    EXPECT_GE(of_one_kind, 1) << derivative; // what this case is about
+    EXPECT_GE(found, runs / 2) << derivative;
+    EXPECT_GE(of_reference, runs / 2) << derivative;
+  }
 }
 
 } // namespace
