@@ -64,6 +64,7 @@ Expected<Recipe> plan_recipe(const BenchFile& file, const std::string& run,
   recipe.whole_record = file.excitation.whole_record;
   recipe.frequency_search_rel = file.method.frequency_search_rel;
   recipe.clock_tolerance_rel = 1e-6 * file.method.clock_tolerance_ppm;
+  recipe.dut_phase = file.method.dut_phase;
   if (!file.method.mains_hz.empty()) {
     recipe.mains_hz = file.method.mains_hz;
   }

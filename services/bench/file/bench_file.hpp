@@ -22,6 +22,7 @@
 #include "services/bench/file/named_files.hpp"
 #include "services/bench/file/source_settings.hpp"
 #include "services/contract/channel_name.hpp"
+#include "services/contract/dut_phase.hpp"
 #include "services/contract/evaluation_method.hpp"
 
 namespace dyncal::inline bench {
@@ -72,6 +73,7 @@ struct MethodSettings {
   double frequency_search_rel = 1e-3; // how far the excitation may be from its nominal frequency;
                                       // 0: exactly there in both clocks
   double clock_tolerance_ppm = 200.0; // how right the crystals of ACS and DAU are
+  DutPhase dut_phase = DutPhase::delay;
 };
 
 enum class PhaseSign { lag, lead };

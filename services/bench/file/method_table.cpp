@@ -164,6 +164,10 @@ MethodSettings read_method(TomlTable table, const Sources& sources) {
   if (!(method.clock_tolerance_ppm > 0.0 && method.clock_tolerance_ppm <= 1e5)) {
     table.refuse("clock_tolerance_ppm", "must be above 0 and at most 100000");
   }
+  method.dut_phase =
+      parse_dut_phase(
+          table.one_of("dut_phase", {"delay", "delay-from-0", "delay-from-180", "any"}, "delay"))
+          .value_or(method.dut_phase);
   read_mains(table, method);
   table.finish();
   return method;

@@ -5,7 +5,8 @@
 //   kind = "series-timestamping"   reference, sync_acs, sync_dso, dut, shots = 5 (a step),
 //                                  trigger_phase_correction = true
 //   kind = "absolute-time"         reference, dut: stamped in UTC
-//   temperature, frequency_search_rel, mains_hz, clock_tolerance_ppm with every kind
+//   temperature, frequency_search_rel, mains_hz, clock_tolerance_ppm, dut_phase:
+//                                  with every kind
 #pragma once
 
 #include <vector>

@@ -41,6 +41,13 @@ std::string source_of(const std::string& channel) {
   return parse_channel_name(channel).value_or(ChannelName{}).source;
 }
 
+const StepResult* in_same_step(const StepResult& result, const ChannelRun& other) {
+  const auto found = std::find_if(other.results.begin(), other.results.end(), [&](const auto* one) {
+    return one->step == result.step && one->repetition == result.repetition;
+  });
+  return found == other.results.end() ? nullptr : *found;
+}
+
 analysis::Repetition repetition_of(const StepResult& result) {
   analysis::Repetition value =
       analysis::make_repetition(std::polar(result.magnitude, result.phase_rad), result.budget);

@@ -1,7 +1,7 @@
 // What closures look at: the results of one channel in the order in which they were excited, and
 // what was made of them; and how far chance may take a comparison.
 //
-// Every kind of closure may be open by chance in one run of 120 000, so that all of them together
+// Every kind of closure may be open by chance in one run of 130 000, so that all of them together
 // are in at most one of 10 000; kinds share that among their comparisons. Plain data and functions;
 // any thread.
 #pragma once
@@ -19,7 +19,7 @@
 
 namespace dyncal::inline evaluation {
 
-inline constexpr double chance_of_closure = 1e-4 / 12.0;
+inline constexpr double chance_of_closure = 1e-4 / 13.0;
 
 // Standard uncertainties that one of `comparisons` exceeds by chance, of Student's distribution.
 [[nodiscard]] double
@@ -41,6 +41,9 @@ struct ChannelRun {
 
 // "dau" of "dau/x".
 [[nodiscard]] std::string source_of(const std::string& channel);
+
+// What another channel has in the step and repetition of `result`; nullptr: nothing.
+[[nodiscard]] const StepResult* in_same_step(const StepResult& result, const ChannelRun& other);
 
 struct PointRepetitions { // of one frequency and level
   std::vector<const StepResult*> results;

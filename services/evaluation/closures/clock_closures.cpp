@@ -172,4 +172,34 @@ std::vector<Closure> clock_closures(const ChannelRun& run) {
   return all;
 }
 
+Closure clocks_of_channels(const ChannelRun& one, const ChannelRun& other) {
+  constexpr auto kind = ClosureKind::channel_clocks;
+  const std::string subject = one.function.channel + " and " + other.function.channel;
+  std::optional<Closure> worst;
+  for (const StepResult* a : one.results) {
+    const StepResult* b = in_same_step(*a, other);
+    if (b == nullptr || !a->series || !b->series) {
+      continue;
+    }
+    const double off = b->series->sample_rate_hz / a->series->sample_rate_hz - 1.0;
+    const double u = std::hypot(a->series->u_sample_rate_hz, b->series->u_sample_rate_hz) /
+                     a->series->sample_rate_hz;
+    const double limit = limit_by_chance(one.results.size()) * u;
+    if (!worst || std::abs(off) * worst->limit > std::abs(worst->value) * limit) {
+      worst = judged(kind, subject, off, u, limit, "1",
+                     fmt::format("{}: of all steps their rates differ most at {} Hz, by {:.3g} ppm",
+                                 subject, a->frequency_text_hz, 1e6 * off));
+    }
+  }
+  if (!worst) {
+    return not_possible(kind, subject, "the channels of the sensor have common stamps");
+  }
+  if (is_open(*worst)) {
+    worst->sentence += fmt::format(", and chance leaves them {:.3g} ppm: a sensor has one clock, "
+                                   "so one of them follows another signal than the excitation",
+                                   1e6 * worst->limit);
+  }
+  return *worst;
+}
+
 } // namespace dyncal::inline evaluation

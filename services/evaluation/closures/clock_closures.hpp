@@ -5,6 +5,8 @@
 //   d_i = r_i - mean of the other r   against Student's t at n - 2 degrees of freedom
 //   lambda - 1                        of a triggered series: real rate over nominal rate
 //   f_i,ACS / f_i,asked - 1
+//   lambda_k / lambda_l - 1           of two channels of a series, each by its own samples, in the
+//                                     step in which they differ most
 //
 // Tolerances: crystals of instruments are right to the recipe's clock_tolerance_rel (200 ppm), an
 // oscillator within a sensor to 5 %; while they warm up, they wander by 1 ppm. Steps with a hundred
@@ -18,5 +20,8 @@
 namespace dyncal::inline evaluation {
 
 [[nodiscard]] std::vector<Closure> clock_closures(const ChannelRun& run);
+
+// Of two channels of one source.
+[[nodiscard]] Closure clocks_of_channels(const ChannelRun& one, const ChannelRun& other);
 
 } // namespace dyncal::inline evaluation

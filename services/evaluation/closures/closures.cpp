@@ -40,7 +40,7 @@ void append(std::vector<Closure> more, std::vector<Closure>& all) {
 
 void add_flag(const std::vector<Closure>& closures, std::vector<Flag>& flags) {
   for (const Closure& closure : closures) {
-    if (casts_doubt(closure)) {
+    if (is_open(closure)) {
       flags.push_back(flag_with_reason(ResultFlag::closure_open, closure.sentence));
     }
   }
@@ -54,11 +54,13 @@ std::vector<Closure> of_channels(const ChannelRun& run, const std::vector<Channe
         source_of(other.function.channel) == source_of(run.function.channel) &&
         other.function.unit == run.function.unit) {
       closures.push_back(delays_of_channels(run, other));
+      closures.push_back(clocks_of_channels(run, other));
     }
   }
   if (closures.empty()) {
-    closures.push_back(not_possible(ClosureKind::channel_delays, "",
-                                    "the sensor has no other channel of this kind"));
+    for (const auto kind : {ClosureKind::channel_delays, ClosureKind::channel_clocks}) {
+      closures.push_back(not_possible(kind, "", "the sensor has no other channel of this kind"));
+    }
   }
   return closures;
 }

@@ -13,6 +13,8 @@ namespace {
 
 constexpr double most_birge = 3.0; // as GroupDelay::is_constant
 constexpr const char* one_kind = R"(\one)";
+constexpr const char* no_delay =
+    R"(the bench file says that the phase is not that of a delay (dut_phase = "any"))";
 
 Closure line(const analysis::GroupDelay& delay) {
   if (!(delay.degrees_of_freedom > 0.0)) {
@@ -25,9 +27,11 @@ Closure line(const analysis::GroupDelay& delay) {
                 fmt::format("the phases lie {:.3g} of their u beside a line with the delay {:.6g} "
                             "ms (chi-squared {:.4g} of {:.0f}){}",
                             birge, 1e3 * delay.delay_s, delay.chi_squared, delay.degrees_of_freedom,
-                            birge > limit ? ": no delay describes the sensor here, as near a "
-                                            "resonance or a filter's edge; give the phases alone"
-                                          : ""));
+                            birge > limit
+                                ? ": single phases are wrong, or the sensor has no constant delay "
+                                  "here, as near a resonance or a filter's edge: say so by "
+                                  "dut_phase = \"any\" in [method]"
+                                : ""));
 }
 
 // An alternative makes no phase wrong, but which delay it is nobody can tell.
@@ -48,6 +52,19 @@ Closure alternatives(const analysis::GroupDelay& delay) {
                   1e3 * *nearest, 1e3 * delay.delay_s, 1.0 / std::abs(*nearest - delay.delay_s)));
 }
 
+const char* expected_at_zero(DutPhase phase) {
+  return phase == DutPhase::delay_from_0     ? "0"
+         : phase == DutPhase::delay_from_180 ? "180"
+                                             : "0 or 180";
+}
+
+double from_expected(DutPhase phase, double intercept_rad) {
+  constexpr double pi = std::numbers::pi;
+  return phase == DutPhase::delay_from_0     ? std::remainder(intercept_rad, 2.0 * pi)
+         : phase == DutPhase::delay_from_180 ? std::remainder(intercept_rad - pi, 2.0 * pi)
+                                             : std::remainder(intercept_rad, pi);
+}
+
 Closure at_zero(const ChannelRun& run, const analysis::GroupDelay& delay, bool is_line) {
   constexpr auto kind = ClosureKind::phase_at_zero;
   if (run.function.unit != one_kind) {
@@ -56,14 +73,16 @@ Closure at_zero(const ChannelRun& run, const analysis::GroupDelay& delay, bool i
   if (!is_line) {
     return not_possible(kind, "", "the phases are not on a line that could be followed to 0 Hz");
   }
-  const double off = std::remainder(delay.intercept_rad, std::numbers::pi);
+  const double off = from_expected(run.recipe.dut_phase, delay.intercept_rad);
   const double limit = limit_by_chance(1) * delay.u_intercept_rad;
   return judged(kind, "", off, delay.u_intercept_rad, limit, "rad",
                 fmt::format("towards 0 Hz the phase tends to {:.4g} degrees (u {:.2g}){}",
                             degrees_of(delay.intercept_rad), degrees_of(delay.u_intercept_rad),
                             std::abs(off) > limit
-                                ? ", where 0 or 180 is expected: look at couplings and high-pass "
-                                  "filters, and at the reference's phase"
+                                ? fmt::format(", where {} is expected: look at polarities, "
+                                              "couplings and high-pass filters, and at the "
+                                              "reference's phase",
+                                              expected_at_zero(run.recipe.dut_phase))
                                 : ""));
 }
 
@@ -91,9 +110,11 @@ double step_u_phase(const StepResult& result) {
 } // namespace
 
 std::vector<Closure> phase_closures(const ChannelRun& run) {
-  if (!run.moves() || !run.function.group_delay) {
-    const std::string why = run.moves() ? run.function.group_delay_problem
-                                        : "the channel hardly follows the excitation";
+  const bool has_delay = run.recipe.dut_phase != DutPhase::any;
+  if (!run.moves() || !has_delay || !run.function.group_delay) {
+    const std::string why = !run.moves() ? "the channel hardly follows the excitation"
+                            : !has_delay ? no_delay
+                                         : run.function.group_delay_problem;
     return {not_possible(ClosureKind::delay_fit, "", why),
             not_possible(ClosureKind::delay_alternatives, "", why),
             not_possible(ClosureKind::phase_at_zero, "", why)};
@@ -106,20 +127,21 @@ std::vector<Closure> phase_closures(const ChannelRun& run) {
 Closure delays_of_channels(const ChannelRun& one, const ChannelRun& other) {
   constexpr auto kind = ClosureKind::channel_delays;
   const std::string subject = one.function.channel + " and " + other.function.channel;
+  if (one.recipe.dut_phase == DutPhase::any) {
+    return not_possible(kind, subject, no_delay);
+  }
   if (!one.moves() || !other.moves()) {
     return not_possible(kind, subject, "one of them hardly follows the excitation");
   }
   double weights = 0.0, sum = 0.0;
   for (const StepResult* a : one.results) {
-    const auto b = std::find_if(other.results.begin(), other.results.end(), [&](const auto* each) {
-      return each->step == a->step && each->repetition == a->repetition;
-    });
-    if (b == other.results.end()) {
+    const StepResult* b = in_same_step(*a, other);
+    if (b == nullptr) {
       continue;
     }
     // A channel whose axis points the other way has the same delay.
-    const double turned = std::remainder((*b)->phase_rad - a->phase_rad, std::numbers::pi);
-    const double variance = std::pow(step_u_phase(*a), 2) + std::pow(step_u_phase(**b), 2);
+    const double turned = std::remainder(b->phase_rad - a->phase_rad, std::numbers::pi);
+    const double variance = std::pow(step_u_phase(*a), 2) + std::pow(step_u_phase(*b), 2);
     const double angular = 2.0 * std::numbers::pi * a->frequency_hz;
     weights += angular * angular / variance;
     sum += angular * turned / variance;

@@ -48,8 +48,15 @@ Closure level(const ChannelRun& run) {
 
 struct Counted {
   const StepResult* step = nullptr;
-  double samples = 0.0; // from the first to the last one
+  double samples = 0.0;  // from the first to the last one
+  double left_out = 0.0; // of them; or before the first or behind the last, nobody knows
   double seconds = 0.0;
+
+  // Samples that nothing accounts for; < 0: too few.
+  [[nodiscard]] double beyond(double rate_hz) const {
+    const double expected = rate_hz * seconds;
+    return samples < expected ? samples - expected : std::max(0.0, samples - left_out - expected);
+  }
 };
 
 std::vector<Counted> counts_of(const ChannelRun& run, const std::string& source) {
@@ -57,8 +64,9 @@ std::vector<Counted> counts_of(const ChannelRun& run, const std::string& source)
   for (const StepResult* result : run.results) {
     for (const SourceSamples& one : result->samples) {
       if (one.source == source && one.used > 1 && one.last_stamp_ns > one.first_stamp_ns) {
-        const auto all = one.used + one.all_lost() + one.not_trusted + one.not_measured;
-        counts.push_back({result, static_cast<double>(all - 1),
+        const auto left_out = one.all_lost() + one.not_trusted + one.not_measured + one.cut_out;
+        counts.push_back({result, static_cast<double>(one.used + left_out - 1),
+                          static_cast<double>(left_out),
                           1e-9 * static_cast<double>(one.last_stamp_ns - one.first_stamp_ns)});
       }
     }
@@ -80,11 +88,11 @@ Closure counted(const ChannelRun& run, const std::string& source) {
   }
   const double rate_hz = analysis::median(rates_hz);
   for (const Counted& one : counts) {
-    off.push_back(std::abs(one.samples - rate_hz * one.seconds));
+    off.push_back(std::abs(one.beyond(rate_hz)));
   }
   const auto worst = std::max_element(off.begin(), off.end());
   const Counted& step = counts[static_cast<std::size_t>(worst - off.begin())];
-  const double difference = step.samples - rate_hz * step.seconds;
+  const double difference = step.beyond(rate_hz);
   const double usual = analysis::mad_to_sd * analysis::median(off);
   const double limit = std::max(
       ends_samples, usual * limit_by_chance(counts.size(), static_cast<double>(counts.size() - 1)));

@@ -49,7 +49,7 @@ StepSamples SelectedChannels::select_rise() const {
                                 part->columns[k].end());
     }
   }
-  return {copies->stamps_ns, {copies->columns.begin(), copies->columns.end()}, 0, 0, copies};
+  return {copies->stamps_ns, {copies->columns.begin(), copies->columns.end()}, 0, 0, 0, copies};
 }
 
 void SelectedChannels::leave_out(const TimeInterval& interval) {
@@ -58,6 +58,7 @@ void SelectedChannels::leave_out(const TimeInterval& interval) {
   for (std::size_t i = 0; i < samples_.stamps_ns.size(); ++i) {
     const std::int64_t stamp_ns = samples_.stamps_ns[i];
     if (stamp_ns >= interval.begin_ns && stamp_ns < interval.end_ns) {
+      ++samples_.cut_out;
       continue;
     }
     copies->stamps_ns.push_back(stamp_ns);
@@ -112,6 +113,7 @@ SourceSamples SelectedChannels::summary() const {
   summary.overflowed = lost.overflowed;
   summary.not_trusted = samples_.not_trusted;
   summary.not_measured = samples_.not_measured;
+  summary.cut_out = samples_.cut_out;
   if (!samples_.stamps_ns.empty()) {
     summary.first_stamp_ns = samples_.stamps_ns.front();
     summary.last_stamp_ns = samples_.stamps_ns.back();

@@ -21,6 +21,7 @@
 #include "analysis/method/sample_stamping.hpp"
 #include "services/base/error.hpp"
 #include "services/contract/channel_name.hpp"
+#include "services/contract/dut_phase.hpp"
 #include "services/contract/evaluation_method.hpp"
 #include "services/contract/role_rules.hpp"
 
@@ -106,6 +107,7 @@ struct Recipe {
   // Part by which the measured level of a step may be off the planned one without a flag.
   double level_deviation_rel = 0.1;
   double clock_tolerance_rel = 2e-4; // how right the crystals of ACS and DAU are
+  DutPhase dut_phase = DutPhase::delay;
   std::vector<double> mains_hz{analysis::usual_mains_hz.begin(), analysis::usual_mains_hz.end()};
   double reference_delay_s = 0.0; // of the reference's channel against the ACS's sync
   std::vector<analysis::ReferenceCalibrationPoint> reference_calibration; // empty: it reads right

@@ -145,6 +145,19 @@ Expected<void> read_steps(const wire::Measurement& measurement, Recipe& recipe) 
   return {};
 }
 
+Expected<void> read_dut_phase(const std::string& text, Recipe& recipe) {
+  if (text.empty()) {
+    return {};
+  }
+  const auto phase = parse_dut_phase(text);
+  if (!phase) {
+    return refuse(fmt::format(
+        "dut_phase is \"{}\", which this version does not know; install the conductor's", text));
+  }
+  recipe.dut_phase = *phase;
+  return {};
+}
+
 void read_common_part(const wire::Measurement& measurement, Recipe& recipe) {
   MessageReader reader;
   message_members(reader, recipe, measurement);
@@ -198,6 +211,9 @@ wire::Measurement to_message(const Recipe& recipe) {
   if (recipe.clock_tolerance_rel != Recipe{}.clock_tolerance_rel) {
     measurement.clock_tolerance_rel(recipe.clock_tolerance_rel);
   }
+  if (recipe.dut_phase != Recipe{}.dut_phase) {
+    measurement.dut_phase(to_string(recipe.dut_phase));
+  }
   if (recipe.mains_hz != Recipe{}.mains_hz) {
     measurement.mains_hz().assign(recipe.mains_hz.begin(), recipe.mains_hz.end());
   }
@@ -218,6 +234,7 @@ Expected<Recipe> parse_recipe(const wire::Measurement& measurement) {
     DYNCAL_TRY(read_role("temperature", measurement.temperature(), recipe.temperature.emplace()));
   }
   read_common_part(measurement, recipe);
+  DYNCAL_TRY(read_dut_phase(measurement.dut_phase(), recipe));
   DYNCAL_TRY(read_steps(measurement, recipe).and_then([&] { return check_recipe(recipe); }));
   return recipe;
 }

@@ -31,6 +31,7 @@ struct StepSamples {
   std::vector<std::span<const double>> columns;
   std::uint64_t not_trusted = 0;
   std::uint64_t not_measured = 0;
+  std::uint64_t cut_out = 0;
   std::shared_ptr<const Copies> copies; // where they lie when samples between them were left out
 };
 

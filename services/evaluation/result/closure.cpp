@@ -23,6 +23,7 @@ constexpr std::array names{
     Names{"delay_alternatives", "other group delays"},
     Names{"phase_at_zero", "phase towards 0 Hz"},
     Names{"channel_delays", "delays of channels of one kind"},
+    Names{"channel_clocks", "clocks of channels of one sensor"},
 };
 
 } // namespace
@@ -56,10 +57,6 @@ std::string_view to_string(Verdict verdict) {
 
 bool is_open(const Closure& closure) {
   return closure.verdict == Verdict::open;
-}
-
-bool casts_doubt(const Closure& closure) {
-  return is_open(closure) && closure.kind != ClosureKind::delay_fit;
 }
 
 } // namespace dyncal::inline evaluation

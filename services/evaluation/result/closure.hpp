@@ -27,7 +27,8 @@ enum class ClosureKind {
   delay_fit,            // phases, against a straight line
   delay_alternatives,   // other delays that the frequencies leave open
   phase_at_zero,        // towards 0 Hz, against 0 or pi
-  channel_delays        // of channels of one kind, against each other
+  channel_delays,       // of channels of one kind, against each other
+  channel_clocks        // of channels of one sensor, each by its own samples
 };
 
 enum class Verdict { closes, open, not_possible };
@@ -50,8 +51,5 @@ struct Closure {
 [[nodiscard]] std::string_view to_string(Verdict verdict);
 
 [[nodiscard]] bool is_open(const Closure& closure);
-// Whether its open verdict says that values may be wrong. Not so of phases that lie on no line, as
-// near a resonance: they are right, and the delay is not stated (flag group_delay_not_constant).
-[[nodiscard]] bool casts_doubt(const Closure& closure);
 
 } // namespace dyncal::inline evaluation

@@ -65,6 +65,7 @@ void members(auto& visit, Either<SourceSamples> auto& one) {
   visit("not_measured", one.not_measured);
   visit("first_stamp_ns", one.first_stamp_ns);
   visit("last_stamp_ns", one.last_stamp_ns);
+  visit("cut_out", one.cut_out);
 }
 
 void members(auto& visit, Either<ChannelSignal> auto& one) {

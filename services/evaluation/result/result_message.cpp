@@ -41,6 +41,7 @@ void message_members(auto& visit, Either<SourceSamples> auto& samples, auto& mes
   visit(samples.not_measured, message.not_measured());
   visit(samples.first_stamp_ns, message.first_stamp_ns());
   visit(samples.last_stamp_ns, message.last_stamp_ns());
+  visit(samples.cut_out, message.cut_out());
 }
 
 void message_members(auto& visit, Either<ChannelSignal> auto& signal, auto& message) {

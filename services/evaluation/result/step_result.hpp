@@ -35,6 +35,7 @@ struct SourceSamples {
   std::uint64_t not_measured = 0;  // left out, for the device measured no value
   std::int64_t first_stamp_ns = 0; // of the samples used, in the source's own clock
   std::int64_t last_stamp_ns = 0;
+  std::uint64_t cut_out = 0; // left out for a disturbance
 
   [[nodiscard]] std::uint64_t all_lost() const { return lost + unusable + overflowed; }
 };

@@ -69,6 +69,15 @@ Expected<void> check_uncertainty(const StoredResult& contents, const StoredValue
   return {};
 }
 
+// A model is fitted to just those phases that lie on no line from 0 or 180 degrees at 0 Hz.
+bool describes_all_that_is_open(const StoredResult& contents, const std::string& channel) {
+  const std::vector<Closure> closures = contents.closures_of(channel);
+  return std::all_of(closures.begin(), closures.end(), [](const Closure& one) {
+    return !is_open(one) || one.kind == ClosureKind::delay_fit ||
+           one.kind == ClosureKind::phase_at_zero;
+  });
+}
+
 RawValue raw_value(const StoredResult& contents, const StoredValue& transfer) {
   RawValue raw;
   raw.transfer = &transfer;
@@ -79,6 +88,9 @@ RawValue raw_value(const StoredResult& contents, const StoredValue& transfer) {
   raw.value.u_magnitude_rel = 0.5 * transfer.of_magnitude.expanded / transfer.magnitude;
   raw.value.u_phase_rad = 0.5 * transfer.of_phase.expanded;
   raw.value.flag_names = transfer.flag_names;
+  if (describes_all_that_is_open(contents, transfer.channel)) {
+    std::erase(raw.value.flag_names, "closure_open");
+  }
   for (const StoredPoint& point : contents.points) {
     if (point.valid && point.channel == transfer.channel &&
         point.frequency_hz == transfer.frequency_hz && point.level_m_s2 == transfer.level_m_s2 &&

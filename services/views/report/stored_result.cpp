@@ -157,7 +157,7 @@ std::vector<std::string> StoredResult::open_closures(const std::vector<std::stri
   std::vector<std::string> open;
   for (const std::string& channel : names) {
     for (const Closure& closure : closures_of(channel)) {
-      if (casts_doubt(closure)) {
+      if (is_open(closure)) {
         open.push_back(
             fmt::format("{}: {}: {}", channel, title_of(closure.kind), closure.sentence));
       }

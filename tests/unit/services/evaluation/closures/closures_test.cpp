@@ -17,6 +17,7 @@ namespace dyncal::inline evaluation {
 namespace {
 
 constexpr double pi = std::numbers::pi;
+constexpr auto kinds_of_closures = static_cast<std::size_t>(ClosureKind::channel_clocks) + 1;
 using Fault = std::function<void(DrawnRun&, std::mt19937&)>;
 
 struct Case {
@@ -24,6 +25,7 @@ struct Case {
   ClosureKind kind;
   Fault fault;
   std::size_t channels = 1;
+  EvaluationMethod method = EvaluationMethod::sample_timestamping;
 };
 
 std::ostream& operator<<(std::ostream& out, const Case& one) {
@@ -69,6 +71,19 @@ const std::vector<Case>& cases_of_instruments() {
        [](DrawnRun& run, std::mt19937& random) {
          any_step(run, random).fits.front().fit.sine *= 1.0 + 0.15 * sign(random);
        }},
+      {"own oscillator 8 % off", ClosureKind::clock_rate,
+       [](DrawnRun& run, std::mt19937& random) {
+         const double rel = 0.08 * sign(random);
+         for (StepResult& result : run.results) {
+           result.series->sample_rate_hz *= 1.0 + rel;
+         }
+       },
+       1, EvaluationMethod::series_timestamping},
+      {"one axis follows another signal", ClosureKind::channel_clocks,
+       [](DrawnRun& run, std::mt19937& random) {
+         any_step(run, random).series->sample_rate_hz *= 1.0 + 1e-5 * sign(random);
+       },
+       2, EvaluationMethod::series_timestamping},
       {"samples lost without a trace", ClosureKind::samples_counted,
        [](DrawnRun& run, std::mt19937& random) {
          any_step(run, random).samples.front().used -= 5 + random() % 50;
@@ -143,7 +158,7 @@ TEST_P(OpenClosure, IsFoundInNearlyEveryDraw) {
   int found = 0;
   for (unsigned seed = 1; seed <= draws; ++seed) {
     std::mt19937 random(seed + 10'000);
-    DrawnRun run = draw_run(seed, {.channels = one.channels});
+    DrawnRun run = draw_run(seed, {.channels = one.channels, .method = one.method});
     one.fault(run, random);
     const auto open = open_of(run);
     found += std::find(open.begin(), open.end(), one.kind) != open.end() ? 1 : 0;
@@ -154,22 +169,69 @@ TEST_P(OpenClosure, IsFoundInNearlyEveryDraw) {
 INSTANTIATE_TEST_SUITE_P(OfInstruments, OpenClosure, testing::ValuesIn(cases_of_instruments()));
 INSTANTIATE_TEST_SUITE_P(OfSensors, OpenClosure, testing::ValuesIn(cases_of_sensors()));
 
-TEST(Closures, CloseInCleanRuns) {
+TEST(Closures, CloseInCleanRunsOfEveryMethod) {
   constexpr unsigned draws = 300;
   std::size_t open = 0;
   std::set<ClosureKind> closing;
-  for (unsigned seed = 1; seed <= draws; ++seed) {
-    const auto all = draw_run(seed + 50'000, {.channels = 2}).closures();
-    for (const Closure& closure : all) {
-      open += is_open(closure) ? 1 : 0;
-      if (closure.verdict == Verdict::closes) {
-        closing.insert(closure.kind);
+  for (const auto method :
+       {EvaluationMethod::analogue, EvaluationMethod::sample_timestamping,
+        EvaluationMethod::series_timestamping, EvaluationMethod::absolute_time}) {
+    for (unsigned seed = 1; seed <= draws; ++seed) {
+      for (const Closure& closure :
+           draw_run(seed + 50'000, {.channels = 2, .method = method}).closures()) {
+        open += is_open(closure) ? 1 : 0;
+        if (closure.verdict == Verdict::closes) {
+          closing.insert(closure.kind);
+        }
+        EXPECT_FALSE(closure.sentence.empty());
       }
-      EXPECT_FALSE(closure.sentence.empty());
     }
   }
   EXPECT_LE(open, 1U);
-  EXPECT_EQ(closing.size(), static_cast<std::size_t>(ClosureKind::channel_delays) + 1);
+  EXPECT_EQ(closing.size(), kinds_of_closures);
+}
+
+// As the bench file states the polarity, or another model.
+TEST(Closures, OfThePhaseAreHeldAgainstWhatTheBenchFileSays) {
+  const auto verdict = [](DutPhase stated, ClosureKind kind, bool inverted) {
+    DrawnRun run = draw_run(11, {.channels = 2});
+    run.recipe.dut_phase = stated;
+    for (StepResult& result : run.results) {
+      result.phase_rad = std::remainder(result.phase_rad + (inverted ? pi : 0.0), 2.0 * pi);
+    }
+    const auto all = run.closures();
+    return std::find_if(all.begin(), all.end(), [&](const auto& one) { return one.kind == kind; })
+        ->verdict;
+  };
+  constexpr auto at_zero = ClosureKind::phase_at_zero;
+  EXPECT_EQ(verdict(DutPhase::delay, at_zero, false), Verdict::closes);
+  EXPECT_EQ(verdict(DutPhase::delay, at_zero, true), Verdict::closes);
+  EXPECT_EQ(verdict(DutPhase::delay_from_0, at_zero, false), Verdict::closes);
+  EXPECT_EQ(verdict(DutPhase::delay_from_0, at_zero, true), Verdict::open);
+  EXPECT_EQ(verdict(DutPhase::delay_from_180, at_zero, false), Verdict::open);
+  EXPECT_EQ(verdict(DutPhase::delay_from_180, at_zero, true), Verdict::closes);
+  for (const auto kind : {at_zero, ClosureKind::delay_fit, ClosureKind::channel_delays}) {
+    EXPECT_EQ(verdict(DutPhase::any, kind, false), Verdict::not_possible);
+    EXPECT_EQ(verdict(DutPhase::delay, kind, false), Verdict::closes);
+  }
+}
+
+// The u of a mean has the scatter of its repetitions, so this is open where a program is wrong.
+TEST(Closures, AreOpenWhereTheMeansAreKnownWorseThanIsStated) {
+  constexpr unsigned draws = 60;
+  std::size_t found = 0;
+  for (unsigned seed = 1; seed <= draws; ++seed) {
+    const auto all = draw_run(seed + 20'000).closures_after([](TransferFunction& function) {
+      for (FrequencyPoint& point : function.points) {
+        point.mean.independent_magnitude_rel.u /= 5.0;
+        point.mean.independent_phase.u /= 5.0;
+      }
+    });
+    found += static_cast<std::size_t>(std::count_if(all.begin(), all.end(), [](const auto& one) {
+      return one.kind == ClosureKind::repetition_scatter && is_open(one);
+    }));
+  }
+  EXPECT_GE(found, draws - 1);
 }
 
 TEST(Closures, TheRepetitionThatIsOffIsFlaggedInItsOwnRow) {
@@ -181,6 +243,27 @@ TEST(Closures, TheRepetitionThatIsOffIsFlaggedInItsOwnRow) {
   EXPECT_EQ(flagged.front().step, wrong.step);
   EXPECT_EQ(flagged.front().flags.back().kind, ResultFlag::closure_open);
   EXPECT_TRUE(draw_run(7).flagged().empty());
+}
+
+// Within the time that is evaluated, or at its ends, where the evaluated part is shorter by them.
+TEST(Closures, CountSamplesThatWereLeftOutForAReason) {
+  std::mt19937 random(29);
+  for (const auto part : {&SourceSamples::lost, &SourceSamples::not_trusted,
+                          &SourceSamples::not_measured, &SourceSamples::cut_out}) {
+    for (const bool at_end : {false, true}) {
+      DrawnRun run = draw_run(13);
+      SourceSamples& samples = any_step(run, random).samples.front();
+      const std::uint64_t left_out = 5 + random() % 500;
+      samples.*part += left_out;
+      samples.used -= left_out;
+      samples.last_stamp_ns -= at_end ? static_cast<std::int64_t>(left_out) * 1'000'000 : 0;
+      EXPECT_TRUE(open_of(run).empty());
+      if (!at_end) {
+        samples.used -= 5;
+        EXPECT_EQ(open_of(run), std::vector{ClosureKind::samples_counted});
+      }
+    }
+  }
 }
 
 TEST(Closures, OfAChannelThatHardlyMovesAreNotPossible) {
@@ -222,7 +305,7 @@ TEST(Closures, OfValuesWithoutNoiseOrLengthCloseOrAreNotPossible) {
 }
 
 TEST(Closures, KindsHaveNamesThatAreReadBack) {
-  for (int i = 0; i <= static_cast<int>(ClosureKind::channel_delays); ++i) {
+  for (std::size_t i = 0; i < kinds_of_closures; ++i) {
     const auto kind = static_cast<ClosureKind>(i);
     EXPECT_EQ(parse_closure_kind(to_string(kind)), kind);
     EXPECT_FALSE(title_of(kind).empty());

@@ -33,11 +33,13 @@ Drawn draw(std::mt19937& random) {
 
 Recipe make_recipe(const DrawnOptions& options) {
   Recipe recipe;
-  SampleStampingRoles roles;
-  roles.reference = {"acs", "reference"};
-  roles.sync_acs = {"acs", "sync"};
-  roles.sync_dau = {"dau", "sync"};
-  recipe.roles = roles;
+  const bool by_series = options.method == EvaluationMethod::series_timestamping;
+  recipe.roles = make_roles({.method = options.method,
+                             .reference = {"acs", "reference"},
+                             .sync_acs = ChannelName{"acs", "sync"},
+                             .sync_sensor = ChannelName{by_series ? "dso" : "dau", "sync"},
+                             .dut = {{"dau", "x"}, {"dau", "y"}}},
+                            {});
   const auto add = [&](std::uint32_t sweep, const char* hz) {
     recipe.steps.push_back({.step = static_cast<std::uint32_t>(recipe.steps.size() + 1),
                             .repetition = sweep,
@@ -80,6 +82,23 @@ StepResult result_of(const RecipeStep& step, const std::string& channel) {
   return result;
 }
 
+// What the method does not have, and what it has in its place.
+void by_method(EvaluationMethod method, double rate, double noise, StepResult& result) {
+  if (method == EvaluationMethod::sample_timestamping) {
+    return;
+  }
+  const analysis::ChannelFit dut = result.fits.back();
+  result.fits.resize(method == EvaluationMethod::series_timestamping ? 2 : 1);
+  result.fits.push_back(dut);
+  if (method == EvaluationMethod::series_timestamping) {
+    constexpr double u_hz = 1e-4;
+    result.series = SeriesFinding{.sample_rate_hz = 1.01 * rate_hz * rate + u_hz * noise,
+                                  .u_sample_rate_hz = u_hz,
+                                  .start = "at_trigger",
+                                  .start_scatter_s = 1e-7};
+  }
+}
+
 } // namespace
 
 DrawnRun draw_run(unsigned seed, const DrawnOptions& options) {
@@ -119,6 +138,7 @@ DrawnRun draw_run(unsigned seed, const DrawnOptions& options) {
                          .used = samples,
                          .first_stamp_ns = first_ns,
                          .last_stamp_ns = first_ns + (samples - 1) * 1'000'000}};
+      by_method(options.method, dau_hz / acs_hz, normal(random), result);
       run.results.push_back(std::move(result));
     }
   }
@@ -126,11 +146,19 @@ DrawnRun draw_run(unsigned seed, const DrawnOptions& options) {
 }
 
 std::vector<Closure> DrawnRun::closures() const {
+  return closures_after([](TransferFunction&) {});
+}
+
+std::vector<Closure>
+DrawnRun::closures_after(const std::function<void(TransferFunction&)>& fault) const {
   TransferSummary summary(recipe);
   for (const StepResult& result : results) {
     summary.add(result);
   }
   auto functions = summary.transfer_functions();
+  if (!functions.empty()) {
+    fault(functions.front());
+  }
   (void)add_closures({recipe, R"(\metre\second\tothe{-2})", [](const auto&) { return rate_hz; }},
                      results, functions);
   return functions.empty() ? std::vector<Closure>{} : functions.front().closures;

@@ -18,10 +18,14 @@ struct DrawnRun {
   // Of the first channel; `name`: all of that kind.
   [[nodiscard]] std::vector<Closure> closures() const;
   [[nodiscard]] std::vector<StepResult> flagged() const;
+  // The same with what a fault does to the means.
+  [[nodiscard]] std::vector<Closure>
+  closures_after(const std::function<void(TransferFunction&)>& fault) const;
 };
 
 struct DrawnOptions {
   std::size_t channels = 1;
+  EvaluationMethod method = EvaluationMethod::sample_timestamping;
   bool repeat_first = true;
 };
 

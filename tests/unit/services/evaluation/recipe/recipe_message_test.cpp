@@ -30,6 +30,7 @@ TEST(RecipeMessage, GivesBackTheMessageThatItWasReadFrom) {
   measurement.u_acs_delay_s(1e-7);
   measurement.level_deviation_rel(0.05);
   measurement.clock_tolerance_rel(5e-5);
+  measurement.dut_phase("delay-from-180");
   measurement.mains_hz({16.7, 50.0});
   measurement.frequency_search_rel(2e-3);
   wire::ReferenceContribution drift;

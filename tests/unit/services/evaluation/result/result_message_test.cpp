@@ -44,7 +44,8 @@ StepResult example_result() {
                      .not_trusted = 4,
                      .not_measured = 5,
                      .first_stamp_ns = 6,
-                     .last_stamp_ns = 7}};
+                     .last_stamp_ns = 7,
+                     .cut_out = 8}};
   result.signals = {{"acs/sync", 1e-3, 1e-5, 2e-3, 1.02}};
   result.provisional = true;
   result.lost = 6;

@@ -1,0 +1,120 @@
+#!/usr/bin/env python3
+"""What does not close is not certified: each kind of closure, open in the result of a run, is
+refused by name by `dyncal certify` and `dyncal report`, and with --force stands on the first page.
+What closes or is not possible is neither refused nor hidden, and what another channel has does not
+count.
+
+    closures_test.py DYNCAL EXAMPLE_WRITER
+"""
+
+import copy
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import stored_run
+
+DYNCAL, EXAMPLE = sys.argv[1:3]
+KINDS = stored_run.TOP / "services/evaluation/result/closure.cpp"
+FIRST, SECOND = stored_run.CHANNELS
+
+
+def kinds():
+    """Name and title of each, as the program has them."""
+    found = re.findall(r'Names\{"(\w+)",\s*"([^"]+)"\}', KINDS.read_text())
+    assert len(found) >= 13, found
+    return found
+
+
+def closure(kind, verdict):
+    return {
+        "kind": kind,
+        "subject": "dau",
+        "verdict": verdict,
+        "value": 0.0 if verdict == "not_possible" else 0.0042,
+        "u": 0.001,
+        "limit": 0.002,
+        "unit": "1",
+        "sentence": f"of {kind} so much is said: {verdict}",
+    }
+
+
+class Closures(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="dyncal-closures-"))
+        cls.addClassCleanup(shutil.rmtree, cls.folder)
+        cls.result = stored_run.clean_run(EXAMPLE)
+
+    def stored(self, name, closures):
+        """A run whose first channel has these."""
+        result = copy.deepcopy(self.result)
+        result["channels"][0]["closures"] = closures
+        if any(one["verdict"] == "open" for one in closures):
+            result["channels"][0].update(
+                flags=["what must hold over the run does not"], flag_names=["closure_open"]
+            )
+        return stored_run.write_run(self.folder / "runs/bench" / name, result)
+
+    def certify(self, run, *options):
+        output = self.folder / f"{run.name}.xml"
+        output.unlink(missing_ok=True)
+        made = self.dyncal("certify", run, "--lab", stored_run.LAB, "--sensor", stored_run.SENSOR,
+                           "--output", output, *options)  # fmt: skip
+        return made, output.read_text() if output.exists() else ""
+
+    def report(self, run, *options):
+        file = run / "report.html"
+        file.unlink(missing_ok=True)
+        made = self.dyncal("report", run, *options)
+        return made, file.read_text() if file.exists() else ""
+
+    def dyncal(self, *arguments):
+        return subprocess.run([DYNCAL, *map(str, arguments)], capture_output=True, text=True)
+
+    def test_each_open_one_is_refused_by_name_and_printed_when_forced(self):
+        for kind, title in kinds():
+            run = self.stored(kind, [closure(kind, "open")])
+            sentence = f"of {kind} so much is said: open"
+            for make in (self.certify, self.report):
+                with self.subTest(kind=kind, command=make.__name__):
+                    made, document = make(run)
+                    self.assertEqual(made.returncode, 1, made.stdout + made.stderr)
+                    self.assertEqual(document, "")
+                    self.assertIn(title, made.stderr)
+                    self.assertIn(sentence, made.stderr)
+                    self.assertIn("--force", made.stderr)
+                    made, document = make(run, "--force")
+                    self.assertEqual(made.returncode, 0, made.stderr)
+                    self.assertIn(title, document)
+                    self.assertIn(sentence, document)
+            document = self.report(run, "--force")[1]
+            first_page = document[: document.index("<h2")]
+            self.assertIn(sentence, first_page, kind)
+
+    def test_what_closes_or_is_not_possible_is_not_refused(self):
+        for verdict in ("closes", "not_possible"):
+            run = self.stored(verdict, [closure(kind, verdict) for kind, _ in kinds()])
+            made, certificate = self.certify(run)
+            self.assertEqual(made.returncode, 0, made.stderr)
+            self.assertNotIn("FORCED", certificate)
+            made, report = self.report(run)
+            self.assertEqual(made.returncode, 0, made.stderr)
+            for kind, title in kinds():
+                self.assertIn(title, report)
+                self.assertIn(f"of {kind} so much is said: {verdict}", report)
+
+    def test_another_channel_is_certified(self):
+        run = self.stored("other", [closure("level", "open")])
+        made, certificate = self.certify(run, "--channel", SECOND)
+        self.assertEqual(made.returncode, 0, made.stderr)
+        self.assertNotIn("FORCED", certificate)
+        self.assertEqual(self.certify(run, "--channel", FIRST)[0].returncode, 1)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
