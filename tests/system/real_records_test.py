@@ -19,7 +19,7 @@ import sys
 import tempfile
 import unittest
 
-DYNCAL = sys.argv[1]
+DYNCAL = pathlib.Path(sys.argv[1]).resolve()
 DATA = pathlib.Path(__file__).resolve().parents[3] / "shared/data"
 SEISMOMETER = DATA / "seismometer"
 IMU = DATA / "imu/sensor_combined.csv.xz"

@@ -9,6 +9,7 @@
 #include <fmt/core.h>
 
 #include "analysis/base/statistics.hpp"
+#include "services/evaluation/closures/mountings.hpp"
 #include "services/evaluation/result/members.hpp"
 
 namespace dyncal::inline evaluation {
@@ -19,13 +20,15 @@ constexpr double prior_freedom = 3.0;
 constexpr double efficiency_of_median = 0.37;
 // Of a normal deviate's absolute value.
 constexpr double median_of_absolute = 0.6745;
-constexpr double least_u = 1e-12; // of what no noise is stated for
+constexpr std::size_t least_comparisons = 4; // for a median that one of them does not move
+constexpr double repeatability = 5e-3;       // of a sensor that nobody touched; part, and rad
+constexpr double least_u = 1e-12;            // of what no noise is stated for
 
-struct Difference { // of one repetition from another, in standard uncertainties
-  double magnitude = 0.0;
-  double phase = 0.0;
-
-  [[nodiscard]] double larger() const { return std::max(magnitude, phase); }
+struct Difference { // of one repetition from another
+  double magnitude_rel = 0.0;
+  double phase_rad = 0.0;
+  double u_magnitude_rel = 1.0;
+  double u_phase_rad = 1.0;
 };
 
 std::complex<double> log_ratio(const analysis::Repetition& one, const analysis::Repetition& other) {
@@ -35,15 +38,31 @@ std::complex<double> log_ratio(const analysis::Repetition& one, const analysis::
 // A value without noise is known to the rounding of its fit; one of no length has no ratio.
 Difference difference(const analysis::Repetition& one, const analysis::Repetition& other) {
   if (!(std::abs(one.h) > 0.0 && std::abs(other.h) > 0.0)) {
-    return {one.h == other.h ? 0.0 : std::numeric_limits<double>::infinity(), 0.0};
+    return {one.h == other.h ? 0.0 : std::numeric_limits<double>::infinity()};
   }
   const std::complex<double> d = log_ratio(one, other);
-  const auto in_u = [](double value, double u_one, double u_other) {
-    return std::abs(value) / std::max(least_u, std::hypot(u_one, u_other));
-  };
-  return {in_u(d.real(), one.u_random_magnitude_rel, other.u_random_magnitude_rel),
-          in_u(d.imag(), one.u_random_phase_rad, other.u_random_phase_rad)};
+  return {std::abs(d.real()), std::abs(d.imag()),
+          std::max(least_u, std::hypot(one.u_random_magnitude_rel, other.u_random_magnitude_rel)),
+          std::max(least_u, std::hypot(one.u_random_phase_rad, other.u_random_phase_rad))};
 }
+
+// By how much repetitions differ: so many times what single results state, and so much beyond it.
+struct Usual {
+  double magnitude = 1.0;
+  double phase = 1.0;
+  double beyond = 0.0;
+  double degrees_of_freedom = analysis::infinite_degrees_of_freedom; // of how many times
+
+  [[nodiscard]] double magnitude_of(const Difference& one, double limit) const {
+    return one.magnitude_rel / (magnitude * one.u_magnitude_rel + beyond / limit);
+  }
+  [[nodiscard]] double phase_of(const Difference& one, double limit) const {
+    return one.phase_rad / (phase * one.u_phase_rad + beyond / limit);
+  }
+  [[nodiscard]] double larger_of(const Difference& one, double limit) const {
+    return std::max(magnitude_of(one, limit), phase_of(one, limit));
+  }
+};
 
 // That to which the others are nearest.
 std::size_t middle_of(const std::vector<analysis::Repetition>& values) {
@@ -67,7 +86,7 @@ struct Compared {
   const PointRepetitions* point = nullptr;
   std::size_t repetition = 0;
   std::size_t middle = 0;
-  Difference z;
+  Difference d;
 };
 
 std::vector<Compared> compared(const std::vector<PointRepetitions>& points) {
@@ -83,15 +102,24 @@ std::vector<Compared> compared(const std::vector<PointRepetitions>& points) {
   return all;
 }
 
-// The usual z of all, of a normal deviate 1; at least that.
-Difference usual(const std::vector<Compared>& all) {
+// By the median of all, of a normal deviate 1, at least that. Where nothing tells the mountings
+// from the points, what mountings may differ by.
+Usual usual(const std::vector<Compared>& all, bool mountings_known) {
+  if (!mountings_known) {
+    return {.beyond = mounting_tolerance};
+  }
+  if (all.size() < least_comparisons) {
+    return {.beyond = repeatability};
+  }
   std::vector<double> magnitudes, phases;
   for (const Compared& one : all) {
-    magnitudes.push_back(one.z.magnitude);
-    phases.push_back(one.z.phase);
+    magnitudes.push_back(one.d.magnitude_rel / one.d.u_magnitude_rel);
+    phases.push_back(one.d.phase_rad / one.d.u_phase_rad);
   }
-  return {std::max(1.0, analysis::median(magnitudes) / median_of_absolute),
-          std::max(1.0, analysis::median(phases) / median_of_absolute)};
+  return {.magnitude = std::max(1.0, analysis::median(magnitudes) / median_of_absolute),
+          .phase = std::max(1.0, analysis::median(phases) / median_of_absolute),
+          .degrees_of_freedom =
+              prior_freedom + efficiency_of_median * static_cast<double>(all.size())};
 }
 
 std::string what_is_off(const Compared& one) {
@@ -104,29 +132,57 @@ std::string what_is_off(const Compared& one) {
                      one.point->results[one.middle]->repetition, degrees_of(d.imag()));
 }
 
-void add_agreement(const std::vector<Compared>& all, RepetitionClosures& result) {
+void add_off(const PointRepetitions& point, std::size_t repetition, std::size_t middle,
+             RepetitionClosures& result) {
+  result.off.push_back(point.results[repetition]);
+  if (point.results.size() == 2) { // nobody knows which of the two
+    result.off.push_back(point.results[middle]);
+  }
+}
+
+// All of a repetition at another level than the others: open, with all of its results.
+bool add_mounting_that_is_off(const ChannelRun& run, const Mountings& mountings,
+                              RepetitionClosures& result) {
+  const auto [repetition, mounting] = mountings.farthest();
+  const double limit = mounting_tolerance + limit_by_chance(1) * mounting.u_magnitude_rel;
+  if (std::abs(mounting.magnitude_log) <= limit) {
+    return false;
+  }
+  result.closures.push_back(
+      judged(ClosureKind::repetitions, fmt::format("repetition {}", repetition),
+             mounting.magnitude_log, mounting.u_magnitude_rel, limit, "1",
+             fmt::format("all of repetition {} has {:.4g} times the magnitude of the others: look "
+                         "at how the sensor was mounted, at ranges and supplies, and measure it "
+                         "again",
+                         repetition, std::exp(mounting.magnitude_log))));
+  std::copy_if(run.results.begin(), run.results.end(), std::back_inserter(result.off),
+               [&](const StepResult* one) { return one->repetition == repetition; });
+  return true;
+}
+
+void add_agreement(const ChannelRun& run, const Mountings& mountings,
+                   const std::vector<Compared>& all, RepetitionClosures& result) {
   if (all.empty()) {
     result.closures.push_back(
         not_possible(ClosureKind::repetitions, "", "no point was measured more than once"));
     return;
   }
-  const Difference s = usual(all);
-  const double freedom = prior_freedom + efficiency_of_median * static_cast<double>(all.size());
-  const double limit = limit_by_chance(2 * all.size(), freedom);
+  const Usual s = usual(all, mountings.are_known());
+  const double limit = limit_by_chance(2 * all.size(), s.degrees_of_freedom);
   const Compared* worst = &all.front();
   double largest = 0.0;
   for (const Compared& one : all) {
-    const double z = Difference{one.z.magnitude / s.magnitude, one.z.phase / s.phase}.larger();
+    const double z = s.larger_of(one.d, limit);
     if (z > limit) {
-      result.off.push_back(one.point->results[one.repetition]);
-      if (one.point->results.size() == 2) { // nobody knows which of the two
-        result.off.push_back(one.point->results[one.middle]);
-      }
+      add_off(*one.point, one.repetition, one.middle, result);
     }
     if (z > largest) {
       largest = z;
       worst = &one;
     }
+  }
+  if (!(largest > limit) && add_mounting_that_is_off(run, mountings, result)) {
+    return;
   }
   result.closures.push_back(
       judged(ClosureKind::repetitions, worst->point->results.front()->frequency_text_hz + " Hz",
@@ -199,7 +255,8 @@ Closure scatter(const ChannelRun& run, const std::vector<PointRepetitions>& poin
                             value > limit ? ": their means are known worse than is stated" : ""));
 }
 
-Closure first_again(const ChannelRun& run, const std::vector<Compared>& all) {
+Closure first_again(const ChannelRun& run, const Mountings& mountings,
+                    const std::vector<Compared>& all) {
   const RecipeStep& planned_first = run.recipe.steps.front();
   const RecipeStep& planned_last = run.recipe.steps.back();
   const bool planned = run.recipe.steps.size() > 2 &&
@@ -212,19 +269,16 @@ Closure first_again(const ChannelRun& run, const std::vector<Compared>& all) {
                         planned ? "the first or the last step has no value"
                                 : "the plan does not end with its first point (repeat_first)");
   }
-  const analysis::Repetition before = repetition_of(first), behind = repetition_of(last);
+  const analysis::Repetition before = mountings.value_of(first);
+  const analysis::Repetition behind = mountings.value_of(last);
   const std::complex<double> d = log_ratio(behind, before);
-  const Difference z = difference(behind, before);
-  const Difference s = all.empty() ? Difference{1.0, 1.0} : usual(all);
-  const bool by_phase = z.phase / s.phase > z.magnitude / s.magnitude;
-  const double u =
-      by_phase
-          ? s.phase * std::hypot(before.u_random_phase_rad, behind.u_random_phase_rad)
-          : s.magnitude * std::hypot(before.u_random_magnitude_rel, behind.u_random_magnitude_rel);
-  const double freedom = prior_freedom + efficiency_of_median * static_cast<double>(all.size());
+  const Difference off = difference(behind, before);
+  const Usual s = usual(all, mountings.are_known());
+  const double chance_limit = limit_by_chance(2, s.degrees_of_freedom);
+  const bool by_phase = s.phase_of(off, chance_limit) > s.magnitude_of(off, chance_limit);
+  const double u = by_phase ? s.phase * off.u_phase_rad : s.magnitude * off.u_magnitude_rel;
   const double value = by_phase ? d.imag() : d.real();
-  const double limit =
-      limit_by_chance(2, all.empty() ? analysis::infinite_degrees_of_freedom : freedom) * u;
+  const double limit = chance_limit * u + s.beyond;
   return judged(
       ClosureKind::first_repeated, first.frequency_text_hz + " Hz", value, u, limit,
       by_phase ? "rad" : "1",
@@ -244,12 +298,13 @@ RepetitionClosures repetition_closures(const ChannelRun& run) {
              not_possible(ClosureKind::first_repeated, "", why)},
             {}};
   }
-  const std::vector<PointRepetitions> points = points_of(run);
+  const Mountings mountings(run);
+  const std::vector<PointRepetitions> points = mountings.points(run);
   const std::vector<Compared> all = compared(points);
   RepetitionClosures result;
-  add_agreement(all, result);
+  add_agreement(run, mountings, all, result);
   result.closures.push_back(scatter(run, points));
-  result.closures.push_back(first_again(run, all));
+  result.closures.push_back(first_again(run, mountings, all));
   return result;
 }
 

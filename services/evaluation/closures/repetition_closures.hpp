@@ -3,11 +3,13 @@
 //
 //   z_i = |ln|H_i / H_m|| / u, |arg(H_i / H_m)| / u      H_m: the repetition nearest to all others
 //
-// against s times Student's t; s, at least 1, is the usual z of all points (by its median, so that
-// what is wrong does not hide itself), known to as many degrees of freedom as there are repetitions
-// beyond one a point, and three of a prior: scatter is seldom many times what single results state.
-// A remounting that moves all points alike makes s large, and is not open. What is open are single
-// repetitions: inverted, turned, at another level. They are named, for a flag in their own rows.
+// after what each repetition has in common at all points, its mounting, was taken out
+// (mountings.hpp), against s times Student's t; s, at least 1, is the usual z of all points (by its
+// median, so that what is wrong does not hide itself), known to as many degrees of freedom as there
+// are repetitions beyond one a point, and three of a prior: scatter is seldom many times what
+// single results state. Open are single repetitions: inverted, turned, at another level; and all of
+// a repetition whose mounting differs by more than mounting_tolerance. They are named, for a flag
+// in their own rows.
 //
 //   sum (n - 1) s_f^2 / (n u_f^2)      chi-squared: scatter that the mean's u does not carry
 //

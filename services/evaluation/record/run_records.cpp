@@ -361,7 +361,8 @@ bool RunRecords::is_uncertain(std::size_t step) const {
 std::shared_ptr<const SourceRecord> RunRecords::part_of(const SourceRecord& whole,
                                                         const TimeInterval& interval) const {
   using Part = std::shared_ptr<const SourceRecord>;
-  return copies_ ? std::make_shared<const SourceRecord>(whole.part(interval)) : Part({}, &whole);
+  return copies_ ? std::make_shared<const SourceRecord>(whole.part(interval))
+                 : Part(Part(), &whole);
 }
 
 SourceInterval RunRecords::samples(const std::string& source, const TimeInterval& interval) const {

@@ -31,6 +31,8 @@ enum class ClosureKind {
   channel_clocks        // of channels of one sensor, each by its own samples
 };
 
+inline constexpr auto last_closure_kind = ClosureKind::channel_clocks;
+
 enum class Verdict { closes, open, not_possible };
 
 struct Closure {

@@ -89,7 +89,7 @@ void members(auto& visit, Either<analysis::Contribution> auto& one) {
 }
 
 void members(auto& visit, Either<Closure> auto& one) {
-  visit.named("kind", one.kind, ClosureKind::channel_delays);
+  visit.named("kind", one.kind, last_closure_kind);
   visit("subject", one.subject);
   visit.named("verdict", one.verdict, Verdict::not_possible);
   visit("value", one.value);

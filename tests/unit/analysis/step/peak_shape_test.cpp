@@ -284,7 +284,8 @@ TEST(PeakShape, SensorOfAnotherQuantityIsNotBent) {
       const Channel reference{.frequency_hz = 10.0 + 70.0 * part(random),
                               .rate_hz = 5000.0,
                               .delay_rad = 0.0,
-                              .harmonics = {0.03 * part(random), 0.02 * part(random)}};
+                              .harmonics = {0.06 * part(random), 0.03 * part(random),
+                                            0.02 * part(random), 0.006 * part(random)}};
       Channel sensor = reference;
       sensor.rate_hz = 1003.05;
       sensor.delay_rad = 0.4;

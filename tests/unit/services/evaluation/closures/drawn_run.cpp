@@ -48,14 +48,14 @@ Recipe make_recipe(const DrawnOptions& options) {
                             .level_m_s2 = level_m_s2,
                             .duration_s = 3.0});
   };
-  constexpr std::uint32_t sweeps = 3;
-  for (std::uint32_t sweep = 1; sweep <= sweeps; ++sweep) {
-    for (const char* hz : {"12.5", "20", "31.5", "50", "80", "125"}) {
-      add(sweep, hz);
+  constexpr std::array frequencies{"12.5", "20", "31.5", "50", "80", "125"};
+  for (std::uint32_t sweep = 1; sweep <= options.repetitions; ++sweep) {
+    for (std::size_t i = 0; i < options.points; ++i) {
+      add(sweep, frequencies.at(i));
     }
   }
   if (options.repeat_first) {
-    add(sweeps + 1, "12.5");
+    add(options.repetitions + 1, frequencies.front());
   }
   return recipe;
 }
@@ -87,9 +87,9 @@ void by_method(EvaluationMethod method, double rate, double noise, StepResult& r
   if (method == EvaluationMethod::sample_timestamping) {
     return;
   }
-  const analysis::ChannelFit dut = result.fits.back();
-  result.fits.resize(method == EvaluationMethod::series_timestamping ? 2 : 1);
-  result.fits.push_back(dut);
+  // Of reference, syncs and the channel.
+  result.fits.erase(result.fits.begin() + (method == EvaluationMethod::series_timestamping ? 2 : 1),
+                    result.fits.end() - 1);
   if (method == EvaluationMethod::series_timestamping) {
     constexpr double u_hz = 1e-4;
     result.series = SeriesFinding{.sample_rate_hz = 1.01 * rate_hz * rate + u_hz * noise,
@@ -106,7 +106,7 @@ DrawnRun draw_run(unsigned seed, const DrawnOptions& options) {
   std::normal_distribution<double> normal;
   const Drawn drawn = draw(random);
   DrawnRun run{make_recipe(options), {}};
-  std::array<std::pair<double, double>, 3> mountings;
+  std::vector<std::pair<double, double>> mountings(options.repetitions);
   for (auto& [rel, late_s] : mountings) {
     rel = drawn.mounting_rel * normal(random);
     late_s = drawn.mounting_s * normal(random);

@@ -27,6 +27,8 @@ struct DrawnOptions {
   std::size_t channels = 1;
   EvaluationMethod method = EvaluationMethod::sample_timestamping;
   bool repeat_first = true;
+  std::uint32_t repetitions = 3;
+  std::size_t points = 6;
 };
 
 [[nodiscard]] DrawnRun draw_run(unsigned seed, const DrawnOptions& options = {});
