@@ -245,9 +245,23 @@ SineShape derivative_of(SineShape shape, int order) {
   return shape;
 }
 
-double unexplained(const SineShape& sensor, const SineShape& reference, int derivative) {
-  const auto excess = excess_of(sensor, derivative_of(reference, derivative));
-  return chi_squared_of(excess) - best_match(excess, widths_rad).gain;
+// Both as the sensor would show them, and both as the reference would.
+BentPeaks bent_where_derived(const SineShape& sensor, const SineShape& reference, int order) {
+  const SineShape reference_there = derivative_of(reference, order);
+  const SineShape sensor_here = derivative_of(sensor, -order);
+  BentPeaks peaks = judged(excess_of(sensor, reference_there));
+  if (peaks.found && peaks.amplitude_error_rel > 0.0) {
+    peaks.of_either = !sensor_has_more(sensor, reference_there);
+    return peaks;
+  }
+  BentPeaks of_reference = judged(excess_of(sensor_here, reference));
+  if (of_reference.found && of_reference.amplitude_error_rel < 0.0) {
+    of_reference.of_either = sensor_has_more(sensor_here, reference);
+    return of_reference;
+  }
+  of_reference = bent_reference(sensor_here, reference);
+  peaks.found = false;
+  return of_reference.found ? of_reference : peaks;
 }
 
 } // namespace
@@ -307,26 +321,17 @@ BentPeaks find_bent_peaks(const SineShape& sensor, const SineShape& reference,
   if (excess_of(sensor, reference).size() < min_orders || sensor.periods < min_periods) {
     return {};
   }
-  const int order =
-      *std::min_element(derivatives.begin(), derivatives.end(), [&](int one, int other) {
-        return unexplained(sensor, reference, one) < unexplained(sensor, reference, other);
-      });
-  // Both as the sensor would show them, and both as the reference would.
-  const SineShape reference_there = derivative_of(reference, order);
-  const SineShape sensor_here = derivative_of(sensor, -order);
-  BentPeaks peaks = judged(excess_of(sensor, reference_there));
-  if (peaks.found && peaks.amplitude_error_rel > 0.0) {
-    peaks.of_either = !sensor_has_more(sensor, reference_there);
-    return peaks;
+  std::optional<BentPeaks> least;
+  for (const int order : derivatives) {
+    const BentPeaks peaks = bent_where_derived(sensor, reference, order);
+    if (!peaks.found) {
+      return peaks;
+    }
+    if (!least || std::abs(peaks.amplitude_error_rel) < std::abs(least->amplitude_error_rel)) {
+      least = peaks;
+    }
   }
-  BentPeaks of_reference = judged(excess_of(sensor_here, reference));
-  if (of_reference.found && of_reference.amplitude_error_rel < 0.0) {
-    of_reference.of_either = sensor_has_more(sensor_here, reference);
-    return of_reference;
-  }
-  of_reference = bent_reference(sensor_here, reference);
-  peaks.found = false;
-  return of_reference.found ? of_reference : peaks;
+  return least.value_or(BentPeaks{});
 }
 
 } // namespace dyncal::analysis

@@ -8,9 +8,11 @@
 //   y_k = a_+ t_k + a_- t_k*,  t_k = -i (-i)^k E_k / E_1         y_k = P_k / |P_1| e^{-ik arg P_1}
 //
 // so that a_+ + a_- is the relative error of the amplitude; a delay, constant over frequency, does
-// not change y_k. Excess over the reference y_k - r_k, k = 2..10, is weighted with u^2 = noise^2 +
-// (g r_k)^2 + own^2 + steps^2: g = 0.15 + (k f / (rate / 2))^2 allows for H(kf) / H(f) other than
-// 1, own for a good sensor's non-linearity (0.3, 0.1, and 0.01 % from the fourth on), steps for a
+// not change y_k, a derivative d of time (a velocity beside a displacement: 1) makes it k^d
+// i^(d (1 - k)) y_k; of several d that may be, all must show bent peaks, and the least error
+// counts. Excess over the reference y_k - r_k, k = 2..10, is weighted with u^2 = noise^2 + (g
+// r_k)^2 + own^2 + steps^2: g = 0.15 + (k f / (rate / 2))^2 allows for H(kf) / H(f) other than 1,
+// own for a good sensor's non-linearity (0.3, 0.1, and 0.01 % from the fourth on), steps for a
 // converter without noise ((q/A)^1.5 / pi^2). Of the widths 0.1, 0.2, 0.35, 0.6, 0.9 rad the one
 // that fits best counts, with both ends, each alone, or each with its own size.
 //
@@ -70,7 +72,7 @@ struct BentPeaks {
 
 // What the sensor reads may be any of these derivatives of what the reference reads.
 inline constexpr std::array same_quantity{0};
-inline constexpr std::array other_quantity{0, 1, -1, 2, -2, 3, -3};
+inline constexpr std::array other_quantity{0, 1, -1, 2, -2};
 [[nodiscard]] BentPeaks find_bent_peaks(const SineShape& sensor, const SineShape& reference,
                                         std::span<const int> derivatives = same_quantity);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <complex>
 #include <iterator>
+#include <numbers>
 #include <optional>
 
 #include <fmt/core.h>
@@ -17,6 +18,8 @@
 namespace dyncal::inline evaluation {
 namespace {
 
+// Towards 0 Hz; a velocity against a displacement tends to half of pi, which is neither.
+constexpr double opposite_from_rad = 0.75 * std::numbers::pi;
 constexpr double before_excitation = 3.0; // standard uncertainties of a group delay below 0
 
 std::vector<FrequencyPoint> mean_points(const std::vector<const StepResult*>& results) {
@@ -150,7 +153,8 @@ void TransferSummary::add_group_delay(const std::vector<const StepResult*>& resu
   if (!delay->is_constant) {
     function.flags.push_back(make_flag(ResultFlag::group_delay_not_constant));
   }
-  if (delay->polarity_inverted && !opposite_repetitions(function.points)) {
+  const bool is_opposite = std::abs(delay->intercept_rad) > opposite_from_rad;
+  if (is_opposite && !opposite_repetitions(function.points)) {
     function.flags.push_back(make_flag(ResultFlag::polarity_inverted));
   }
   if (delay->delay_s < -before_excitation * delay->u_delay_s) {
