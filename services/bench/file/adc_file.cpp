@@ -177,4 +177,9 @@ Expected<Points> read_adc_file(const AdcCorrectionSettings& settings) {
   return of_one_amplitude(analysis::adc_calibration_points(measurements), settings);
 }
 
+Expected<std::vector<analysis::AdcCalibrationPoint>> read_adc_calibration(const BenchFile& bench) {
+  return bench.corrections.adc ? read_adc_file(*bench.corrections.adc)
+                               : Expected<std::vector<analysis::AdcCalibrationPoint>>{};
+}
+
 } // namespace dyncal::inline bench

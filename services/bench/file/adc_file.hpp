@@ -27,4 +27,8 @@ namespace dyncal::inline bench {
 [[nodiscard]] Expected<std::vector<analysis::AdcCalibrationPoint>>
 read_adc_file(const AdcCorrectionSettings& settings);
 
+// Of the file that the bench file names; no points where it names none.
+[[nodiscard]] Expected<std::vector<analysis::AdcCalibrationPoint>>
+read_adc_calibration(const BenchFile& bench);
+
 } // namespace dyncal::inline bench

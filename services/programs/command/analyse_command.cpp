@@ -1,26 +1,61 @@
-#include "services/programs/command/analyse_command.hpp"
-
+// `dyncal analyse BENCH.toml`: the same evaluation as a live run, from the bench file's file
+// sources, without the network. Shots of series time stamping come from folders (shot_files.hpp).
+// `dyncal analyse RECORDING`: the results of the live run from its recording, or by another bench
+// file.
+//
+// Files are read in threads of their own, a bounded stretch ahead; the evaluation runs in the
+// caller's thread. All have ended when it returns. Fails like `dyncal run`: a file with an error is
+// named with its line, a source that is neither a file nor a CAN log is refused.
 #include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <stop_token>
+#include <string>
 #include <thread>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
+#include <spdlog/spdlog.h>
 
 #include "services/base/version.hpp"
+#include "services/bench/file/adc_file.hpp"
 #include "services/evaluation/run_evaluator.hpp"
 #include "services/evaluation/step_survey.hpp"
 #include "services/instruments/played_source.hpp"
-#include "services/programs/command/analyse_recording.hpp"
-#include "services/programs/command/run_command.hpp"
+#include "services/programs/command/command.hpp"
+#include "services/programs/command/figure_options.hpp"
+#include "services/programs/command/keep_options.hpp"
 #include "services/programs/command/work_progress.hpp"
 #include "services/records/exchange/opened_recording.hpp"
 #include "services/records/replay/file_input.hpp"
+#include "services/records/replay/recorded_run.hpp"
 #include "services/records/replay/sample_memory.hpp"
 #include "services/records/replay/shot_files.hpp"
 #include "services/run/run_plan.hpp"
+#include "services/views/report/run_figures.hpp"
 #include "services/views/report/show_outcome.hpp"
 
 namespace dyncal::inline programs {
 namespace {
+
+struct AnalyseOptions {
+  std::filesystem::path bench_file; // or a run folder (services/records/run_folder), or a recording
+  std::string run;                  // of the recording; empty: the only one
+  std::optional<std::filesystem::path> recipe; // bench file to evaluate the recording by
+  std::optional<std::filesystem::path> json;
+  FigureFiles figures;
+};
+
+void add_analyse(CLI::App& command, AnalyseOptions& analyse) {
+  take_run(command.add_option("BENCH.toml", analyse.bench_file,
+                              "bench file, the folder of a run, or a recording (.mcap), which "
+                              "gives the results of the live run"))
+      ->required();
+  command.add_option("--run", analyse.run, "run of the recording (default: the only one)");
+  command.add_option("--recipe", analyse.recipe,
+                     "evaluate the recording by this bench file, not by the one of its run");
+  command.add_option("--json", analyse.json, "write the result to this file as JSON");
+  add_figure_options(command, analyse.figures);
+}
 
 // At once, one a processor: a step takes longer than reading the next; each holds its samples.
 constexpr std::size_t max_evaluations = 4;
@@ -177,7 +212,33 @@ Expected<Evaluated> evaluate_files(const BenchFile& bench, const Recipe& recipe,
   return evaluated;
 }
 
-Expected<RunOutcome> analyse(const AnalyseCommand& command, const std::stop_token& stop) {
+// Prints what is damaged or missing on standard error.
+Expected<RunOutcome> analyse_recording(const AnalyseOptions& command, const std::stop_token& stop,
+                                       const SharedWorkCount& count) {
+  const auto warn = [](const std::vector<std::string>& warnings) {
+    for (const std::string& warning : warnings) {
+      spdlog::warn("{}", warning);
+    }
+  };
+  RecordedRunOptions wish{.run = command.run, .recipe = {}, .count = count};
+  std::optional<AdcFile> adc_file;
+  if (command.recipe) {
+    DYNCAL_TRY(const auto bench, read_bench_file(*command.recipe));
+    DYNCAL_TRY(const auto adc, read_adc_calibration(bench));
+    DYNCAL_TRY(wish.recipe, plan_recipe(bench, "recorded", adc));
+    adc_file = adc_file_of(bench);
+  }
+  DYNCAL_TRY(auto opened, open_recording(command.bench_file, count, stop));
+  warn(opened.warnings);
+  DYNCAL_TRY(auto evaluated, evaluate_recording(opened.reader, wish, stop));
+  warn(evaluated.warnings);
+  if (command.recipe) {
+    evaluated.outcome.adc_file = std::move(adc_file);
+  }
+  return std::move(evaluated.outcome);
+}
+
+Expected<RunOutcome> analyse(const AnalyseOptions& command, const std::stop_token& stop) {
   const WorkProgress progress("reading");
   if (is_recording(command.bench_file)) {
     return analyse_recording(command, stop, progress.count());
@@ -216,21 +277,18 @@ Expected<RunOutcome> analyse(const AnalyseCommand& command, const std::stop_toke
   return outcome;
 }
 
-} // namespace
-
-int run_analyse(const AnalyseCommand& command, const std::stop_token& stop) {
-  if (const auto possible = check_outputs(command.json, command.figures); !possible) {
-    return report_error(possible.error());
-  }
+Expected<void> run_analyse(const AnalyseOptions& command, const std::stop_token& stop) {
+  DYNCAL_TRY(check_outputs(command.json, command.figures));
   keep_memory_for_samples();
-  const auto outcome = analyse(command, stop);
-  if (!outcome) {
-    return report_error(outcome.error());
-  }
-  if (const auto shown = show_outcome(*outcome, command.json, command.figures); !shown) {
-    return report_error(shown.error());
-  }
-  return conclude(*outcome);
+  DYNCAL_TRY(const auto outcome, analyse(command, stop));
+  DYNCAL_TRY(show_outcome(outcome, command.json, command.figures));
+  return check_complete(outcome);
 }
 
+const Command analyse_command{
+    110, "analyse",
+    "evaluate the file sources of a bench file, or a recording, without the network", add_analyse,
+    run_analyse};
+
+} // namespace
 } // namespace dyncal::inline programs

@@ -1,28 +1,85 @@
-#include "services/programs/command/calibrate_adc_command.hpp"
-
+// `dyncal calibrate adc BENCH.toml`: the response of the DAU's sync ADC over frequency and test
+// amplitude, in the path that calibrations use (data-ready edge, stamp, conversion), against the
+// ACS's sync channel; analysis/instrument/adc_comparison.hpp has the model.
+//
+// Conducts one run of the bench's excitation list for each test amplitude, with sync itself as
+// reference and as channel under calibration, and writes all measurements as a file that
+// `[corrections] adc` reads. Without --amplitudes the bench's levels are used and the test
+// amplitude is the one that the ACS finds. With them the generator is set to half of the
+// peak-to-peak voltage, so sync must be its output. Needs both sources to stamp in UTC: anything
+// else is refused, for an ADC's delay cannot be distinguished from an unknown offset of two
+// clocks. An oscilloscope's record is refused as well: it is placed in time by its trigger, which
+// the DAU does not stamp. Belongs to one thread.
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
 #include <ctime>
+#include <filesystem>
 #include <map>
 #include <numbers>
+#include <stop_token>
+#include <string>
+#include <vector>
 
+#include <fmt/chrono.h>
 #include <fmt/core.h>
 
 #include "analysis/instrument/adc_comparison.hpp"
 #include "drivers/utc_clock.hpp"
 #include "services/bench/file/adc_file_writer.hpp"
-#include "services/contract/digest.hpp"
+#include "services/bench/file/bench_file.hpp"
+#include "services/contract/time_name.hpp"
 #include "services/contract/topics.hpp"
 #include "services/daemon/program/bench_program.hpp"
 #include "services/daemon/program/watched_network.hpp"
+#include "services/programs/command/adc_bench.hpp"
+#include "services/programs/command/command.hpp"
 #include "services/programs/command/progress_line.hpp"
-#include "services/programs/command/run_command.hpp"
+#include "services/run/run_controller.hpp"
 #include "services/views/report/show_outcome.hpp"
 
 namespace dyncal::inline programs {
 namespace {
+
+struct CalibrateAdcOptions {
+  std::filesystem::path bench_file;
+  std::filesystem::path output = "adc.json";
+  std::string channel = "ADC1";       // its name in the file
+  std::vector<double> amplitudes_vpp; // empty: one pass with the bench's levels
+  double u_time_scale_s = 100e-9;     // of the two sources' stamps against each other
+  double u_acs_gain_rel = 0.0;        // of the ACS's sync channel
+  NetworkOptions network;
+};
+
+void add_adc(CLI::App& command, CalibrateAdcOptions& adc) {
+  command
+      .add_option("BENCH.toml", adc.bench_file,
+                  "bench file: its frequencies and repetitions are measured")
+      ->required();
+  command
+      .add_option("--amplitudes", adc.amplitudes_vpp,
+                  "of sync, in V peak to peak, comma separated; the generator's output must be "
+                  "sync (default: the bench's levels, one amplitude)")
+      ->delimiter(',')
+      ->check(CLI::PositiveNumber);
+  command.add_option("--channel", adc.channel, "name of the ADC in the file")
+      ->capture_default_str();
+  command
+      .add_option("--time-uncertainty", adc.u_time_scale_s,
+                  "standard uncertainty of the stamps of DAU and ACS against each other, in "
+                  "seconds (see calibrate time)")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command
+      .add_option("--gain-uncertainty", adc.u_acs_gain_rel,
+                  "relative standard uncertainty of the ACS's sync channel")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command.add_option("--output", adc.output, "file that [corrections] adc of a bench file names")
+      ->capture_default_str();
+  add_network_options(command, adc.network);
+}
 
 using namespace std::chrono_literals;
 using Measurements = std::vector<analysis::AdcCalibrationPoint>;
@@ -32,18 +89,6 @@ constexpr double amplitude_tolerance =
     0.1; // of the sync voltage asked for; cables and loads take a little
 constexpr double amplitude_spread = 0.05; // within one pass without a voltage asked for
 constexpr double max_adc_delay_s = 2e-5;  // more is a hint at something else
-
-Error refused(std::string message) {
-  return {ErrorCode::bad_argument, std::move(message)};
-}
-
-Error no_time_scale(const std::string& source) {
-  return refused(
-      fmt::format("source '{}' does not stamp in UTC: sync links unrelated clocks only up to a "
-                  "delay, and the phase of the ADC is a "
-                  "delay; let both sources stamp in UTC (time_base = \"utc\")",
-                  source));
-}
 
 // How the sources describe themselves, which takes precedence over the bench file.
 Expected<void> require_common_time_scale(bus::Participant& participant, const BenchFile& bench,
@@ -78,7 +123,7 @@ Expected<void> require_common_time_scale(bus::Participant& participant, const Be
   }
   for (const auto& source : sources) {
     if (time_bases[source] != wire::TIME_BASE_UTC) {
-      return fail(no_time_scale(source));
+      return fail(ErrorCode::no_source, no_time_scale(source));
     }
   }
   return {};
@@ -103,7 +148,7 @@ const analysis::ChannelFit* fit_of(const StepResult& result, const ChannelName& 
   return nullptr;
 }
 
-Expected<Measurements> measurements_of(const CalibrateAdcCommand& command, const BenchFile& bench,
+Expected<Measurements> measurements_of(const CalibrateAdcOptions& command, const BenchFile& bench,
                                        const RunOutcome& outcome) {
   Measurements measurements;
   for (const StepResult& result : outcome.results) {
@@ -138,16 +183,18 @@ Expected<void> name_amplitude(std::optional<double> asked_vpp, Measurements& mea
   const double highest_vpp = high->test_amplitude_vpp;
   if (asked_vpp && (lowest_vpp < *asked_vpp * (1.0 - amplitude_tolerance) ||
                     highest_vpp > *asked_vpp * (1.0 + amplitude_tolerance))) {
-    return fail(refused(fmt::format("sync has {:.4g} to {:.4g} V peak to peak at the ACS where the "
-                                    "generator was set to {:.4g} V: "
-                                    "--amplitudes needs the generator's output itself as sync",
-                                    lowest_vpp, highest_vpp, *asked_vpp)));
+    return fail(ErrorCode::no_result,
+                fmt::format("sync has {:.4g} to {:.4g} V peak to peak at the ACS where the "
+                            "generator was set to {:.4g} V: --amplitudes needs the generator's "
+                            "output itself as sync",
+                            lowest_vpp, highest_vpp, *asked_vpp));
   }
   if (!asked_vpp && highest_vpp > lowest_vpp * (1.0 + amplitude_spread)) {
-    return fail(refused(fmt::format("sync ranges from {:.4g} to {:.4g} V peak to peak with "
-                                    "the bench's levels, but an ADC is calibrated at "
-                                    "one amplitude after the other: give --amplitudes",
-                                    lowest_vpp, highest_vpp)));
+    return fail(ErrorCode::no_result,
+                fmt::format("sync ranges from {:.4g} to {:.4g} V peak to peak with the bench's "
+                            "levels, but an ADC is calibrated at one amplitude after the other: "
+                            "give --amplitudes",
+                            lowest_vpp, highest_vpp));
   }
   const double step = std::pow(10.0, std::floor(std::log10(highest_vpp)) - 2.0);
   const double name_vpp =
@@ -158,7 +205,7 @@ Expected<void> name_amplitude(std::optional<double> asked_vpp, Measurements& mea
   return {};
 }
 
-Expected<Measurements> measure_pass(const CalibrateAdcCommand& command, const BenchFile& bench,
+Expected<Measurements> measure_pass(const CalibrateAdcOptions& command, const BenchFile& bench,
                                     const std::string& run, std::optional<double> amplitude_vpp,
                                     bus::Participant& participant, const std::stop_token& stop) {
   const BenchFile pass = bench_of_adc_pass(bench, amplitude_vpp);
@@ -169,27 +216,16 @@ Expected<Measurements> measure_pass(const CalibrateAdcCommand& command, const Be
   progress.end();
   DYNCAL_TRY(outcome);
   DYNCAL_TRY(check_end(*outcome, "no file was written"));
-  auto measurements = measurements_of(command, pass, *outcome);
-  if (!measurements) {
-    return measurements;
-  }
-  if (measurements->size() < outcome->planned_steps) {
+  DYNCAL_TRY(auto measurements, measurements_of(command, pass, *outcome));
+  if (measurements.size() < outcome->planned_steps) {
     return fail(
         ErrorCode::no_result,
         fmt::format(
             "{} of {} steps have no result; the analysis service reports why (dyncal watch)",
-            outcome->planned_steps - measurements->size(), outcome->planned_steps));
+            outcome->planned_steps - measurements.size(), outcome->planned_steps));
   }
-  DYNCAL_TRY(name_amplitude(amplitude_vpp, *measurements));
+  DYNCAL_TRY(name_amplitude(amplitude_vpp, measurements));
   return measurements;
-}
-
-std::string utc_text(std::int64_t utc_ns) {
-  const auto seconds = static_cast<std::time_t>(utc_ns / 1'000'000'000);
-  std::tm utc{};
-  gmtime_r(&seconds, &utc);
-  std::array<char, 32> text{};
-  return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%d %H:%M:%S", &utc)};
 }
 
 void print(const Measurements& measurements) {
@@ -210,13 +246,14 @@ void print(const Measurements& measurements) {
   }
 }
 
-Expected<void> write(const CalibrateAdcCommand& command, const BenchFile& bench,
+Expected<void> write(const CalibrateAdcOptions& command, const BenchFile& bench,
                      const std::string& run, const Measurements& measurements) {
   const auto* unit = bench.source(bench.method.sync_dau.source)->as<SmartupSourceSettings>();
   AdcFileHead head;
   head.channel = command.channel;
   head.board = unit == nullptr ? 0 : unit->sensor & 0xffff0000U;
-  head.date = utc_text(utc_now_ns());
+  head.date = fmt::format("{:%Y-%m-%d %H:%M:%S}",
+                          fmt::gmtime(static_cast<std::time_t>(utc_now_ns() / 1'000'000'000)));
   head.remarks = {{"Bench", bench.bench},
                   {"Run", run},
                   {"Path", "data-ready"},
@@ -225,11 +262,10 @@ Expected<void> write(const CalibrateAdcCommand& command, const BenchFile& bench,
   return write_adc_file(command.output, head, measurements);
 }
 
-Expected<Measurements> measure(const CalibrateAdcCommand& command, const BenchFile& bench,
+Expected<Measurements> measure(CalibrateAdcOptions& command, const BenchFile& bench,
                                const std::string& run, const std::stop_token& asked) {
-  NetworkOptions network = command.network;
-  add_network_settings(bench.network, network);
-  DYNCAL_TRY(const auto joined, WatchedNetwork::join(network, "dyncal-calibrate", asked));
+  add_network_settings(bench.network, command.network);
+  DYNCAL_TRY(const auto joined, WatchedNetwork::join(command.network, "dyncal-calibrate", asked));
   bus::Participant& participant = joined->participant;
   const std::stop_token stop = joined->stop();
   DYNCAL_TRY(require_common_time_scale(participant, bench, stop));
@@ -244,95 +280,34 @@ Expected<Measurements> measure(const CalibrateAdcCommand& command, const BenchFi
       fmt::print(stderr, "test amplitude {} V peak to peak, {} of {}\n", *passes[i], i + 1,
                  passes.size());
     }
-    const auto measured = measure_pass(command, bench, fmt::format("{}-{}", run, i + 1), passes[i],
-                                       participant, stop);
-    if (!measured) {
-      return measured;
-    }
-    all.insert(all.end(), measured->begin(), measured->end());
+    DYNCAL_TRY(const auto measured, measure_pass(command, bench, fmt::format("{}-{}", run, i + 1),
+                                                 passes[i], participant, stop));
+    all.insert(all.end(), measured.begin(), measured.end());
   }
   return all;
 }
 
-} // namespace
-
-Expected<void> check_bench_for_adc(const BenchFile& bench, bool sets_amplitude) {
-  if (bench.method.kind != EvaluationMethod::sample_timestamping) {
-    return fail(refused(fmt::format("{}: the sync ADC is calibrated on a bench of "
-                                    "method.kind = \"sample-timestamping\", whose DAU "
-                                    "records sync in the data-ready path",
-                                    bench.path.string())));
-  }
-  for (const ChannelName& role : {bench.method.sync_acs, bench.method.sync_dau}) {
-    const SourceSettings* source = bench.source(role.source);
-    if (source != nullptr && source->is<OscilloscopeSourceSettings>()) {
-      return fail(refused(
-          fmt::format("{}: source '{}' is an oscilloscope, whose record is placed in time by its "
-                      "trigger, and the DAU does "
-                      "not stamp that; calibrate the ADC against a system that stamps in UTC",
-                      bench.path.string(), role.source)));
-    }
-    const bool may_be_told_by_instrument = source != nullptr && source->is<SocketSourceSettings>();
-    if (source != nullptr && source->time_base != drivers::TimeBase::utc &&
-        !may_be_told_by_instrument) {
-      return fail(no_time_scale(role.source));
-    }
-  }
-  if (bench.excitation.repetitions < 2) {
-    return fail(refused(fmt::format("{}: excitation.repetitions must be at least 2: the "
-                                    "scatter of the calibration is found from them",
-                                    bench.path.string())));
-  }
-  if (sets_amplitude && bench.generator.driver == GeneratorDriver::none) {
-    return fail(refused(fmt::format("{}: --amplitudes sets the generator, but the bench has none",
-                                    bench.path.string())));
-  }
-  return {};
-}
-
-BenchFile bench_of_adc_pass(const BenchFile& bench, std::optional<double> amplitude_vpp) {
-  BenchFile pass = bench;
-  pass.method.reference = bench.method.sync_acs;
-  pass.method.dut = {bench.method.sync_dau};
-  pass.method.temperature.reset();
-  pass.corrections.adc.reset();
-  pass.generator.level_tolerance_rel.reset(); // the reference may be without excitation
-  pass.text += "\n# dyncal calibrate adc: reference = sync_acs, dut = sync_dau, no corrections";
-  if (amplitude_vpp) {
-    const double level = 0.5 * *amplitude_vpp * bench.generator.level_per_volt;
-    pass.excitation.levels_m_s2.assign(bench.excitation.frequencies_hz.size(), level);
-    pass.text += fmt::format(", sync {} V peak to peak", *amplitude_vpp);
-  }
-  pass.text += '\n';
-  pass.sha256 = sha256_hex(pass.text);
-  return pass;
-}
-
-int run_calibrate_adc(const CalibrateAdcCommand& command, const std::stop_token& stop) {
-  const auto bench = read_bench_file(command.bench_file);
-  if (!bench) {
-    return report_error(bench.error());
-  }
-  if (const auto possible = check_bench_for_adc(*bench, !command.amplitudes_vpp.empty());
-      !possible) {
-    return report_error(possible.error());
-  }
-  const std::string run = "adc-" + run_from_time();
-  const auto measurements = measure(command, *bench, run, stop);
-  if (!measurements) {
-    return report_error(measurements.error());
-  }
-  print(*measurements);
-  if (const auto written = write(command, *bench, run, *measurements); !written) {
-    return report_error(written.error());
-  }
+Expected<void> run_calibrate_adc(CalibrateAdcOptions& command, const std::stop_token& stop) {
+  DYNCAL_TRY(const auto bench, read_bench_file(command.bench_file));
+  DYNCAL_TRY(check_bench_for_adc(bench, !command.amplitudes_vpp.empty()));
+  const std::string run = "adc-" + time_name(utc_now_ns());
+  DYNCAL_TRY(const auto measurements, measure(command, bench, run, stop));
+  print(measurements);
+  DYNCAL_TRY(write(command, bench, run, measurements));
   fmt::print("wrote {}\nfor the bench file, under [corrections]:\nadc = {{ file = \"{}\", channel "
              "= \"{}\", phase_sign = \"lag\"{} }}\n",
              command.output.string(), command.output.filename().string(), command.channel,
              command.amplitudes_vpp.size() > 1
                  ? fmt::format(", test_amplitude_vpp = {}", command.amplitudes_vpp.front())
                  : "");
-  return 0;
+  return {};
 }
 
+const Command calibrate_adc_command{270, "calibrate adc",
+                                    "response of a DAU's sync ADC over frequency and amplitude, "
+                                    "against the ACS; both must stamp in "
+                                    "UTC",
+                                    add_adc, run_calibrate_adc};
+
+} // namespace
 } // namespace dyncal::inline programs

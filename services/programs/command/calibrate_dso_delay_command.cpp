@@ -1,9 +1,19 @@
-#include "services/programs/command/calibrate_dso_delay_command.hpp"
-
+// `dyncal calibrate dso-delay`: the delay of an oscilloscope's trigger output, in the set-up of
+// paper section 2.4: the sync line on one input, the trigger output fed back to another
+// (analysis/instrument/trigger_delay.hpp).
+//
+// Takes shots, prints delay, uncertainty and histogram, and writes them as JSON: the file that
+// [corrections] dso_delay = { file = ... } of a bench file names
+// (services/bench/file/dso_delay_file.hpp). With a generator's address the generator is set and its
+// output switched on and off; otherwise the operator does that. A shot that fails is repeated, up
+// to as many failures as shots. Belongs to one thread.
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <memory>
 #include <optional>
+#include <stop_token>
+#include <string>
 #include <vector>
 
 #include <fmt/core.h>
@@ -17,11 +27,67 @@
 #include "services/base/json_text.hpp"
 #include "services/base/output_file.hpp"
 #include "services/base/printable_text.hpp"
-#include "services/daemon/program/program.hpp"
+#include "services/programs/command/command.hpp"
 #include "services/run/output_guard.hpp"
 
 namespace dyncal::inline programs {
 namespace {
+
+struct CalibrateDsoDelayOptions {
+  std::string oscilloscope;     // address, see drivers/link/scpi_transport.hpp
+  std::string family;           // of the oscilloscope; empty: by its identity
+  std::string generator;        // address; empty: set by hand
+  std::string by = "rectangle"; // or "sine"
+  std::string frequency_hz = "1000";
+  double amplitude_v = 0.05; // of the generator, zero to peak
+  int sync_input = 1;
+  int output_input = 2;
+  double sync_range_v = 20.0;
+  double output_range_v = 5.0;
+  int shots = 50;
+  std::filesystem::path output = "dso-delay.json";
+};
+
+void add_dso_delay(CLI::App& command, CalibrateDsoDelayOptions& delay) {
+  command.add_option("--oscilloscope", delay.oscilloscope, "HOST:PORT, or vxi11:HOST")->required();
+  command.add_option("--family", delay.family,
+                     "command family of the oscilloscope (default: by its identity)");
+  command.add_option("--generator", delay.generator, "HOST:PORT (default: set by hand)");
+  command
+      .add_option("--by", delay.by,
+                  "sync signal: rectangle (from edge to edge) or sine (from the trigger point; "
+                  "its noise is reported)")
+      ->check(CLI::IsMember({"rectangle", "sine"}))
+      ->capture_default_str();
+  command.add_option("--frequency", delay.frequency_hz, "frequency of the generator in Hz")
+      ->capture_default_str();
+  command
+      .add_option("--amplitude", delay.amplitude_v, "amplitude of the generator in V, zero to peak")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command
+      .add_option("--sync-input", delay.sync_input,
+                  "input of the oscilloscope that sync is connected to; it triggers")
+      ->check(CLI::Range(1, 8))
+      ->capture_default_str();
+  command
+      .add_option("--output-input", delay.output_input,
+                  "input of the oscilloscope that its trigger output is connected to")
+      ->check(CLI::Range(1, 8))
+      ->capture_default_str();
+  command.add_option("--sync-range", delay.sync_range_v, "range of that input in V peak to peak")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command
+      .add_option("--output-range", delay.output_range_v, "range of that input in V peak to peak")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command.add_option("--shots", delay.shots, "shots to take")
+      ->check(CLI::Range(3, 100000))
+      ->capture_default_str();
+  command.add_option("--output", delay.output, "file for the result as JSON")
+      ->capture_default_str();
+}
 
 using drivers::generator::ScpiGenerator;
 using std::chrono::milliseconds;
@@ -37,7 +103,7 @@ struct Delays {
 
 // A microsecond around the trigger for a rectangle; a whole period for a sine, with the deepest
 // memory that is read in reasonable time.
-drivers::dso::Acquisition acquisition_for(const CalibrateDsoDelayCommand& command,
+drivers::dso::Acquisition acquisition_for(const CalibrateDsoDelayOptions& command,
                                           double frequency_hz) {
   if (command.by == "rectangle") {
     return {.before_trigger_s = 0.3e-6, .after_trigger_s = 0.7e-6, .points = 1000};
@@ -51,7 +117,7 @@ drivers::dso::Acquisition acquisition_for(const CalibrateDsoDelayCommand& comman
 // this program is killed, or cannot do it itself.
 class DrivenGenerator {
 public:
-  static Expected<DrivenGenerator> start(const CalibrateDsoDelayCommand& command,
+  static Expected<DrivenGenerator> start(const CalibrateDsoDelayOptions& command,
                                          const std::stop_token& stop) {
     DYNCAL_TRY(auto guard, OutputGuard::start(command.generator));
     auto connected = ScpiGenerator::connect(command.generator);
@@ -93,7 +159,7 @@ private:
   std::unique_ptr<ScpiGenerator> generator_;
 };
 
-Expected<Delays> measure(const CalibrateDsoDelayCommand& command,
+Expected<Delays> measure(const CalibrateDsoDelayOptions& command,
                          const analysis::Frequency& frequency, const std::stop_token& stop) {
   drivers::StopSignal device_stop;
   const std::stop_callback raise(stop, [&] { device_stop.raise(); });
@@ -152,7 +218,7 @@ Expected<Delays> measure(const CalibrateDsoDelayCommand& command,
   return delays;
 }
 
-void print(const CalibrateDsoDelayCommand& command, const Delays& delays) {
+void print(const CalibrateDsoDelayOptions& command, const Delays& delays) {
   const analysis::TriggerDelay& delay = delays.mean;
   fmt::print("{}\nby {} at {} Hz, {} shots ({} failed)\n", one_line(delays.instrument), command.by,
              command.frequency_hz, delay.shots, delays.failures);
@@ -176,7 +242,7 @@ void print(const CalibrateDsoDelayCommand& command, const Delays& delays) {
              command.output.string());
 }
 
-Expected<void> write(const CalibrateDsoDelayCommand& command, const Delays& delays) {
+Expected<void> write(const CalibrateDsoDelayOptions& command, const Delays& delays) {
   const analysis::TriggerDelay& delay = delays.mean;
   const nlohmann::ordered_json json = {
       {"instrument", delays.instrument},
@@ -196,35 +262,30 @@ Expected<void> write(const CalibrateDsoDelayCommand& command, const Delays& dela
   return write_output_file(command.output, json_text(json, 1) + '\n');
 }
 
-} // namespace
-
-int run_calibrate_dso_delay(const CalibrateDsoDelayCommand& command, const std::stop_token& stop) {
+Expected<void> run_calibrate_dso_delay(const CalibrateDsoDelayOptions& command,
+                                       const std::stop_token& stop) {
   const auto frequency = analysis::Frequency::parse(command.frequency_hz);
   if (!frequency) {
-    return report_error(
-        {ErrorCode::bad_argument,
-         fmt::format("--frequency {}: not a positive number in Hz", command.frequency_hz)});
+    return fail(ErrorCode::bad_argument,
+                fmt::format("--frequency {}: not a positive number in Hz", command.frequency_hz));
   }
   std::optional<DrivenGenerator> driven;
   if (!command.generator.empty()) {
-    auto started = DrivenGenerator::start(command, stop);
-    if (!started) {
-      return report_error(started.error());
-    }
-    driven.emplace(std::move(*started));
+    DYNCAL_TRY(auto started, DrivenGenerator::start(command, stop));
+    driven.emplace(std::move(started));
   }
   const auto delays = measure(command, *frequency, stop);
   if (driven) {
-    if (const auto off = driven->switch_off(); !off) {
-      return report_error(off.error());
-    }
+    DYNCAL_TRY(driven->switch_off());
   }
-  if (!delays) {
-    return report_error(delays.error());
-  }
+  DYNCAL_TRY(delays);
   print(command, *delays);
-  const auto written = write(command, *delays);
-  return written ? 0 : report_error(written.error());
+  return write(command, *delays);
 }
 
+const Command calibrate_dso_delay_command{280, "calibrate dso-delay",
+                                          "delay of an oscilloscope's trigger output",
+                                          add_dso_delay, run_calibrate_dso_delay};
+
+} // namespace
 } // namespace dyncal::inline programs

@@ -1,6 +1,15 @@
-#include "services/programs/command/calibrate_time_command.hpp"
-
+// `dyncal calibrate time`: how far a DAU's time stamps are from a reference pulse per second (paper
+// section 2.2, figure 2; the model is that of analysis/instrument/stamp_deviation.hpp), from the
+// unit's own record of both pulses (services/programs/command/pulse_file.hpp).
+//
+// Prints which edges were rejected and why, and the deviation; writes OUTPUT.json and beside it
+// OUTPUT.svg and OUTPUT.csv. A record of the GPS pulse alone has no deviation: it is judged by how
+// well its pulses can be foretold from the ones before, and the status is that of success. Belongs
+// to one thread.
 #include <cmath>
+#include <filesystem>
+#include <optional>
+#include <vector>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
@@ -9,12 +18,40 @@
 #include "analysis/instrument/stamp_deviation.hpp"
 #include "services/base/json_text.hpp"
 #include "services/base/output_file.hpp"
-#include "services/daemon/program/program.hpp"
+#include "services/programs/command/command.hpp"
 #include "services/programs/command/pulse_file.hpp"
 #include "services/views/figures/stamp_deviation.hpp"
 
 namespace dyncal::inline programs {
 namespace {
+
+struct CalibrateTimeOptions {
+  std::vector<std::filesystem::path> files;
+  std::filesystem::path output = "time-calibration.json";
+  std::optional<double>
+      reference_offset_s; // of the reference pulse after the GPS second, at the unit
+  double u_reference_s = 0.0;
+};
+
+void add_time(CLI::App& command, CalibrateTimeOptions& time) {
+  command
+      .add_option(
+          "FILE", time.files,
+          "records of pulse edges, lines of GPST;n;ticks and REFT;n;ticks; several are one record")
+      ->required();
+  command.add_option("--reference-offset", time.reference_offset_s,
+                     "seconds by which the reference pulse comes after the second of GPS, if that "
+                     "is known: gives the mean a meaning");
+  command
+      .add_option("--reference-uncertainty", time.u_reference_s,
+                  "standard uncertainty of the reference pulse, in seconds")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command
+      .add_option("--output", time.output,
+                  "file for the result as JSON; a figure (SVG and CSV) comes beside it")
+      ->capture_default_str();
+}
 
 using analysis::PulseFault;
 using analysis::PulseInput;
@@ -62,7 +99,7 @@ bool has_reference(const PulseRecord& record) {
                      [](const auto& edge) { return edge.input == PulseInput::reference; });
 }
 
-Expected<EvaluatedPulses> judge(const CalibrateTimeCommand& command) {
+Expected<EvaluatedPulses> judge(const CalibrateTimeOptions& command) {
   DYNCAL_TRY(auto record, read_pulse_files(command.files));
   const auto failure = [&](const analysis::Error& error) {
     return fail(ErrorCode::no_result,
@@ -129,7 +166,7 @@ void print_prediction(const analysis::PulsePrediction& prediction) {
              1e9 * prediction.maximum_s);
 }
 
-void print_deviation(const CalibrateTimeCommand& command,
+void print_deviation(const CalibrateTimeOptions& command,
                      const analysis::StampDeviationStatistics& deviation) {
   fmt::print("deviation of the stamps from the reference pulse: {} seconds ({} before the unit's "
              "clock could be trusted)\n",
@@ -178,7 +215,7 @@ Json counts_json(const analysis::SortedPulses& pulses, PulseInput input) {
           {"moved", pulses.count(PulseFault::pulse_step, input)}};
 }
 
-Json deviation_json(const CalibrateTimeCommand& command,
+Json deviation_json(const CalibrateTimeOptions& command,
                     const analysis::StampDeviationStatistics& deviation) {
   Json allan = Json::array();
   for (const analysis::AllanPoint& point : deviation.allan) {
@@ -209,7 +246,7 @@ Json deviation_json(const CalibrateTimeCommand& command,
   return json;
 }
 
-Json result_json(const CalibrateTimeCommand& command, const EvaluatedPulses& evaluated) {
+Json result_json(const CalibrateTimeOptions& command, const EvaluatedPulses& evaluated) {
   Json files = Json::array();
   for (const std::filesystem::path& file : command.files) {
     files.push_back(file.string());
@@ -235,7 +272,7 @@ Json result_json(const CalibrateTimeCommand& command, const EvaluatedPulses& eva
   return json;
 }
 
-figures::Figure figure_of(const CalibrateTimeCommand& command, const EvaluatedPulses& evaluated) {
+figures::Figure figure_of(const CalibrateTimeOptions& command, const EvaluatedPulses& evaluated) {
   const analysis::StampDeviationStatistics& deviation = *evaluated.deviation;
   figures::StampDeviationData data;
   data.title = "Deviation of the time stamps from the reference pulse";
@@ -257,7 +294,7 @@ figures::Figure figure_of(const CalibrateTimeCommand& command, const EvaluatedPu
   return stamp_deviation_figure(data, command.output.stem().string());
 }
 
-Expected<void> write(const CalibrateTimeCommand& command, const EvaluatedPulses& evaluated) {
+Expected<void> write(const CalibrateTimeOptions& command, const EvaluatedPulses& evaluated) {
   DYNCAL_TRY(
       write_output_file(command.output, json_text(result_json(command, evaluated), 1) + '\n'));
   fmt::print("wrote {}\n", command.output.string());
@@ -273,25 +310,24 @@ Expected<void> write(const CalibrateTimeCommand& command, const EvaluatedPulses&
   return {};
 }
 
-} // namespace
-
-int run_calibrate_time(const CalibrateTimeCommand& command) {
-  const auto evaluated = judge(command);
-  if (!evaluated) {
-    return report_error(evaluated.error());
+Expected<void> run_calibrate_time(const CalibrateTimeOptions& command) {
+  DYNCAL_TRY(const auto evaluated, judge(command));
+  print_edges(evaluated);
+  if (evaluated.prediction) {
+    print_prediction(*evaluated.prediction);
   }
-  print_edges(*evaluated);
-  if (evaluated->prediction) {
-    print_prediction(*evaluated->prediction);
-  }
-  if (evaluated->deviation) {
-    print_deviation(command, *evaluated->deviation);
+  if (evaluated.deviation) {
+    print_deviation(command, *evaluated.deviation);
   } else {
     fmt::print("no edges of a reference pulse (REFT;n;ticks): the deviation of the stamps cannot "
                "be determined from this record\n");
   }
-  const auto written = write(command, *evaluated);
-  return written ? 0 : report_error(written.error());
+  return write(command, evaluated);
 }
 
+const Command calibrate_time_command{
+    290, "calibrate time", "deviation of a DAU's time stamps from a reference pulse per second",
+    add_time, run_calibrate_time};
+
+} // namespace
 } // namespace dyncal::inline programs

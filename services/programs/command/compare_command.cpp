@@ -1,23 +1,58 @@
-#include "services/programs/command/compare_command.hpp"
-
+// `dyncal compare A.json B.json`: do two results agree? E_n of ISO/IEC 17043 for magnitude and
+// phase at every frequency that both have.
+//
+// Compares the transfer functions (means over repetitions) of two result files of dyncal; |E_n| <=
+// 1 at k = 2 means that they agree. What both have in common, such as the reference, can be taken
+// out of the uncertainties of the difference by its relative standard uncertainty
+// (--common-magnitude, --common-phase); without that E_n is too kind to two results that share a
+// reference. Prints a table, or JSON. Exit status 1 and one line when a file is not a result or the
+// two have nothing in common. Belongs to one thread.
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "analysis/response/comparison.hpp"
-#include "services/base/error.hpp"
 #include "services/base/json_text.hpp"
 #include "services/base/printable_text.hpp"
-#include "services/daemon/program/program.hpp"
+#include "services/programs/command/command.hpp"
 #include "services/programs/command/work_progress.hpp"
 #include "services/views/report/result_file.hpp"
 
 namespace dyncal::inline programs {
 namespace {
+
+struct CompareOptions {
+  std::filesystem::path first;
+  std::filesystem::path second;
+  std::string first_channel;         // empty: every channel by its own name
+  std::string second_channel;        // empty: the same as first_channel
+  double common_magnitude_rel = 0.0; // standard uncertainty that both results share
+  double common_phase_rad = 0.0;
+  bool json = false;
+};
+
+void add_compare(CLI::App& command, CompareOptions& compare) {
+  command.add_option("A.json", compare.first, "result of dyncal")->required();
+  command.add_option("B.json", compare.second, "the other result")->required();
+  command.add_option("--channel", compare.first_channel, "only this channel (default: all)");
+  command.add_option("--other-channel", compare.second_channel,
+                     "its name in the other result (default: the same)");
+  command
+      .add_option("--common-magnitude", compare.common_magnitude_rel,
+                  "relative standard uncertainty that both results share, e.g. of one reference")
+      ->check(CLI::NonNegativeNumber);
+  command
+      .add_option("--common-phase", compare.common_phase_rad,
+                  "standard uncertainty of the phase that both results share, in rad")
+      ->check(CLI::NonNegativeNumber);
+  command.add_flag("--json", compare.json, "print JSON");
+}
 
 using Json = nlohmann::ordered_json;
 
@@ -31,7 +66,7 @@ struct ComparedPoint {
 };
 
 Expected<std::vector<ComparedPoint>>
-compare(const CompareCommand& command, const ResultPoints& first, const ResultPoints& second) {
+compare(const CompareOptions& command, const ResultPoints& first, const ResultPoints& second) {
   std::vector<ComparedPoint> compared;
   for (const auto& [place, point] : first) {
     const auto& [channel, frequency_hz] = place;
@@ -76,7 +111,7 @@ compare(const CompareCommand& command, const ResultPoints& first, const ResultPo
   return compared;
 }
 
-Expected<std::vector<ComparedPoint>> read_and_compare(const CompareCommand& command) {
+Expected<std::vector<ComparedPoint>> read_and_compare(const CompareOptions& command) {
   const WorkProgress progress("reading");
   ByteCount bytes(progress.count(), "reading",
                   bytes_of_file(command.first) + bytes_of_file(command.second));
@@ -133,15 +168,15 @@ void print_table(const std::vector<ComparedPoint>& points) {
              std::count_if(points.begin(), points.end(), agrees), points.size());
 }
 
-} // namespace
-
-int run_compare(const CompareCommand& command) {
-  const auto compared = read_and_compare(command);
-  if (!compared) {
-    return report_error(compared.error());
-  }
-  command.json ? print_json(*compared) : print_table(*compared);
-  return 0;
+Expected<void> run_compare(const CompareOptions& command) {
+  DYNCAL_TRY(const auto compared, read_and_compare(command));
+  command.json ? print_json(compared) : print_table(compared);
+  return {};
 }
 
+const Command compare_command{
+    180, "compare", "compare two results: E_n of magnitude and phase at every common frequency",
+    add_compare, run_compare};
+
+} // namespace
 } // namespace dyncal::inline programs

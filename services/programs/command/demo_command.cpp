@@ -1,13 +1,24 @@
-#include "services/programs/command/demo_command.hpp"
-
+// `dyncal demo`: a whole virtual bench, its services, DDS, analysis and report on this machine.
+//
+// Every instrument and service is a process of its own and talks as it does in a laboratory. All
+// files go to one folder: bench file, ADC calibration, logs, result, figures, and the truth, which
+// only the final comparison reads. With a response from a file the demo leaves out the frequencies
+// at which the file does not know it. Belongs to one thread; all processes have ended when it
+// returns.
 #include <arpa/inet.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
+#include <filesystem>
 #include <fstream>
+#include <optional>
+#include <stop_token>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -16,13 +27,90 @@
 #include "drivers/virtual_bench/model/response_file.hpp"
 #include "services/base/output_file.hpp"
 #include "services/daemon/program/child_process.hpp"
+#include "services/programs/command/command.hpp"
+#include "services/programs/command/kept_run.hpp"
 #include "services/programs/command/run_command.hpp"
 #include "services/programs/demo/demo_bench.hpp"
 #include "services/programs/demo/truth_check.hpp"
 #include "services/programs/demo/vendor_assignment.hpp"
+#include "services/views/report/show_outcome.hpp"
 
 namespace dyncal::inline programs {
 namespace {
+
+struct DemoOptions {
+  std::string preset = "mpu9250-paper";
+  std::string dds;         // empty: the first of the build, for all
+  std::string speed = "8"; // times real time, or "max"
+  std::uint64_t seed = 1;
+  std::optional<int> domain; // chosen by itself
+  std::filesystem::path folder = "demo";
+  std::optional<std::filesystem::path> json;
+  KeepOptions keep; // no run folder unless it names one
+  std::optional<int> repetitions;
+  std::optional<double> duration_s;
+  bool trigger_phase_correction = true; // series time stamping
+  double loss = 0.0;                    // of datagrams, 0..1
+  double duplicates = 0.0;
+  std::string can_interface = "vcan0"; // presets with CAN output
+  std::string can_bus = "1M";
+  std::optional<std::filesystem::path> response; // of the sensor, in place of the preset's
+  std::vector<std::string> faults;               // of the virtual bench, each as its --fault
+};
+
+void add_demo(CLI::App& command, DemoOptions& demo) {
+  command
+      .add_option("--preset", demo.preset,
+                  "mpu9250-paper, mpu9250-ptb, bma280, tss, can or can-sync")
+      ->capture_default_str();
+  command.add_option("--dds", demo.dds,
+                     "fastdds, cyclonedds, or one for each: "
+                     "dau=cyclonedds,acs=fastdds,analysis=cyclonedds,run=fastdds");
+  command.add_flag("--trigger-correction,!--no-trigger-correction", demo.trigger_phase_correction,
+                   "preset tss: correct every shot for the phase of sync at the trigger "
+                   "(default); without it you see what the correction is worth");
+  command.add_option("--speed", demo.speed, "multiple of real time, or max")->capture_default_str();
+  command.add_option("--seed", demo.seed, "seed of the virtual bench's random numbers")
+      ->capture_default_str();
+  command
+      .add_option("--domain", demo.domain, "DDS domain (default: one that other demos do not use)")
+      ->envname("DYNCAL_DOMAIN")
+      ->check(CLI::Range(0, 232));
+  command.add_option("--output", demo.folder, "folder of all files")->capture_default_str();
+  command.add_option("--json", demo.json,
+                     "write the result to this file as JSON (default: result.json in the folder)");
+  command.add_option("--folder", demo.keep.folder,
+                     "keep the run below this folder as 'dyncal run' does (default: not)");
+  command.add_option("--store", demo.keep.store, "store for that run, as in 'dyncal run'");
+  command.add_option("--repetitions", demo.repetitions, "repetitions of the excitation list")
+      ->check(CLI::Range(1, 1000));
+  command
+      .add_option("--duration", demo.duration_s,
+                  "duration of the evaluated part of a step, in seconds of the bench")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--loss", demo.loss, "fraction of the unit's datagrams that are lost, 0 to 1")
+      ->check(CLI::Range(0.0, 1.0));
+  command
+      .add_option("--duplicate", demo.duplicates,
+                  "fraction of the unit's datagrams that arrive twice, 0 to 1")
+      ->check(CLI::Range(0.0, 1.0));
+  command.add_option("--response", demo.response,
+                     "put a sensor with this response on the bench: CSV file, "
+                     "frequency_hz,magnitude,phase_rad");
+  command.add_option("--fault", demo.faults,
+                     "what is wrong on purpose, again for each fault, as "
+                     "'dyncal-virtual-bench --help' lists it: hum=0.01,at=sensor");
+  command
+      .add_option("--can", demo.can_interface,
+                  "interface for presets can and can-sync; 'ip link add vcan0 type vcan' makes a "
+                  "virtual one")
+      ->capture_default_str();
+  command
+      .add_option("--can-bus", demo.can_bus,
+                  "500k, 1M (classic CAN) or fd-5M (CAN FD, 1 and 5 Mbit/s)")
+      ->check(CLI::IsMember({"500k", "1M", "fd-5M"}))
+      ->capture_default_str();
+}
 
 using namespace std::chrono_literals;
 
@@ -97,7 +185,7 @@ Expected<void> follow_response(const std::filesystem::path& file, DemoPreset& pr
   return {};
 }
 
-Expected<Demo> prepare(const DemoCommand& command) {
+Expected<Demo> prepare(const DemoOptions& command) {
   Demo demo;
   const auto& presets = demo_presets();
   const auto preset = std::find_if(presets.begin(), presets.end(), [&](const DemoPreset& one) {
@@ -159,7 +247,7 @@ double bench_seconds(const DemoPreset& preset) {
          (preset.settling_s + preset.duration_s + between_steps_s);
 }
 
-std::vector<std::string> bench_arguments(const DemoCommand& command, const Demo& demo,
+std::vector<std::string> bench_arguments(const DemoOptions& command, const Demo& demo,
                                          std::uint16_t dau_port) {
   const DemoPreset& preset = demo.preset;
   const std::vector<std::pair<std::string, std::string>> options{
@@ -198,7 +286,7 @@ std::vector<std::string> bench_arguments(const DemoCommand& command, const Demo&
   return arguments;
 }
 
-Expected<void> start_bench(const DemoCommand& command, Demo& demo) {
+Expected<void> start_bench(const DemoOptions& command, Demo& demo) {
   DYNCAL_TRY(const auto port, free_udp_port());
   std::filesystem::remove(demo.folder / "ports.json");
   DYNCAL_TRY(start(demo, "dyncal-virtual-bench", bench_arguments(command, demo, port)));
@@ -253,50 +341,48 @@ Error explain(Demo& demo, const Error& error) {
   return error;
 }
 
-int compare_with_truth(const RunOutcome& outcome, const Demo& demo) {
-  const auto check = check_truth(outcome, demo.folder / "truth.json");
-  if (!check) {
-    return report_error(check.error());
-  }
+Expected<void> compare_with_truth(const RunOutcome& outcome, const Demo& demo) {
+  DYNCAL_TRY(const auto check, check_truth(outcome, demo.folder / "truth.json"));
   fmt::print("\nAgainst the truth of the virtual bench: {} values, the largest deviation is {:.1f} "
              "standard uncertainties ({})\n",
-             check->points, check->worst, check->worst_where);
-  if (check->points == 0 || !(check->worst <= agreement_limit)) {
-    return report_error(
-        {ErrorCode::no_result,
-         fmt::format("the result does not agree with the truth within {} standard uncertainties",
-                     agreement_limit)});
+             check.points, check.worst, check.worst_where);
+  if (check.points == 0 || !(check.worst <= agreement_limit)) {
+    return fail(
+        ErrorCode::no_result,
+        fmt::format("the result does not agree with the truth within {} standard uncertainties",
+                    agreement_limit));
   }
-  return 0;
+  return {};
 }
+
+Expected<RunOutcome> conduct(const DemoOptions& command, Demo& demo, const std::stop_token& stop) {
+  DYNCAL_TRY(start_bench(command, demo));
+  DYNCAL_TRY(start_services(demo));
+  RunOptions run;
+  run.bench_file = demo.folder / "bench.toml";
+  run.json = command.json ? *command.json : demo.folder / "result.json";
+  run.figures.folder = demo.folder;
+  run.keep = command.keep;
+  run.network.dds = demo.dds["run"];
+  run.network.domain = demo.domain;
+  return conduct_run(run, stop);
+}
+
+Expected<void> run_demo(const DemoOptions& command, const std::stop_token& stop) {
+  DYNCAL_TRY(auto demo, prepare(command));
+  fmt::print("Virtual bench: {}\nFiles in {}\n", demo.preset.shows, demo.folder.string());
+  std::fflush(stdout);
+  const auto outcome = conduct(command, demo, stop);
+  if (!outcome) {
+    return fail(explain(demo, outcome.error()));
+  }
+  DYNCAL_TRY(check_complete(*outcome));
+  return compare_with_truth(*outcome, demo);
+}
+
+const Command demo_command{
+    10, "demo", "run a whole virtual bench with DDS, analysis and report on this machine", add_demo,
+    run_demo};
 
 } // namespace
-
-int run_demo(const DemoCommand& command, const std::stop_token& stop) {
-  auto demo = prepare(command);
-  if (!demo) {
-    return report_error(demo.error());
-  }
-  fmt::print("Virtual bench: {}\nFiles in {}\n", demo->preset.shows, demo->folder.string());
-  std::fflush(stdout);
-  if (const auto started =
-          start_bench(command, *demo).and_then([&] { return start_services(*demo); });
-      !started) {
-    return report_error(explain(*demo, started.error()));
-  }
-  RunCommand run;
-  run.bench_file = demo->folder / "bench.toml";
-  run.json = command.json ? *command.json : demo->folder / "result.json";
-  run.figures.folder = demo->folder;
-  run.keep = command.keep;
-  run.network.dds = demo->dds["run"];
-  run.network.domain = demo->domain;
-  const auto outcome = conduct_run(run, stop);
-  if (!outcome) {
-    return report_error(explain(*demo, outcome.error()));
-  }
-  const int status = conclude(*outcome);
-  return status != 0 ? status : compare_with_truth(*outcome, *demo);
-}
-
 } // namespace dyncal::inline programs

@@ -1,7 +1,12 @@
-#include "services/programs/command/doctor_command.hpp"
-
+// `dyncal doctor`: who is on the network, what does not fit together, and what to do about it
+// (services/checks/doctor). Works where nothing is on the network, too.
+//
+// The exit status is for monitoring: 0 nothing is wrong, 1 warnings, 2 problems, 3 it could not
+// look. Belongs to one thread.
 #include <cstdio>
 #include <cstdlib>
+#include <stop_token>
+#include <string>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
@@ -11,18 +16,37 @@
 #include "services/checks/doctor/report.hpp"
 #include "services/checks/doctor/unheard_analysis.hpp"
 #include "services/daemon/program/bench_program.hpp"
+#include "services/programs/command/command.hpp"
 #include "services/programs/command/laboratory_look.hpp"
 
 namespace dyncal::inline programs {
 namespace {
 
-Expected<std::optional<BenchFile>> read_bench(const DoctorCommand& command,
-                                              NetworkOptions& network) {
+struct DoctorOptions {
+  std::string bench_file; // empty: none to compare with
+  double seconds = 5.0;
+  bool json = false;
+  NetworkOptions network;
+};
+
+void add_doctor(CLI::App& command, DoctorOptions& doctor) {
+  command.add_option("BENCH.toml", doctor.bench_file,
+                     "bench file that the services should have read");
+  command.add_option("--seconds", doctor.seconds, "look for this time")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command.add_flag("--json", doctor.json, "print JSON");
+  command.footer("Exit status: 0 nothing is wrong, 1 warnings, 2 problems or a wrong command line, "
+                 "3 the bench file or the network cannot be used.");
+  add_network_options(command, doctor.network);
+}
+
+Expected<std::optional<BenchFile>> read_bench(DoctorOptions& command) {
   if (command.bench_file.empty()) {
     return std::optional<BenchFile>();
   }
   DYNCAL_TRY(auto bench, read_bench_file(command.bench_file));
-  add_network_settings(bench.network, network);
+  add_network_settings(bench.network, command.network);
   return std::optional<BenchFile>(std::move(bench));
 }
 
@@ -44,30 +68,27 @@ Findings judge(const LaboratoryLook& look, const std::optional<BenchFile>& bench
   return findings;
 }
 
-// Nothing was looked at: neither a warning nor a problem.
-int could_not_look(const Error& error) {
-  constexpr int unknown = 3;
-  const int status = report_error(error);
-  return status == 1 ? unknown : status;
-}
-
-} // namespace
-
-int run_doctor(const DoctorCommand& command, const std::stop_token& stop) {
-  NetworkOptions network = command.network;
-  const auto bench = read_bench(command, network);
-  if (!bench) {
-    return could_not_look(bench.error());
-  }
-  const auto looked =
-      look_at_laboratory(network, command.seconds, stop, [&](const LaboratoryLook& look) {
-        const Findings findings = judge(look, *bench);
+// Ends the program where there is something to judge.
+Expected<void> look_and_judge(DoctorOptions& command, const std::stop_token& stop) {
+  DYNCAL_TRY(const auto bench, read_bench(command));
+  return look_at_laboratory(
+      command.network, command.seconds, stop, [&](const LaboratoryLook& look) {
+        const Findings findings = judge(look, bench);
         fmt::print("{}", command.json ? json_text(doctor::as_json(findings, look.view), 2) + "\n"
                                       : doctor::as_text(findings));
         std::fflush(stdout);
         std::_Exit(doctor::exit_status(findings));
       });
-  return could_not_look(looked.error());
 }
 
+Expected<int> run_doctor(DoctorOptions& command, const std::stop_token& stop) {
+  constexpr int could_not_look = 3;
+  const int status = report_error(look_and_judge(command, stop).error());
+  return status == 1 ? could_not_look : status;
+}
+
+const Command doctor_command{70, "doctor", "diagnose the laboratory, the network and this host",
+                             add_doctor, run_doctor};
+
+} // namespace
 } // namespace dyncal::inline programs

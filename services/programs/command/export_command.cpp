@@ -1,18 +1,39 @@
-#include "services/programs/command/export_command.hpp"
+// `dyncal export SOURCE --to TARGET`: a recording in a format of other programs
+// (services/records/exchange/export_recording.hpp). Belongs to one thread.
+#include <spdlog/spdlog.h>
 
+#include <stop_token>
+#include <string>
 #include <utility>
 
 #include <fmt/core.h>
-#include <spdlog/spdlog.h>
 
 #include "services/base/printable_text.hpp"
-#include "services/daemon/program/program.hpp"
-#include "services/programs/command/share_line.hpp"
+#include "services/programs/command/command.hpp"
+#include "services/programs/command/keep_options.hpp"
 #include "services/programs/command/work_progress.hpp"
 #include "services/records/exchange/export_recording.hpp"
 
 namespace dyncal::inline programs {
 namespace {
+
+struct ExportCommand {
+  ExportOptions options;
+  std::string format; // empty: by the name of the target
+};
+
+void add_export(CLI::App& command, ExportCommand& exported) {
+  ExportOptions& options = exported.options;
+  take_run(command.add_option("SOURCE", options.recording, "folder of a run, or recording (.mcap)"))
+      ->required();
+  command.add_option("--to", options.to, "file to write, a folder for csv; nothing is overwritten")
+      ->required();
+  command.add_option("--format", exported.format,
+                     "hdf5, npz, csv or mcap-rows (for PlotJuggler, Foxglove, Lichtblick); "
+                     "default: by the name (.h5, .npz, .mcap, else csv)");
+  command.add_option("--channel", options.channels,
+                     "only this one, SOURCE/CHANNEL or SOURCE (repeatable; not for hdf5)");
+}
 
 void print(const ExportedFigures& figures, const std::filesystem::path& to) {
   for (const std::string& warning : figures.warnings) {
@@ -30,40 +51,30 @@ void print(const ExportedFigures& figures, const std::filesystem::path& to) {
   fmt::print("wrote {}\n", to.string());
 }
 
-Expected<ExportedFigures> export_with_progress(const ExportCommand& command, ExportFormat format,
-                                               const std::stop_token& stop) {
-  const WorkProgress progress("reading");
-  ShareLine line(stderr);
-  bool exporting = false;
-  return export_recording({.recording = command.recording,
-                           .to = command.to,
-                           .format = format,
-                           .channels = command.channels,
-                           .count = progress.count(),
-                           .stop = stop},
-                          [&](double share) {
-                            if (!std::exchange(exporting, true)) {
-                              progress.count()->begin_share("exporting");
-                            }
-                            progress.count()->set_share_done(share);
-                            line.show(share);
-                            return !stop.stop_requested();
-                          });
+Expected<void> run_export(ExportCommand& command, const std::stop_token& stop) {
+  ExportOptions& options = command.options;
+  DYNCAL_TRY(options.format, parse_export_format(command.format, options.to));
+  const auto figures = with_progress("reading", [&](const SharedWorkCount& count) {
+    options.count = count;
+    options.stop = stop;
+    bool exporting = false;
+    return export_recording(options, [&](double share) {
+      if (!std::exchange(exporting, true)) {
+        count->begin_share("exporting");
+      }
+      count->set_share_done(share);
+      return !stop.stop_requested();
+    });
+  });
+  DYNCAL_TRY(figures);
+  print(*figures, options.to);
+  return {};
 }
+
+const Command export_command{
+    160, "export",
+    "a recording for other programs: HDF5, NumPy, CSV, or MCAP with one message a sample",
+    add_export, run_export};
 
 } // namespace
-
-int run_export(const ExportCommand& command, const std::stop_token& stop) {
-  const auto format = parse_export_format(command.format, command.to);
-  if (!format) {
-    return report_error(format.error());
-  }
-  const auto figures = export_with_progress(command, *format, stop);
-  if (!figures) {
-    return report_error(figures.error());
-  }
-  print(*figures, command.to);
-  return 0;
-}
-
 } // namespace dyncal::inline programs

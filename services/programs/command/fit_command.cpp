@@ -1,8 +1,16 @@
-#include "services/programs/command/fit_command.hpp"
-
+// `dyncal fit DATA.csv`: one sine approximation (paper eq. (1)) of a recorded series, for checking.
+//
+// With a frequency three parameters are fitted, without one four, the frequency shared by all
+// columns. Phase is lead at the reference time: y = amplitude sin(w (t - t_ref) + phase_rad).
+// Prints a table, or JSON with 17 digits. Belongs to one thread.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <filesystem>
 #include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -19,12 +27,46 @@
 #include "services/base/json_text.hpp"
 #include "services/base/printable_text.hpp"
 #include "services/base/rounding.hpp"
-#include "services/daemon/program/program.hpp"
+#include "services/programs/command/command.hpp"
 #include "services/programs/command/work_progress.hpp"
 #include "services/records/replay/series_file.hpp"
 
 namespace dyncal::inline programs {
 namespace {
+
+struct FitOptions {
+  std::filesystem::path file;
+  std::string frequency;                         // decimal text; empty: estimated
+  std::vector<std::string> columns;              // empty: all
+  std::optional<std::int64_t> reference_time_ns; // default: the first stamp
+  int drift = 0;
+  int harmonics = 1;                     // highest harmonic in the model
+  std::vector<std::string> hum;          // decimal text of further lines
+  std::optional<double> nominal_rate_hz; // the stamps are replaced by n / rate (paper section 3)
+  bool json = false;
+};
+
+void add_fit(CLI::App& command, FitOptions& fit) {
+  command
+      .add_option("DATA.csv", fit.file,
+                  "CSV with a header line, or .npy: column t_ns, further columns")
+      ->required();
+  command.add_option("--frequency", fit.frequency,
+                     "in Hz (default: estimated as fourth parameter)");
+  command.add_option("--column", fit.columns, "column to fit (repeatable; default: all)");
+  command.add_option("--reference-time", fit.reference_time_ns,
+                     "instant at which the phase is given, in ns (default: the first stamp)");
+  command.add_option("--drift", fit.drift, "highest power of a drift beside the sine")
+      ->check(CLI::Range(0, 8));
+  command.add_option("--harmonics", fit.harmonics, "highest harmonic beside the sine")
+      ->check(CLI::Range(1, 50));
+  command.add_option("--hum", fit.hum, "frequency of a further line in Hz (repeatable)");
+  command
+      .add_option("--nominal-rate", fit.nominal_rate_hz,
+                  "replace the file's stamps by those of this rate in Hz")
+      ->check(CLI::PositiveNumber);
+  command.add_flag("--json", fit.json, "print JSON");
+}
 
 // The estimate is good to this many bins 1/T (analysis/sine/frequency_estimate.hpp).
 constexpr double estimate_bins = 1.5;
@@ -41,23 +83,15 @@ struct Fit {
   std::vector<double> shortening_rel; // put back, for each of them; 0: nothing to be seen
 };
 
-Error at(const FitCommand& command, const analysis::Error& error) {
+Error at(const FitOptions& command, const analysis::Error& error) {
   return {ErrorCode::bad_file, fmt::format("{}: {}", command.file.string(), error.message)};
 }
 
-Expected<std::vector<std::span<const double>>> chosen_columns(const FitCommand& command,
-                                                              const SeriesFile& series,
-                                                              std::vector<std::string>& names) {
-  names = command.columns.empty() ? series.names : command.columns;
+Expected<std::vector<std::span<const double>>>
+chosen_columns(const SeriesFile& series, const std::vector<std::string>& names) {
   std::vector<std::span<const double>> columns;
   for (const std::string& name : names) {
-    const auto column = series.column(name);
-    if (!column) {
-      return fail(ErrorCode::bad_argument,
-                  fmt::format("{}: there is no column '{}'; the columns are: {}",
-                              command.file.string(), name, fmt::join(series.names, ", ")));
-    }
-    columns.emplace_back(series.columns[*column]);
+    DYNCAL_TRY(columns.emplace_back(), series.column(name));
   }
   return columns;
 }
@@ -69,7 +103,7 @@ void replace_stamps(double rate_hz, std::vector<std::int64_t>& stamps_ns) {
   }
 }
 
-analysis::Expected<analysis::ExtendedBasis> basis_of(const FitCommand& command) {
+analysis::Expected<analysis::ExtendedBasis> basis_of(const FitOptions& command) {
   analysis::ExtendedBasis basis;
   basis.drift_order = command.drift;
   basis.max_harmonic = command.harmonics;
@@ -80,7 +114,7 @@ analysis::Expected<analysis::ExtendedBasis> basis_of(const FitCommand& command) 
   return basis;
 }
 
-analysis::Expected<void> find_frequency(const FitCommand& command, const SeriesFile& series,
+analysis::Expected<void> find_frequency(const FitOptions& command, const SeriesFile& series,
                                         const std::vector<std::span<const double>>& columns,
                                         WorkCount& count, Fit& fit) {
   if (!command.frequency.empty()) {
@@ -110,7 +144,7 @@ analysis::Expected<void> find_frequency(const FitCommand& command, const SeriesF
       });
 }
 
-analysis::Expected<void> fit_columns(const FitCommand& command, const SeriesFile& series,
+analysis::Expected<void> fit_columns(const FitOptions& command, const SeriesFile& series,
                                      const std::vector<std::span<const double>>& columns,
                                      WorkCount& count, Fit& fit) {
   DYNCAL_TRY(const auto basis, basis_of(command));
@@ -243,7 +277,7 @@ void print_table(const Fit& fit) {
   }
 }
 
-Expected<Fit> fit_file(const FitCommand& command) {
+Expected<Fit> fit_file(const FitOptions& command) {
   const WorkProgress progress("reading");
   DYNCAL_TRY(auto series,
              read_series_file(command.file, progress.count(), command.nominal_rate_hz));
@@ -253,7 +287,8 @@ Expected<Fit> fit_file(const FitCommand& command) {
   } else {
     fit.out_of_order = series.leave_out_disorder();
   }
-  DYNCAL_TRY(const auto columns, chosen_columns(command, series, fit.names));
+  fit.names = command.columns.empty() ? series.names : command.columns;
+  DYNCAL_TRY(const auto columns, chosen_columns(series, fit.names));
   if (series.stamps_ns.empty()) {
     return fail(ErrorCode::bad_file,
                 fmt::format("{}: the file has no samples", command.file.string()));
@@ -271,15 +306,14 @@ Expected<Fit> fit_file(const FitCommand& command) {
   return fit;
 }
 
-} // namespace
-
-int run_fit(const FitCommand& command) {
-  const auto fit = fit_file(command);
-  if (!fit) {
-    return report_error(fit.error());
-  }
-  command.json ? print_json(*fit) : print_table(*fit);
-  return 0;
+Expected<void> run_fit(const FitOptions& command) {
+  DYNCAL_TRY(const auto fit, fit_file(command));
+  command.json ? print_json(fit) : print_table(fit);
+  return {};
 }
 
+const Command fit_command{240, "fit", "one sine approximation of a recorded series, for checking",
+                          add_fit, run_fit};
+
+} // namespace
 } // namespace dyncal::inline programs

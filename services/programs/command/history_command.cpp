@@ -1,8 +1,11 @@
-#include "services/programs/command/history_command.hpp"
-
+// `dyncal history SENSOR`: the drift of a sensor over its calibrations in the store
+// (services/records/store/history.hpp), as tables, JSON and figures. Belongs to one thread.
 #include <cmath>
 #include <ctime>
+#include <filesystem>
 #include <numbers>
+#include <optional>
+#include <string>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -13,13 +16,35 @@
 #include "services/base/printable_text.hpp"
 #include "services/base/rounding.hpp"
 #include "services/contract/unit.hpp"
-#include "services/daemon/program/program.hpp"
+#include "services/programs/command/command.hpp"
+#include "services/programs/command/keep_options.hpp"
 #include "services/programs/command/work_progress.hpp"
 #include "services/records/store/history.hpp"
 #include "services/views/figures/drift.hpp"
 
 namespace dyncal::inline programs {
 namespace {
+
+struct HistoryOptions {
+  StorePlace store;
+  std::string sensor;
+  std::string channel;                // empty: all
+  std::optional<double> frequency_hz; // nothing: all
+  std::optional<std::filesystem::path> figures;
+  bool json = false;
+};
+
+void add_history(CLI::App& command, HistoryOptions& history) {
+  command
+      .add_option("SENSOR", history.sensor, "serial number, device or source, as 'runs' lists it")
+      ->required();
+  command.add_option("--channel", history.channel, "only this channel (default: all)");
+  command.add_option("--frequency", history.frequency_hz, "only this frequency in Hz")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--figures", history.figures, "write figures (SVG and CSV) into this folder");
+  command.add_flag("--json", history.json, "print JSON");
+  add_store_place(command, history.store);
+}
 
 using Json = nlohmann::ordered_json;
 
@@ -181,39 +206,37 @@ Expected<void> write_drift(const History& history, const std::filesystem::path& 
   return {};
 }
 
-Expected<History> look_up(const HistoryCommand& command) {
-  const WorkProgress progress("opening the store");
-  DYNCAL_TRY(auto store,
-             Store::open_existing(store_place(command.store.store, command.store.folder)));
-  DYNCAL_TRY(auto calibrations, store->calibrations(command.sensor, progress.count()));
-  progress.count()->begin("comparing", "", 0);
+Expected<History> look_up(const HistoryOptions& command, const SharedWorkCount& count) {
+  DYNCAL_TRY(auto store, Store::open_existing(command.store.text()));
+  DYNCAL_TRY(auto calibrations, store->calibrations(command.sensor, count));
+  count->begin("comparing", "", 0);
   return history_of(command.sensor, std::move(calibrations), command.channel, command.frequency_hz);
 }
 
-} // namespace
-
-int run_history(const HistoryCommand& command) {
-  const auto looked_up = look_up(command);
-  if (!looked_up) {
-    return report_error(looked_up.error());
-  }
-  const History& history = *looked_up;
+Expected<void> run_history(const HistoryOptions& command) {
+  DYNCAL_TRY(const auto history, with_progress("opening the store", [&](const auto& count) {
+               return look_up(command, count);
+             }));
   if (history.lines.empty()) {
-    return report_error({ErrorCode::no_result,
-                         fmt::format("the store has no calibration of sensor '{}' with a value{}; "
-                                     "'dyncal runs' lists serial numbers and sources",
-                                     command.sensor,
-                                     command.channel.empty() && !command.frequency_hz
-                                         ? ""
-                                         : " at this channel and frequency")});
+    return fail(ErrorCode::no_result,
+                fmt::format("the store has no calibration of sensor '{}' with a value{}; 'dyncal "
+                            "runs' lists serial numbers and sources",
+                            command.sensor,
+                            command.channel.empty() && !command.frequency_hz
+                                ? ""
+                                : " at this channel and frequency"));
   }
   if (command.figures) {
-    if (const auto written = write_drift(history, *command.figures); !written) {
-      return report_error(written.error());
-    }
+    DYNCAL_TRY(write_drift(history, *command.figures));
   }
   command.json ? print_json(history) : print_tables(history);
-  return 0;
+  return {};
 }
 
+const Command history_command{
+    100, "history",
+    "drift of a sensor over its calibrations, with U and E_n against the one before", add_history,
+    run_history};
+
+} // namespace
 } // namespace dyncal::inline programs

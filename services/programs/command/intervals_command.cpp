@@ -1,49 +1,46 @@
-#include "services/programs/command/intervals_command.hpp"
-
+// `dyncal intervals DATA.csv`: the sample clock of a recorded series by direct sample interval
+// evaluation (paper section 3, analysis/clock/sample_clock.hpp): statistics, histogram, events.
+// Belongs to one thread.
 #include <cmath>
+#include <filesystem>
+#include <string>
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "analysis/clock/sample_clock.hpp"
 #include "services/base/json_text.hpp"
-#include "services/daemon/program/program.hpp"
+#include "services/programs/command/command.hpp"
 #include "services/programs/command/work_progress.hpp"
 #include "services/records/replay/series_file.hpp"
+#include "services/views/report/json_members.hpp"
 
 namespace dyncal::inline programs {
 namespace {
 
+struct IntervalsOptions {
+  std::filesystem::path file;
+  std::string temperature; // column, "" for none
+  analysis::SampleClockSettings clock;
+  bool json = false;
+};
+
+void add_intervals(CLI::App& command, IntervalsOptions& intervals) {
+  command.add_option("DATA.csv", intervals.file, "CSV with a header line, or .npy: column t_ns")
+      ->required();
+  command.add_option("--temperature", intervals.temperature,
+                     "column with the sensor's temperature");
+  command
+      .add_option("--tick", intervals.clock.tick_s,
+                  "tick of the counter that made the stamps, in seconds")
+      ->check(CLI::PositiveNumber);
+  command
+      .add_option("--nominal-rate", intervals.clock.nominal_rate_hz, "nominal sample rate in Hz")
+      ->check(CLI::PositiveNumber);
+  command.add_flag("--json", intervals.json, "print JSON");
+}
+
 using Json = nlohmann::ordered_json;
-
-Json events_json(const analysis::SampleClockStatistics& clock) {
-  Json events = Json::array();
-  for (const analysis::IntervalEvent& event : clock.events) {
-    events.push_back({{"kind", event.kind},
-                      {"sample", event.sample},
-                      {"time_s", event.time_s},
-                      {"size_ns", event.size_ns},
-                      {"missing", event.missing}});
-  }
-  return events;
-}
-
-Json histogram_json(const analysis::SampleClockStatistics& clock) {
-  Json bins = Json::array();
-  for (const analysis::IntervalHistogramBin& bin : clock.histogram) {
-    bins.push_back({{"ticks", bin.ticks}, {"interval_ns", bin.interval_ns}, {"count", bin.count}});
-  }
-  return bins;
-}
-
-Json allan_json(const analysis::SampleClockStatistics& clock) {
-  Json points = Json::array();
-  for (const analysis::AllanPoint& point : clock.allan) {
-    points.push_back({{"tau_s", point.tau_s}, {"deviation", point.deviation}});
-  }
-  return points;
-}
 
 // The numbering of the file shows what is missing; stamps that are not in order are events.
 void push_series(const SeriesFile& series, std::span<const double> temperature,
@@ -61,46 +58,27 @@ void push_series(const SeriesFile& series, std::span<const double> temperature,
   }
 }
 
-// JSON has no NaN: null says that nothing is known.
-Json known(double value) {
-  return std::isfinite(value) ? Json(value) : Json();
-}
-
+// As in a result file, with all that one has no room for.
 void print_json(const analysis::SampleClockStatistics& clock) {
-  const Json json{{"count", clock.intervals},
-                  {"mean_interval_s", clock.mean_interval_s},
-                  {"u_mean_interval_s", known(clock.u_mean_interval_s)},
-                  {"sd_s", clock.sd_s},
-                  {"min_s", clock.minimum_s},
-                  {"max_s", clock.maximum_s},
-                  {"spread_s", clock.maximum_s - clock.minimum_s},
-                  {"median_s", clock.median_s},
-                  {"mad_sd_s", clock.mad_sd_s},
-                  {"quantiles_s",
-                   {{"0.001", clock.quantile_001_s},
-                    {"0.01", clock.quantile_01_s},
-                    {"0.5", clock.quantile_50_s},
-                    {"0.99", clock.quantile_99_s},
-                    {"0.999", clock.quantile_999_s}}},
-                  {"core_mean_s", clock.core_mean_s},
-                  {"core_sd_s", clock.core_sd_s},
-                  {"mean_rate_hz", clock.mean_rate_hz},
-                  {"tick_s", clock.tick_s},
-                  {"lattice_statistic", clock.lattice_statistic},
-                  {"modes_s", clock.modes_s},
-                  {"lost", clock.lost},
-                  {"left_out_jumps", clock.left_out_jumps},
-                  {"largest_jump_s", clock.largest_jump_s},
-                  {"event_count", clock.event_count},
-                  {"pair_count", clock.pair_count},
-                  {"pair_period_samples", clock.pair_period_samples},
-                  {"pair_period_s", clock.pair_period_s},
-                  {"pair_regularity", clock.pair_regularity},
-                  {"temperature_correlation", clock.temperature_correlation},
-                  {"temperature_slope_s_per_degc", clock.temperature_slope_s_per_degc},
-                  {"events", events_json(clock)},
-                  {"histogram", histogram_json(clock)},
-                  {"allan", allan_json(clock)}};
+  Json json = JsonWriter::of(ClockReport{.clock = clock});
+  for (const char* of_a_run : {"source", "flags", "flag_names"}) {
+    json.erase(of_a_run);
+  }
+  json["spread_s"] = clock.maximum_s - clock.minimum_s;
+  json["core_mean_s"] = clock.core_mean_s;
+  json["core_sd_s"] = clock.core_sd_s;
+  json["modes_s"] = clock.modes_s;
+  json["left_out_jumps"] = clock.left_out_jumps;
+  json["largest_jump_s"] = clock.largest_jump_s;
+  json["pair_count"] = clock.pair_count;
+  json["pair_regularity"] = clock.pair_regularity;
+  for (const analysis::IntervalHistogramBin& bin : clock.histogram) {
+    json["histogram"].push_back(
+        {{"ticks", bin.ticks}, {"interval_ns", bin.interval_ns}, {"count", bin.count}});
+  }
+  for (const analysis::AllanPoint& point : clock.allan) {
+    json["allan"].push_back({{"tau_s", point.tau_s}, {"deviation", point.deviation}});
+  }
   fmt::print("{}\n", json_text(json, 1));
 }
 
@@ -134,43 +112,33 @@ void print_table(const analysis::SampleClockStatistics& clock) {
   }
 }
 
-} // namespace
-
-int run_intervals(const IntervalsCommand& command) {
-  const auto series = [&] {
-    const WorkProgress progress("reading");
-    return read_series_file(command.file, progress.count());
-  }();
-  if (!series) {
-    return report_error(series.error());
-  }
+Expected<analysis::SampleClockStatistics> evaluate(const IntervalsOptions& command) {
+  const WorkProgress progress("reading");
+  DYNCAL_TRY(const auto series, read_series_file(command.file, progress.count()));
   std::span<const double> temperature;
   if (!command.temperature.empty()) {
-    const auto column = series->column(command.temperature);
-    if (!column) {
-      return report_error(
-          {ErrorCode::bad_argument,
-           fmt::format("{}: there is no column '{}'; the columns are: {}", command.file.string(),
-                       command.temperature, fmt::join(series->names, ", "))});
-    }
-    temperature = series->columns[*column];
+    DYNCAL_TRY(temperature, series.column(command.temperature));
   }
-  analysis::SampleClockSettings settings;
-  settings.tick_s = command.tick_s;
-  settings.nominal_rate_hz = command.nominal_rate_hz;
-  analysis::SampleClock clock(settings);
-  const auto statistics = [&] {
-    const WorkProgress progress("evaluating");
-    push_series(*series, temperature, clock);
-    return clock.statistics();
-  }();
-  if (!statistics) {
-    return report_error({ErrorCode::bad_file,
-                         fmt::format("{}: fewer than three samples: too few to evaluate intervals",
-                                     command.file.string())});
-  }
-  command.json ? print_json(*statistics) : print_table(*statistics);
-  return 0;
+  progress.count()->begin("evaluating", "", 0);
+  analysis::SampleClock clock(command.clock);
+  push_series(series, temperature, clock);
+  const auto statistics = clock.statistics();
+  return statistics
+             ? Expected<analysis::SampleClockStatistics>(*statistics)
+             : fail(ErrorCode::bad_file,
+                    fmt::format("{}: fewer than three samples: too few to evaluate intervals",
+                                command.file.string()));
 }
 
+Expected<void> run_intervals(const IntervalsOptions& command) {
+  DYNCAL_TRY(const auto statistics, evaluate(command));
+  command.json ? print_json(statistics) : print_table(statistics);
+  return {};
+}
+
+const Command intervals_command{250, "intervals",
+                                "sample intervals of a recorded series: statistics and events",
+                                add_intervals, run_intervals};
+
+} // namespace
 } // namespace dyncal::inline programs

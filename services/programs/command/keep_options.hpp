@@ -1,10 +1,13 @@
-// Options of the command line for what is kept of runs: the run folder, the store, and the commands
-// that look into it.
+// Options of commands about runs that are kept: where runs and their store are, and which run is
+// meant. What is passed must live until the command line has been read.
 #pragma once
 
-#include "services/programs/command/history_command.hpp"
-#include "services/programs/command/run_command.hpp"
-#include "services/programs/command/store_command.hpp"
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "services/programs/command/kept_run.hpp"
+#include "services/records/store/store.hpp"
 
 namespace CLI { // NOLINT(readability-identifier-naming): of the library
 class App;
@@ -13,22 +16,23 @@ class Option;
 
 namespace dyncal::inline programs {
 
-// --folder, --store
+// --folder, --recording, --store
 void add_keep_options(CLI::App& command, KeepOptions& keep);
 
-// The option names a run: its folder, or ROOT/BENCH/NAME for the newest of that name.
-void take_run(CLI::Option& option);
+// --folder, --store of commands that only look at the store.
+struct StorePlace {
+  std::filesystem::path folder = "runs"; // of all runs
+  std::string store;                     // as store_place() takes it
 
-struct StoreCommands {
-  StoreAddCommand add;
-  RunsCommand runs;
-  HistoryCommand history;
+  [[nodiscard]] std::string text() const { return store_place(store, folder); }
 };
+void add_store_place(CLI::App& command, StorePlace& place);
 
-// The commands `store`, `runs` and `history`.
-void add_store(CLI::App& app, StoreCommands& commands);
+// The option names a run: its folder, or ROOT/BENCH/NAME for the newest of that name. Returns it.
+CLI::Option* take_run(CLI::Option* option);
 
-// Nothing when the command line has none of them.
-[[nodiscard]] std::optional<int> run_store(const CLI::App& app, const StoreCommands& commands);
+// What is made of a run: NAME in its folder, RESULT-NAME beside RESULT.json.
+[[nodiscard]] std::filesystem::path file_beside_run(const std::filesystem::path& run,
+                                                    const std::string& name);
 
 } // namespace dyncal::inline programs

@@ -1,19 +1,38 @@
-#include "services/programs/command/list_command.hpp"
-
+// `dyncal list`: benches with their sources and runs that are on the network now, once. It listens
+// until nothing new has come for a second, for `seconds` at most. Belongs to one thread.
 #include <algorithm>
 #include <chrono>
+#include <stop_token>
+#include <string>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "services/base/json_text.hpp"
 #include "services/contract/run_identity.hpp"
+#include "services/programs/command/command.hpp"
 #include "services/programs/command/harmless_text.hpp"
 #include "services/programs/command/watched_laboratory.hpp"
 #include "services/views/live/laboratory_json.hpp"
 
 namespace dyncal::inline programs {
 namespace {
+
+struct ListOptions {
+  std::string bench = "*";
+  double seconds = 5.0;
+  bool json = false;
+  NetworkOptions network;
+};
+
+void add_list(CLI::App& command, ListOptions& list) {
+  command.add_option("--bench", list.bench, "only this bench (default: all)");
+  command.add_option("--seconds", list.seconds, "listen for this time at the most")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command.add_flag("--json", list.json, "print JSON");
+  add_network_options(command, list.network);
+}
 
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
@@ -62,20 +81,16 @@ void print_text(const network::BusState& laboratory) {
   }
 }
 
-} // namespace
-
-int run_list(const ListCommand& command, const std::stop_token& stop) {
-  const auto watched = WatchedLaboratory::open(command.network, "dyncal-list", command.bench, stop);
-  if (!watched) {
-    return report_error(watched.error());
-  }
-  const network::BusState& laboratory = (*watched)->laboratory();
+Expected<void> run_list(const ListOptions& command, const std::stop_token& stop) {
+  DYNCAL_TRY(const auto watched,
+             WatchedLaboratory::open(command.network, "dyncal-list", command.bench, stop));
+  const network::BusState& laboratory = watched->laboratory();
   const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                            std::chrono::duration<double>(command.seconds));
   auto number_of_things = std::size_t{0};
   auto quiet_at = Clock::now() + 2 * quiet_time;
-  while (!(*watched)->is_over() && Clock::now() < std::min(deadline, quiet_at)) {
-    (*watched)->work(Clock::now() + 100ms);
+  while (!watched->is_over() && Clock::now() < std::min(deadline, quiet_at)) {
+    watched->work(Clock::now() + 100ms);
     std::size_t things = laboratory.programs().size();
     for (const auto& [name, bench] : laboratory.benches()) {
       things += 1 + bench.sources.size() + bench.services.size() + bench.runs.size();
@@ -90,8 +105,12 @@ int run_list(const ListCommand& command, const std::stop_token& stop) {
   } else {
     print_text(laboratory);
   }
-  const auto heard = (*watched)->outcome();
-  return heard ? 0 : report_error(heard.error());
+  return watched->outcome();
 }
 
+const Command list_command{60, "list",
+                           "list the benches, sources and runs that are on the network now",
+                           add_list, run_list};
+
+} // namespace
 } // namespace dyncal::inline programs

@@ -1,12 +1,19 @@
-#include "services/programs/command/model_command.hpp"
-
+// `dyncal model RESULT.json...`: the parametric response of each sensor, and the filter that undoes
+// it.
+//
+// Prints which orders the values support and the parameters with u; writes all numbers as JSON
+// (services/views/model/model.schema.json), the residuals as figures. Exit status 1 and one line
+// when a file is not a result, or nothing can be fitted. Belongs to one thread.
 #include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "services/base/error.hpp"
-#include "services/daemon/program/program.hpp"
+#include "services/programs/command/command.hpp"
 #include "services/programs/command/work_progress.hpp"
 #include "services/views/model/channel_model.hpp"
 #include "services/views/model/model_figure.hpp"
@@ -17,7 +24,64 @@
 namespace dyncal::inline programs {
 namespace {
 
-ModelRequest request_of(const ModelCommand& command) {
+struct ModelOptions {
+  std::vector<std::filesystem::path> results;
+  std::vector<std::string> channels; // empty: all that respond
+  std::string kind = "auto";
+  bool include_flagged = false;
+  std::filesystem::path json;
+  std::filesystem::path figures;
+  std::string filter; // empty: none; fir, iir
+  double rate_hz = 0.0;
+  double cutoff_hz = 0.0;
+  int taps = 0;
+  std::optional<int> delay_samples;
+};
+
+void add_model_filter(CLI::App& command, ModelOptions& model) {
+  command
+      .add_option("--filter", model.filter,
+                  "design a filter that undoes the response, with a low pass: fir or iir")
+      ->check(CLI::IsMember({"fir", "iir"}));
+  command
+      .add_option("--rate-hz", model.rate_hz,
+                  "sample rate of the filter (default: the sensor's, as measured)")
+      ->check(CLI::PositiveNumber);
+  command
+      .add_option("--cutoff-hz", model.cutoff_hz,
+                  "end of the filter's pass band (default: the highest fitted frequency)")
+      ->check(CLI::PositiveNumber);
+  command
+      .add_option("--taps", model.taps,
+                  "coefficients b of the filter (default: by the width of the transition)")
+      ->check(CLI::Range(2, 513));
+  command
+      .add_option("--delay-samples", model.delay_samples,
+                  "by how many samples the filter's output may be late (default: that with the "
+                  "smallest error)")
+      ->check(CLI::NonNegativeNumber);
+}
+
+void add_model(CLI::App& command, ModelOptions& model) {
+  command
+      .add_option("RESULT.json", model.results,
+                  "result of dyncal run or analyse; several are joined")
+      ->required();
+  command.add_option("--channel", model.channels,
+                     "channel to fit (repeatable; default: all that respond)");
+  command.add_option("--kind", model.kind, "the model (default: what the values support)")
+      ->check(CLI::IsMember(model_kind_names()))
+      ->capture_default_str();
+  command.add_flag("--include-flagged", model.include_flagged,
+                   "also fit values whose flags say that they may be wrong beyond u");
+  command.add_option("--json", model.json,
+                     "write models, covariances and filters to this file as JSON");
+  command.add_option("--figures", model.figures,
+                     "write figures of the residuals (SVG and CSV) into this folder");
+  add_model_filter(command, model);
+}
+
+ModelRequest request_of(const ModelOptions& command) {
   ModelRequest request;
   for (const analysis::ResponseKind kind : analysis::all_response_kinds) {
     if (command.kind == name_of(kind)) {
@@ -34,7 +98,7 @@ ModelRequest request_of(const ModelCommand& command) {
   return request;
 }
 
-Expected<void> check_options(const ModelCommand& command) {
+Expected<void> check_options(const ModelOptions& command) {
   const bool asks_for_filter = command.rate_hz > 0.0 || command.cutoff_hz > 0.0 ||
                                command.taps > 0 || command.delay_samples.has_value();
   if (command.filter.empty() && asks_for_filter) {
@@ -44,7 +108,7 @@ Expected<void> check_options(const ModelCommand& command) {
   return {};
 }
 
-Expected<std::vector<ChannelModel>> models_of(const ModelCommand& command) {
+Expected<std::vector<ChannelModel>> models_of(const ModelOptions& command) {
   DYNCAL_TRY(check_options(command));
   const WorkProgress progress("reading");
   DYNCAL_TRY(auto responses,
@@ -60,7 +124,7 @@ Expected<std::vector<ChannelModel>> models_of(const ModelCommand& command) {
   return models;
 }
 
-Expected<void> write_files(const ModelCommand& command, const std::vector<ChannelModel>& models) {
+Expected<void> write_files(const ModelOptions& command, const std::vector<ChannelModel>& models) {
   if (!command.json.empty()) {
     std::vector<std::string> files;
     for (const std::filesystem::path& file : command.results) {
@@ -80,8 +144,6 @@ Expected<void> write_files(const ModelCommand& command, const std::vector<Channe
   return {};
 }
 
-} // namespace
-
 std::vector<std::string> model_kind_names() {
   std::vector<std::string> names{"auto"};
   for (const analysis::ResponseKind kind : analysis::all_response_kinds) {
@@ -90,18 +152,18 @@ std::vector<std::string> model_kind_names() {
   return names;
 }
 
-int run_model(const ModelCommand& command) {
-  const auto models = models_of(command);
-  if (!models) {
-    return report_error(models.error());
+Expected<void> run_model(const ModelOptions& command) {
+  DYNCAL_TRY(const auto models, models_of(command));
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    fmt::print("{}{}", i == 0 ? "" : "\n", model_text(models[i]));
   }
-  for (std::size_t i = 0; i < models->size(); ++i) {
-    fmt::print("{}{}", i == 0 ? "" : "\n", model_text((*models)[i]));
-  }
-  if (const auto written = write_files(command, *models); !written) {
-    return report_error(written.error());
-  }
-  return 0;
+  return write_files(command, models);
 }
 
+const Command model_command{
+    190, "model",
+    "fit gain, delay, first and second order to results; a filter that undoes the response",
+    add_model, run_model};
+
+} // namespace
 } // namespace dyncal::inline programs

@@ -1,19 +1,23 @@
-#include "services/programs/command/new_bench_command.hpp"
-
+// `dyncal new-bench`: writes a bench file to start from (services/bench/draft), by options, or by
+// questions on a terminal when no name is given. It never overwrites a file, and writes nothing
+// that `dyncal check` would refuse. Belongs to one thread.
 #include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <iostream>
+#include <string>
 
 #include <fmt/core.h>
 
 #include "drivers/can/dbc/dbc.hpp"
+#include "services/bench/draft/bench_draft.hpp"
 #include "services/bench/draft/bench_text.hpp"
 #include "services/bench/draft/draft_questions.hpp"
 #include "services/bench/draft/new_file.hpp"
 #include "services/checks/bench_check/checks.hpp"
 #include "services/checks/bench_check/report.hpp"
-#include "services/daemon/program/program.hpp"
+#include "services/programs/command/command.hpp"
 #include "services/programs/command/draft_options.hpp"
 
 namespace dyncal::inline programs {
@@ -21,16 +25,95 @@ namespace {
 
 using bench_draft::BenchDraft;
 
-std::filesystem::path path_of(const NewBenchCommand& command, const std::string& name) {
-  return command.output.empty() ? std::filesystem::path(name + ".toml") : command.output;
+struct NewBenchOptions {
+  BenchDraft draft;             // without a name: it is asked for
+  std::filesystem::path output; // empty: NAME.toml
+};
+
+// The first name is that of the default.
+template <class Kind>
+void add_kind(CLI::App& command, const char* name, const char* help, Kind& kind,
+              const std::vector<std::string>& names,
+              std::optional<Kind> (*parse)(std::string_view)) {
+  command
+      .add_option_function<std::string>(
+          name, [&kind, parse](const std::string& typed) { kind = *parse(typed); }, help)
+      ->check(CLI::IsMember(names))
+      ->default_str(names.front());
 }
 
-BenchDraft draft_of(const NewBenchCommand& command) {
-  BenchDraft draft = command.draft;
-  draft.sensor = *bench_draft::parse_sensor_kind(command.sensor); // the options allow no other
-  draft.acs = *bench_draft::parse_acs_kind(command.acs);
-  draft.generator = *bench_draft::parse_generator_kind(command.generator);
-  return draft;
+void add_kinds(CLI::App& command, BenchDraft& draft) {
+  using namespace bench_draft;
+  add_kind(command, "--sensor",
+           "smartup (of a SmartUp Unit), file (a record of it), can, series (triggered by an "
+           "oscilloscope) or analogue (a channel of the analogue system)",
+           draft.sensor, sensor_kinds(), parse_sensor_kind);
+  add_kind(command, "--acs", "analogue system with the reference: its stream, or a file", draft.acs,
+           acs_kinds(), parse_acs_kind);
+  add_kind(command, "--generator", "what excites the bench", draft.generator, generator_kinds(),
+           parse_generator_kind);
+}
+
+void add_places(CLI::App& command, BenchDraft& draft) {
+  command.add_option("--listen", draft.listen, "address and UDP port that the unit sends to")
+      ->capture_default_str();
+  command.add_option("--sensor-id", draft.sensor_id, "id of the sensor in the unit")
+      ->capture_default_str();
+  command.add_option("--sensor-file", draft.sensor_file, "the sensor's record");
+  command.add_option("--sensor-address", draft.sensor_address, "of a time series sensor")
+      ->capture_default_str();
+  command.add_option("--dso-address", draft.dso_address, "of the oscilloscope that triggers it")
+      ->capture_default_str();
+  command.add_option("--interface", draft.interface, "of a sensor on CAN")->capture_default_str();
+  command.add_option("--dbc", draft.dbc, "its DBC file (default: one to adapt is written)");
+  command.add_option("--channel", draft.sensor_channel,
+                     "of the sensor (default: acceleration_z; sensor of an analogue one)");
+  command.add_option("--sensor-sync", draft.sensor_sync, "channel of sync in the sensor's record")
+      ->capture_default_str();
+  command.add_option("--acs-address", draft.acs_address, "of the analogue system")
+      ->capture_default_str();
+  command.add_option("--acs-file", draft.acs_file, "the reference's record");
+  command.add_option("--reference", draft.reference, "its channel in the analogue system")
+      ->capture_default_str();
+  command.add_option("--sync", draft.sync, "channel of sync in the analogue system")
+      ->capture_default_str();
+  command.add_option("--generator-address", draft.generator_address, "of the generator")
+      ->capture_default_str();
+}
+
+void add_excitation(CLI::App& command, BenchDraft& draft) {
+  command.add_option("--frequencies", draft.frequencies_hz, "in Hz, decimal text, comma separated")
+      ->delimiter(',')
+      ->capture_default_str();
+  command.add_option("--level", draft.level_m_s2, "in m/s^2, amplitude")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command.add_option("--repetitions", draft.repetitions, "of the whole list")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command.add_option("--duration", draft.duration_s, "evaluated seconds of every step")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command.add_option("--level-per-volt", draft.level_per_volt, "m/s^2 at the exciter for 1 V")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command
+      .add_option("--maximum-voltage", draft.maximum_voltage_v, "of the generator, amplitude in V")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+}
+
+void add_new_bench(CLI::App& command, NewBenchOptions& bench) {
+  command.add_option("--name", bench.draft.name,
+                     "name of the bench (default: all is asked for on the terminal)");
+  command.add_option("--output", bench.output, "file to write (default: NAME.toml)");
+  add_kinds(command, bench.draft);
+  add_places(command, bench.draft);
+  add_excitation(command, bench.draft);
+}
+
+std::filesystem::path path_of(const NewBenchOptions& command, const std::string& name) {
+  return command.output.empty() ? std::filesystem::path(name + ".toml") : command.output;
 }
 
 // Channels of one system that two options name; nothing where each has its own.
@@ -143,18 +226,14 @@ Expected<std::string> write_draft(BenchDraft draft, const std::filesystem::path&
   return read_channels(draft).and_then([&] { return write_files(std::move(draft), path); });
 }
 
-int conclude(const Expected<std::string>& warnings, const std::filesystem::path& path) {
-  if (!warnings) {
-    return report_error(warnings.error());
-  }
-  if (!warnings->empty()) {
-    fmt::print(stderr, "warning: {}\n", *warnings);
+void print_written(const std::string& warnings, const std::filesystem::path& path) {
+  if (!warnings.empty()) {
+    fmt::print(stderr, "warning: {}\n", warnings);
   }
   fmt::print("{} is written; adapt it, then: dyncal check {}\n", path.string(), path.string());
-  return 0;
 }
 
-std::optional<std::string> name_problem(const NewBenchCommand& command, const std::string& name) {
+std::optional<std::string> name_problem(const NewBenchOptions& command, const std::string& name) {
   if (name.find('/') != std::string::npos) {
     return "a name has no '/'; --output says where the file is written";
   }
@@ -163,42 +242,43 @@ std::optional<std::string> name_problem(const NewBenchCommand& command, const st
 }
 
 // Answers that the check refuses are what is offered when all is asked for again.
-int ask_and_write(const NewBenchCommand& command, BenchDraft draft) {
+Expected<void> ask_and_write(NewBenchOptions& command) {
   fmt::print("Enter takes what is in brackets; Ctrl-C ends without writing a file.\n");
   std::fflush(stdout);
   while (true) {
-    auto answered = bench_draft::ask_for_draft(
-        draft, [&](const std::string& name) { return name_problem(command, name); }, std::cin,
-        std::cout);
-    if (!answered) {
-      return report_error(answered.error());
+    DYNCAL_TRY(command.draft,
+               bench_draft::ask_for_draft(
+                   command.draft,
+                   [&](const std::string& name) { return name_problem(command, name); }, std::cin,
+                   std::cout));
+    const auto path = path_of(command, command.draft.name);
+    const auto warnings = write_draft(command.draft, path);
+    if (warnings) {
+      print_written(*warnings, path);
+      return {};
     }
-    const auto path = path_of(command, answered->name);
-    const auto written = write_draft(*answered, path);
-    if (written) {
-      return conclude(written, path);
-    }
-    fmt::print("{}\nOnce more; Enter keeps an answer.\n", written.error().message);
+    fmt::print("{}\nOnce more; Enter keeps an answer.\n", warnings.error().message);
     std::fflush(stdout);
-    draft = std::move(*answered);
   }
 }
+
+Expected<void> run_new_bench(NewBenchOptions& command) {
+  if (command.draft.name.empty()) {
+    return isatty(STDIN_FILENO) != 0
+               ? ask_and_write(command)
+               : fail(ErrorCode::bad_argument, "--name is missing; without it there must be a "
+                                               "terminal to ask on");
+  }
+  DYNCAL_TRY(check_options(command.draft));
+  const auto path = path_of(command, command.draft.name);
+  DYNCAL_TRY(const auto warnings, write_draft(command.draft, path));
+  print_written(warnings, path);
+  return {};
+}
+
+const Command new_bench_command{
+    40, "new-bench", "write a bench file to start from, by these options or by questions",
+    add_new_bench, run_new_bench};
 
 } // namespace
-
-int run_new_bench(const NewBenchCommand& command) {
-  const BenchDraft draft = draft_of(command);
-  if (draft.name.empty()) {
-    return isatty(STDIN_FILENO) != 0
-               ? ask_and_write(command, draft)
-               : report_error({ErrorCode::bad_argument, "--name is missing; without it there must "
-                                                        "be a terminal to ask on"});
-  }
-  if (const auto complete = check_options(draft); !complete) {
-    return report_error(complete.error());
-  }
-  const auto path = path_of(command, draft.name);
-  return conclude(write_draft(draft, path), path);
-}
-
 } // namespace dyncal::inline programs

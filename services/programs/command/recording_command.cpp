@@ -1,7 +1,9 @@
-#include "services/programs/command/recording_command.hpp"
-
+// `dyncal recording check|repair|info FILE`: whether a recording is sound, a whole one of one that
+// is not, and what is in it. Belongs to the thread that owns standard output.
 #include <algorithm>
+#include <filesystem>
 #include <map>
+#include <string>
 
 #include <fmt/chrono.h>
 #include <fmt/core.h>
@@ -9,13 +11,27 @@
 #include "services/base/byte_count.hpp"
 #include "services/base/printable_text.hpp"
 #include "services/base/version.hpp"
-#include "services/daemon/program/program.hpp"
+#include "services/programs/command/command.hpp"
 #include "services/programs/command/work_progress.hpp"
 #include "services/records/mcap/recording_reader.hpp"
 #include "services/records/mcap/repair.hpp"
 
 namespace dyncal::inline programs {
 namespace {
+
+struct RecordingOptions {
+  std::filesystem::path file;
+  std::filesystem::path repaired; // of repair; empty: FILE with ".repaired.mcap"
+};
+
+void add_recording(CLI::App& command, RecordingOptions& recording) {
+  command.add_option("FILE", recording.file, "recording")->required();
+}
+
+void add_repair(CLI::App& command, RecordingOptions& recording) {
+  add_recording(command, recording);
+  command.add_option("--output", recording.repaired, "the new file (default: FILE.repaired.mcap)");
+}
 
 void print_findings(const recording::ScanReport& report, const std::filesystem::path& path) {
   for (const recording::Damage& damage : report.damages) {
@@ -69,7 +85,7 @@ struct Contents {
 };
 
 // By the megabytes that are behind.
-Expected<recording::ScanReport> read_all(const RecordingCommand& command,
+Expected<recording::ScanReport> read_all(const RecordingOptions& command,
                                          recording::ScanEvents events) {
   const WorkProgress progress("reading");
   DYNCAL_TRY(auto reader, recording::RecordingReader::open(command.file));
@@ -81,60 +97,48 @@ Expected<recording::ScanReport> read_all(const RecordingCommand& command,
   return reader.scan(events);
 }
 
-} // namespace
-
-int run_recording_check(const RecordingCommand& command) {
-  const auto report = read_all(command, {});
-  if (!report) {
-    return report_error(report.error());
-  }
-  print_findings(*report, command.file);
-  return report->damage_count == 0
-             ? 0
-             : report_error({ErrorCode::bad_file,
-                             fmt::format("{}: is damaged in {} places, listed above; 'dyncal "
-                                         "recording repair' saves what is sound",
-                                         command.file.string(), report->damage_count)});
+Expected<void> run_recording_check(const RecordingOptions& command) {
+  DYNCAL_TRY(const auto report, read_all(command, {}));
+  print_findings(report, command.file);
+  return report.damage_count == 0
+             ? Expected<void>{}
+             : fail(ErrorCode::bad_file,
+                    fmt::format("{}: is damaged in {} places, listed above; 'dyncal recording "
+                                "repair' saves what is sound",
+                                command.file.string(), report.damage_count));
 }
 
-int run_recording_repair(const RecordingCommand& command) {
-  std::filesystem::path repaired = command.repaired;
-  if (repaired.empty()) {
-    repaired = command.file;
-    repaired.replace_extension(".repaired.mcap");
+Expected<void> run_recording_repair(RecordingOptions& command) {
+  if (command.repaired.empty()) {
+    command.repaired = command.file;
+    command.repaired.replace_extension(".repaired.mcap");
   }
-  const auto report = [&] {
-    const WorkProgress progress("repairing");
-    return recording::repair(command.file, repaired, software_version(), progress.count());
-  }();
-  if (!report) {
-    return report_error(report.error());
-  }
-  print_findings(*report, command.file);
-  fmt::print("wrote {}\n", repaired.string());
-  return 0;
+  DYNCAL_TRY(const auto report, with_progress("repairing", [&](const SharedWorkCount& count) {
+               return recording::repair(command.file, command.repaired, software_version(), count);
+             }));
+  print_findings(report, command.file);
+  fmt::print("wrote {}\n", command.repaired.string());
+  return {};
 }
 
-int run_recording_info(const RecordingCommand& command) {
+Expected<void> run_recording_info(const RecordingOptions& command) {
   Contents contents;
   std::string beside; // attachments and metadata
+  const auto add_attachment = [&](const recording::Attachment& attachment) {
+    beside += fmt::format("attachment {} ({} bytes)\n", one_line(attachment.name),
+                          attachment.data.size());
+  };
+  const auto add_metadata = [&](const recording::Metadata& metadata) {
+    beside += one_line(metadata.name) + "\n";
+    for (const auto& [key, value] : metadata.entries) {
+      beside += fmt::format("  {}\n", one_line(key + " = " + value));
+    }
+  };
   const auto report = read_all(
       command, {.message = [&](const recording::MessageInFile& message) { contents.add(message); },
-                .attachment =
-                    [&](const recording::Attachment& attachment) {
-                      beside += fmt::format("attachment {} ({} bytes)\n", one_line(attachment.name),
-                                            attachment.data.size());
-                    },
-                .metadata =
-                    [&](const recording::Metadata& metadata) {
-                      beside += one_line(metadata.name) + "\n";
-                      for (const auto& [key, value] : metadata.entries) {
-                        beside += fmt::format("  {}\n", one_line(key + " = " + value));
-                      }
-                    }});
-  if (!report) {
-    return report_error(report.error());
-  }
+                .attachment = add_attachment,
+                .metadata = add_metadata});
+  DYNCAL_TRY(report);
   fmt::print("{}written by {}\n", beside, one_line(report->library));
   if (report->messages > 0) {
     fmt::print("from {} to {}, {:.1f} s\n", time_text(contents.first), time_text(contents.last),
@@ -145,7 +149,18 @@ int run_recording_info(const RecordingCommand& command) {
                static_cast<double>(count.bytes) * 1e-6);
   }
   print_findings(*report, command.file);
-  return 0;
+  return {};
 }
 
+const Command recording_command{120, "recording", "check, repair or describe a recording (.mcap)"};
+const Command recording_check_command{121, "recording check",
+                                      "read all of it, and name every place that is damaged",
+                                      add_recording, run_recording_check};
+const Command recording_repair_command{122, "recording repair",
+                                       "write what is sound of it into a new file with an index",
+                                       add_repair, run_recording_repair};
+const Command recording_info_command{123, "recording info", "what is in it", add_recording,
+                                     run_recording_info};
+
+} // namespace
 } // namespace dyncal::inline programs

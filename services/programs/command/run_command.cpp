@@ -12,10 +12,12 @@
 #include "services/checks/bench_check/checks.hpp"
 #include "services/checks/doctor/unheard_analysis.hpp"
 #include "services/contract/run_identity.hpp"
-#include "services/contract/time_name.hpp"
 #include "services/contract/topics.hpp"
 #include "services/daemon/program/bench_program.hpp"
 #include "services/daemon/program/watched_network.hpp"
+#include "services/programs/command/command.hpp"
+#include "services/programs/command/figure_options.hpp"
+#include "services/programs/command/keep_options.hpp"
 #include "services/programs/command/laboratory_look.hpp"
 #include "services/programs/command/progress_line.hpp"
 #include "services/programs/command/run_again.hpp"
@@ -27,18 +29,29 @@
 
 namespace dyncal::inline programs {
 
-std::string run_from_time() {
-  return time_name(utc_now_ns());
-}
-
-Expected<std::vector<analysis::AdcCalibrationPoint>> read_adc_calibration(const BenchFile& bench) {
-  if (!bench.corrections.adc) {
-    return std::vector<analysis::AdcCalibrationPoint>{};
-  }
-  return read_adc_file(*bench.corrections.adc);
-}
-
 namespace {
+
+void add_run(CLI::App& command, RunOptions& run) {
+  command.add_option("BENCH.toml", run.bench_file, "bench file")->required();
+  command.add_option("--run", run.run, "name of the run (default: the time)");
+  auto* wait = command.add_flag("--wait", run.wait, "wait while another run has the bench");
+  command.add_option("--resume", run.resume, "resume the named run after its conductor died")
+      ->excludes("--run")
+      ->excludes(wait);
+  command.add_option("--json", run.json, "write the result to this file as JSON");
+  add_figure_options(command, run.figures);
+  run.keep.folder = "runs";
+  add_keep_options(command, run.keep);
+  add_network_options(command, run.network);
+}
+
+Expected<void> run_run(RunOptions& run, const std::stop_token& stop) {
+  DYNCAL_TRY(const auto outcome, conduct_run(run, stop));
+  return check_complete(outcome);
+}
+
+const Command run_command{20, "run", "run the excitation list of a bench and print the result",
+                          add_run, run_run};
 
 // At a run.
 struct Attempt {
@@ -48,7 +61,7 @@ struct Attempt {
 
 // All that the attempts at a run have in common.
 struct Conduct {
-  const RunCommand& command;
+  const RunOptions& command;
   const BenchFile& bench;
   const std::vector<analysis::AdcCalibrationPoint>& adc;
   const NetworkOptions& network;
@@ -186,7 +199,7 @@ void take_words_of_guards(bus::Reader<wire::ServiceStatus>& statuses, const Benc
 // The folder first, which is what is left if the rest fails; then the database, which may let wait.
 // What is kept is evaluated once more at the end.
 Expected<void> show_and_keep(const Conduct& conduct, ConductedRun& run) {
-  const RunCommand& command = conduct.command;
+  const RunOptions& command = conduct.command;
   auto statuses = conduct.participant.reader(bus::topics::service_status, conduct.bench.bench,
                                              std::make_shared<bus::WakeUp>());
   const auto kept = run.kept->finish(run.outcome);
@@ -237,7 +250,7 @@ Expected<void> check_bench(const BenchFile& bench) {
 
 } // namespace
 
-Expected<RunOutcome> conduct_run(const RunCommand& command, const std::stop_token& asked) {
+Expected<RunOutcome> conduct_run(const RunOptions& command, const std::stop_token& asked) {
   DYNCAL_TRY(RunIdentity::begin(command.run, utc_now_ns()));
   DYNCAL_TRY(const auto bench, read_bench_file(command.bench_file));
   DYNCAL_TRY(check_bench(bench));
@@ -271,11 +284,6 @@ Expected<RunOutcome> conduct_run(const RunCommand& command, const std::stop_toke
   }
   DYNCAL_TRY(heard);
   return std::move(run->outcome);
-}
-
-int conclude(const RunOutcome& outcome) {
-  const auto complete = check_complete(outcome);
-  return complete ? 0 : report_error(complete.error());
 }
 
 } // namespace dyncal::inline programs

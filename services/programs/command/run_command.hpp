@@ -7,7 +7,6 @@
 #include <optional>
 #include <stop_token>
 #include <string>
-#include <vector>
 
 #include "services/daemon/program/program.hpp"
 #include "services/programs/command/kept_run.hpp"
@@ -16,7 +15,7 @@
 
 namespace dyncal::inline programs {
 
-struct RunCommand {
+struct RunOptions {
   std::filesystem::path bench_file;
   std::string run; // its name; empty: the time
   std::optional<std::filesystem::path> json;
@@ -28,18 +27,7 @@ struct RunCommand {
 };
 
 // Does the run and prints; the outcome is for callers that look further into it.
-[[nodiscard]] Expected<RunOutcome> conduct_run(const RunCommand& command,
+[[nodiscard]] Expected<RunOutcome> conduct_run(const RunOptions& command,
                                                const std::stop_token& stop);
-
-// "20261121T101530.125Z": sorts by time, fits a key, and differs between two runs that a script
-// starts in the same second.
-[[nodiscard]] std::string run_from_time();
-
-// The points of the ADC calibration that the bench file names; none when it names none.
-[[nodiscard]] Expected<std::vector<analysis::AdcCalibrationPoint>>
-read_adc_calibration(const BenchFile& bench);
-
-// The exit status and, unless 0, one line on standard error.
-[[nodiscard]] int conclude(const RunOutcome& outcome);
 
 } // namespace dyncal::inline programs

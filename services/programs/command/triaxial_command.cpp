@@ -1,24 +1,76 @@
-#include "services/programs/command/triaxial_command.hpp"
-
+// `dyncal triaxial --x X.json --y Y.json --z Z.json`: the response of a sensor's three axes from
+// one result for each direction of excitation, and its transverse sensitivity
+// (analysis/response/triaxial.hpp).
+//
+// The result of an excitation along j holds the transfer functions of the sensor's three channels
+// against the reference along j: column j of the 3x3 response. Any one direction is enough for its
+// column; transverse motion is then assumed to be zero, and its bound (--transverse-motion) goes
+// into the uncertainty. With a triaxial reference the transverse motion is known: --motion-x, -y,
+// -z name a result each (method analogue) of the other two axes of the reference against the
+// excited one, from the same records; they need all three directions. Frequencies are those that
+// all files have. A channel is found by the end of its name (_x, _y, _z) or named with --channels,
+// --motion-channels.
+//
+// Prints a table, or JSON. Exit status not 0 and one line when a file is not a result, a channel is
+// missing or nothing is in common. Belongs to one thread.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
+#include <filesystem>
 #include <optional>
 #include <set>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "analysis/response/triaxial.hpp"
-#include "services/base/error.hpp"
 #include "services/base/json_text.hpp"
-#include "services/daemon/program/program.hpp"
+#include "services/programs/command/command.hpp"
 #include "services/programs/command/work_progress.hpp"
 #include "services/views/report/result_file.hpp"
 
 namespace dyncal::inline programs {
 namespace {
+
+struct TriaxialOptions {
+  std::array<std::filesystem::path, 3> results; // by direction of excitation; empty: not measured
+  std::array<std::filesystem::path, 3>
+      motions;                              // of a triaxial reference; empty: single-axis reference
+  std::vector<std::string> channels;        // of the sensor: x, y, z; empty: found
+  std::vector<std::string> motion_channels; // of the reference: x, y, z; empty: found
+  double transverse_motion_rel = 0.0;       // bound of the motion across a single-axis reference
+  bool json = false;
+};
+
+void add_triaxial(CLI::App& command, TriaxialOptions& triaxial) {
+  constexpr std::array axes{"x", "y", "z"};
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    command.add_option(std::string("--") + axes[i], triaxial.results[i],
+                       std::string("result of the excitation along ") + axes[i]);
+    command.add_option(
+        std::string("--motion-") + axes[i], triaxial.motions[i],
+        std::string("result of a triaxial reference's other axes against its axis ") + axes[i]);
+  }
+  command
+      .add_option(
+          "--channels", triaxial.channels,
+          "channels of the sensor: x, y, z (default: those whose names end with _x, _y, _z)")
+      ->expected(3);
+  command
+      .add_option(
+          "--motion-channels", triaxial.motion_channels,
+          "channels of the reference: x, y, z (default: those whose names end with _x, _y, _z)")
+      ->expected(3);
+  command
+      .add_option("--transverse-motion", triaxial.transverse_motion_rel,
+                  "bound of the exciter's transverse motion, relative to that along its axis")
+      ->check(CLI::NonNegativeNumber);
+  command.add_flag("--json", triaxial.json, "print JSON");
+}
 
 using Json = nlohmann::ordered_json;
 using Names = std::array<std::string, 3>;
@@ -87,7 +139,7 @@ Expected<Names> channels_of(const std::vector<std::string>& named,
   return find_channels(like_the_reference.empty() ? others : like_the_reference, option);
 }
 
-Expected<Measured> read(const TriaxialCommand& command, const SharedWorkCount& count) {
+Expected<Measured> read(const TriaxialOptions& command, const SharedWorkCount& count) {
   ByteCount bytes(count, "reading",
                   bytes_of_files(command.results) + bytes_of_files(command.motions));
   Measured measured;
@@ -208,7 +260,7 @@ Expected<void> add_transverse(ResponsePoint& point, double transverse_motion_rel
   return {};
 }
 
-Expected<std::vector<ResponsePoint>> evaluate(const TriaxialCommand& command,
+Expected<std::vector<ResponsePoint>> evaluate(const TriaxialOptions& command,
                                               const Measured& measured, WorkCount& count) {
   std::vector<ResponsePoint> points;
   count.begin("evaluating", "values", measured.directions.front().sensor.size());
@@ -235,7 +287,7 @@ Expected<std::vector<ResponsePoint>> evaluate(const TriaxialCommand& command,
 
 // The progress is gone before anything is printed.
 Expected<std::pair<Measured, std::vector<ResponsePoint>>>
-read_and_evaluate(const TriaxialCommand& command) {
+read_and_evaluate(const TriaxialOptions& command) {
   const WorkProgress progress("reading");
   DYNCAL_TRY(auto measured, read(command, progress.count()));
   DYNCAL_TRY(auto points, evaluate(command, measured, *progress.count()));
@@ -273,7 +325,7 @@ void print_json(const Measured& measured, const std::vector<ResponsePoint>& poin
   fmt::print("{}\n", json_text(json, 2));
 }
 
-void print_table(const TriaxialCommand& command, const Measured& measured,
+void print_table(const TriaxialOptions& command, const Measured& measured,
                  const std::vector<ResponsePoint>& points) {
   fmt::print("{:>12} {:>6} {:>12} {:>12} {:>12} {:>12} {:>12}   {}\n", "f / Hz", "along", "|H_x|",
              "|H_y|", "|H_z|", "transverse", "u", "largest of the ratios to the excited axis");
@@ -305,16 +357,18 @@ void print_table(const TriaxialCommand& command, const Measured& measured,
   }
 }
 
-} // namespace
-
-int run_triaxial(const TriaxialCommand& command) {
-  const auto evaluated = read_and_evaluate(command);
-  if (!evaluated) {
-    return report_error(evaluated.error());
-  }
-  const auto& [measured, points] = *evaluated;
+Expected<void> run_triaxial(const TriaxialOptions& command) {
+  DYNCAL_TRY(const auto evaluated, read_and_evaluate(command));
+  const auto& [measured, points] = evaluated;
   command.json ? print_json(measured, points) : print_table(command, measured, points);
-  return 0;
+  return {};
 }
 
+const Command triaxial_command{
+    200, "triaxial",
+    "response of a sensor's three axes and transverse sensitivity, from one result for each "
+    "direction of excitation",
+    add_triaxial, run_triaxial};
+
+} // namespace
 } // namespace dyncal::inline programs

@@ -55,4 +55,11 @@ private:
   std::jthread thread_;                    // the last member: it ends before what it uses
 };
 
+// What `work(count)` returns; the line is gone by then.
+template <class Work>
+[[nodiscard]] auto with_progress(const std::string& what, Work&& work) {
+  const WorkProgress progress(what);
+  return work(progress.count());
+}
+
 } // namespace dyncal::inline programs

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include "drivers/files/file_source.hpp"
 #include "services/base/byte_count.hpp"
 
@@ -49,10 +52,14 @@ private:
 
 } // namespace
 
-std::optional<std::size_t> SeriesFile::column(const std::string& name) const {
+Expected<std::span<const double>> SeriesFile::column(const std::string& name) const {
   const auto found = std::find(names.begin(), names.end(), name);
-  return found == names.end() ? std::nullopt
-                              : std::optional(static_cast<std::size_t>(found - names.begin()));
+  if (found == names.end()) {
+    return fail(ErrorCode::bad_argument,
+                fmt::format("{}: there is no column '{}'; the columns are: {}", path.string(), name,
+                            fmt::join(names, ", ")));
+  }
+  return std::span<const double>(columns[static_cast<std::size_t>(found - names.begin())]);
 }
 
 std::size_t SeriesFile::leave_out_disorder() {
@@ -95,7 +102,9 @@ Expected<SeriesFile> read_series_file(const std::filesystem::path& path,
     return fail(ErrorCode::bad_file, read.error().message);
   }
   bytes.set_share_done(source.share_read());
-  return collector.series();
+  SeriesFile series = collector.series();
+  series.path = path;
+  return series;
 }
 
 } // namespace dyncal::inline records

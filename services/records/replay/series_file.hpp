@@ -15,13 +15,15 @@
 namespace dyncal::inline records {
 
 struct SeriesFile {
+  std::filesystem::path path;
   std::vector<std::string> names;
   std::vector<std::int64_t> stamps_ns;
   std::vector<std::uint8_t> flags;           // not 0: the stamp is not in order
   std::vector<std::uint64_t> sample_numbers; // counted where the file has none
   std::vector<std::vector<double>> columns;
 
-  [[nodiscard]] std::optional<std::size_t> column(const std::string& name) const;
+  // Fails (bad_argument) with the names that there are.
+  [[nodiscard]] Expected<std::span<const double>> column(const std::string& name) const;
   // Leaves out samples whose stamps are not in order; returns how many.
   std::size_t leave_out_disorder();
 };

@@ -1,4 +1,4 @@
-#include "services/programs/command/calibrate_adc_command.hpp"
+#include "services/programs/command/adc_bench.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,11 +1,11 @@
-#include "services/programs/command/calibrate_time_command.hpp"
-
 #include <filesystem>
 #include <fstream>
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include "services/programs/command/command.hpp"
 #include "services/programs/command/pulse_file.hpp"
 #include "tests/temporary_folder.hpp"
 
@@ -20,9 +20,17 @@ protected:
   fs::path file(const std::string& name, const std::string& text) const {
     return own_.write(name, text);
   }
-  static nlohmann::json json_of(const fs::path& path) {
-    std::ifstream stream(path);
-    return nlohmann::json::parse(stream);
+  // What `dyncal calibrate time FILE` writes; null where it fails.
+  nlohmann::json calibrated(const fs::path& record) const {
+    CLI::App app;
+    Command::Action chosen;
+    add_commands(app, chosen);
+    const std::string output = folder_ / "time.json";
+    app.parse(fmt::format("calibrate time {} --output {}", record.string(), output));
+    const auto status = chosen();
+    EXPECT_TRUE(status) << status.error().message;
+    std::ifstream stream(output);
+    return status == 0 ? nlohmann::json::parse(stream) : nlohmann::json();
   }
   static std::string error_of(const std::vector<fs::path>& files) {
     const auto read = read_pulse_files(files);
@@ -44,11 +52,7 @@ constexpr const char* extract = "GPST;0;3094019184\nREFT;0;3134801829\nGPST;1;31
                                 "3994012861\nREFT;9;4034795504\n";
 
 TEST_F(CalibrateTime, AnExtractOfARealRecordIsJudged) {
-  const CalibrateTimeCommand command{.files = {file("pps.csv", extract)},
-                                     .output = folder_ / "time.json",
-                                     .reference_offset_s = {}};
-  ASSERT_EQ(run_calibrate_time(command), 0);
-  const auto json = json_of(folder_ / "time.json");
+  const auto json = calibrated(file("pps.csv", extract));
   EXPECT_EQ(json["gps"]["seconds"], 10);
   EXPECT_EQ(json["reference"]["seconds"], 10);
   EXPECT_EQ(json["deviation"]["untrusted"], 2);
@@ -72,13 +76,9 @@ TEST_F(CalibrateTime, SeveralFilesAreOneRecord) {
 }
 
 TEST_F(CalibrateTime, ARecordOfGpsPulsesAloneHasNoDeviation) {
-  const CalibrateTimeCommand command{
-      .files = {file("gps.csv", "0;184302183\n1;284301456\n2;384300731\n3;484300007\n4;"
-                                "504098362\n5;584299284\n6;639117152\n7;684298561\n")},
-      .output = folder_ / "time.json",
-      .reference_offset_s = {}};
-  ASSERT_EQ(run_calibrate_time(command), 0);
-  const auto json = json_of(folder_ / "time.json");
+  const auto json = calibrated(
+      file("gps.csv", "0;184302183\n1;284301456\n2;384300731\n3;484300007\n4;504098362\n"
+                      "5;584299284\n6;639117152\n7;684298561\n"));
   EXPECT_EQ(json["gps"]["extra"], 2);
   EXPECT_EQ(json["gps"]["seconds"], 6);
   EXPECT_FALSE(json.contains("deviation"));
@@ -106,11 +106,7 @@ TEST_F(CalibrateTime, TheRealRecordsAreReadWithTheirKnownFaults) {
   if (!fs::exists(shared)) {
     GTEST_SKIP() << "no real pulse records at " << shared;
   }
-  const CalibrateTimeCommand both{.files = {shared / "gps-and-reference-pps-short.csv"},
-                                  .output = folder_ / "both.json",
-                                  .reference_offset_s = {}};
-  ASSERT_EQ(run_calibrate_time(both), 0);
-  auto json = json_of(folder_ / "both.json");
+  auto json = calibrated(shared / "gps-and-reference-pps-short.csv");
   EXPECT_EQ(json["sessions"], 3);
   EXPECT_EQ(json["gps"]["seconds"], 134);
   EXPECT_EQ(json["reference"]["seconds"], 133);
@@ -118,11 +114,7 @@ TEST_F(CalibrateTime, TheRealRecordsAreReadWithTheirKnownFaults) {
   EXPECT_EQ(json["deviation"]["untrusted"], 7);
   EXPECT_LT(json["deviation"]["spread_s"].get<double>(), 1e-6);
 
-  const CalibrateTimeCommand glitches{.files = {shared / "gps-pps-glitches.csv"},
-                                      .output = folder_ / "glitches.json",
-                                      .reference_offset_s = {}};
-  ASSERT_EQ(run_calibrate_time(glitches), 0);
-  json = json_of(folder_ / "glitches.json");
+  json = calibrated(shared / "gps-pps-glitches.csv");
   EXPECT_EQ(json["sessions"], 1);
   EXPECT_EQ(json["gps"]["extra"], 3);
   EXPECT_EQ(json["gps"]["missing"], 1);
