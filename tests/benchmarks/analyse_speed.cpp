@@ -239,7 +239,7 @@ Cost analysing(const Options& options, const Bench& bench) {
   Cost quickest{1e9, 1e9};
   for (int run = 0; run < options.runs; ++run) {
     tests::ProgramRun process(options.program,
-                              {"analyse", bench.bench_file(), "--json", bench.result_file()},
+                              {"analyse", bench.bench_file(), "--output", bench.result_file()},
                               bench.folder());
     const auto status = process.wait(std::chrono::seconds(600));
     const double wall_s = process.seconds(); // the check of its result is not its own time

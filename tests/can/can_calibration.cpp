@@ -165,8 +165,8 @@ std::optional<CanCalibration::Points> CanCalibration::run(const std::vector<std:
     return bench_was_starved() ? std::nullopt : std::optional(Points{});
   }
   ProgramRun run("dyncal",
-                 {"run", file, "--json", folder_ / "result.json", "--dds", "cyclonedds", "--domain",
-                  std::to_string(own_dds_domain())},
+                 {"run", file, "--output", folder_ / "result.json", "--dds", "cyclonedds",
+                  "--domain", std::to_string(own_dds_domain())},
                  folder_);
   if (kill) {
     kill_and_restart(services, can, file, *kill);

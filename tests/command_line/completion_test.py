@@ -10,9 +10,9 @@ from programs import PROGRAMS, commands_of, environment, expect, output_of
 
 # What is typed, and what must be among the offers, or must not.
 CASES = [
-    ("dyncal an", {"analyse"}, {"run", "--json"}),
+    ("dyncal an", {"analyse"}, {"run", "--output"}),
     ("dyncal calibrate ", {"adc", "dso-delay", "time"}, {"run"}),
-    ("dyncal run --do", {"--domain"}, {"--json"}),
+    ("dyncal run --do", {"--domain"}, {"--output"}),
     ("dyncal model --filter ", {"fir", "iir"}, {"--filter"}),
     ("dyncal calibrate adc --amp", {"--amplitudes"}, set()),
     ("dyncal run b", {"bench.toml"}, {"b.txt"}),

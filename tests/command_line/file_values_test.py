@@ -159,7 +159,7 @@ def write_analogue(folder):
 def analysed(folder):
     result = folder / "result.json"
     result.unlink(missing_ok=True)
-    done = run("dyncal", "analyse", folder / "bench.toml", "--json", result)
+    done = run("dyncal", "analyse", folder / "bench.toml", "--output", result)
     points = json.loads(result.read_text())["points"] if result.exists() else []
     return done, points
 

@@ -109,7 +109,7 @@ def try_commands(folder, commands):
 
 
 def hostile_results(folder, draw):
-    made = run("dyncal", "analyse", "bench.toml", "--json", "result.json", cwd=folder)
+    made = run("dyncal", "analyse", "bench.toml", "--output", "result.json", cwd=folder)
     expect((folder / "result.json").exists(), f"no result: {made.stderr}")
     result = json.loads((folder / "result.json").read_text("utf-8"))
     places = sorted(places_of(result), key=str)

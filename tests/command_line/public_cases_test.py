@@ -36,7 +36,7 @@ def made(case, folder):
 
 def points_of(case, folder):
     result = folder / f"{case}.json"
-    done = run("dyncal", "analyse", made(case, folder) / "bench.toml", "--json", result)
+    done = run("dyncal", "analyse", made(case, folder) / "bench.toml", "--output", result)
     points = json.loads(result.read_text())["points"] if result.exists() else []
     expect(points, f"{case}: no results: {done.stdout}{done.stderr}")
     return points

@@ -24,7 +24,7 @@ def main():
     check("dyncal", ["run", "x", "--domian", "77"], "did you mean '--domain'?")
     check("dyncal", ["demo", "--seed", "abc"], "invalid --seed = abc: must be a whole number")
     check("dyncal", ["demo", "--domain", "300"], "--domain")
-    check("dyncal", ["analyse", "off.toml", "--json"], "--json needs a value")
+    check("dyncal", ["analyse", "off.toml", "--output"], "--output needs a value")
     check("dyncal-dau", [], "BENCH.toml is missing")
     check("dyncal-dau", ["a.toml", "--metric", "x"], "did you mean '--metrics'?")
     check("dyncal-recorder", ["--foldr", "x"], "did you mean '--folder'?")

@@ -26,7 +26,7 @@ def analysed(program, folder):
     result = folder / "result.json"
     result.unlink(missing_ok=True)  # of another drawing
     run = subprocess.run(
-        [program, "analyse", folder / "bench.toml", "--json", result],
+        [program, "analyse", folder / "bench.toml", "--output", result],
         capture_output=True,
         text=True,
         timeout=ANALYSE_TIMEOUT_S,

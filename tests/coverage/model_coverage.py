@@ -115,8 +115,8 @@ def write_calibration(random, folder):
 
 def model_of(dyncal, folder):
     for arguments in (
-        ("analyse", "bench.toml", "--json", "result.json"),
-        ("model", "result.json", "--json", "model.json"),
+        ("analyse", "bench.toml", "--output", "result.json"),
+        ("model", "result.json", "--output", "model.json"),
     ):
         subprocess.run([dyncal, *arguments], cwd=folder, check=True, stdout=subprocess.DEVNULL)
     return json.loads((folder / "model.json").read_text("utf-8"))["models"][0]

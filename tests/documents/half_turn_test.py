@@ -82,7 +82,7 @@ class HalfATurn(unittest.TestCase):
         calibration.write(bench)
         cls.true_rad = {float(f): math.pi - d for f, d in calibration.fault.beside_rad.items()}
         cls.table = run(
-            DYNCAL, "analyse", bench / "bench.toml", "--json", cls.stored / "result.json",
+            DYNCAL, "analyse", bench / "bench.toml", "--output", cls.stored / "result.json",
             "--figures", cls.folder / "figures",
         )  # fmt: skip
         cls.result = json.loads((cls.stored / "result.json").read_text())

@@ -54,7 +54,7 @@ class OneUncertainty(unittest.TestCase):
         bench.mkdir()
         stored.mkdir()
         Calibration(SETTINGS, [SEED]).write(bench)
-        run(DYNCAL, "analyse", bench / "bench.toml", "--json", stored / "result.json",
+        run(DYNCAL, "analyse", bench / "bench.toml", "--output", stored / "result.json",
             "--figures", cls.folder / "figures")  # fmt: skip
         cls.result = json.loads((stored / "result.json").read_text())
         cls.certificate = cls.folder / "certificate.xml"

@@ -89,7 +89,7 @@ reference_magnitude_rel = 5e-4
 reference_phase_rad = 5e-4
 acs_delay_s = 1e-8
 TOML
-"$programs/dyncal" analyse "$folder/bench.toml" --json "$folder/expected.json" >"$folder/log"
+"$programs/dyncal" analyse "$folder/bench.toml" --output "$folder/expected.json" >"$folder/log"
 
 name_of() { [[ $1 == F ]] && echo fastdds || echo cyclonedds; }
 network=(--domain 46 --interface lab)
@@ -167,7 +167,7 @@ began=0
 one_run() {
   rm -f "$folder/run.json"
   local status=0 difference=
-  (on operator timeout 300 "$programs/dyncal" run "$folder/bench.toml" --json \
+  (on operator timeout 300 "$programs/dyncal" run "$folder/bench.toml" --output \
     "$folder/run.json" "${network[@]}" --dds "$(name_of "${order:2:1}")" \
     >/dev/null 2>"$folder/run.log") &
   local run=$!

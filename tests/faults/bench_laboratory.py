@@ -278,7 +278,7 @@ dut = ["dau/acceleration_x", "dau/acceleration_y", "dau/acceleration_z"]"""
 
     def run(self, *arguments):
         return self.on_bus(
-            "dyncal", ["run", self.bench_file, "--json", self.folder / "run.json", *arguments]
+            "dyncal", ["run", self.bench_file, "--output", self.folder / "run.json", *arguments]
         )
 
     def result(self):

@@ -152,7 +152,7 @@ def judge_recording(laboratory):
         recorder.wait_for_text(f"{newest.name} has ")
     recorder.end()
     result = laboratory.folder / "recorded.json"
-    analyse = laboratory.start_program("dyncal", ["analyse", newest, "--json", result])
+    analyse = laboratory.start_program("dyncal", ["analyse", newest, "--output", result])
     status = analyse.wait()
     recorded = json.loads(result.read_text(encoding="utf-8"))["points"]
     given = laboratory.result()["points"]

@@ -75,7 +75,7 @@ class PlayedLaboratory:
 
     def analysed(self):
         result = self.folder / "analyse.json"
-        analyse = self.start_program("dyncal", ["analyse", self.bench_file, "--json", result])
+        analyse = self.start_program("dyncal", ["analyse", self.bench_file, "--output", result])
         if analyse.wait() != 0:
             raise Failure(analyse.errors())
         return json.loads(result.read_text(encoding="utf-8"))
@@ -100,7 +100,7 @@ class PlayedLaboratory:
 
     def run(self, environment=None):
         return self.on_bus(
-            "dyncal", ["run", self.bench_file, "--json", self.folder / "run.json"], environment
+            "dyncal", ["run", self.bench_file, "--output", self.folder / "run.json"], environment
         )
 
     def expect_same_bits(self, run):

@@ -40,7 +40,7 @@ TEST_P(RestartedService, IsWaitedForAndTheRunIsWhole) {
   const auto [program, dds] = GetParam();
   const auto folder = fresh_folder("restarted-" + program + "-" + dds);
   LiveBench bench(folder, three_steps(dds));
-  ProgramRun& run = bench.start({"run", bench.bench_file(), "--json", folder / "run.json"});
+  ProgramRun& run = bench.start({"run", bench.bench_file(), "--output", folder / "run.json"});
   ASSERT_TRUE(run.wait_for_error_text(in_the_middle, patience)) << run.errors();
   bench.service(program).send(SIGKILL);
   bench.start_service(program);
@@ -88,7 +88,8 @@ protected:
     return watch.wait_for_output_text("160 Hz", patience);
   }
   void expect_bits_of_an_undisturbed_run() const {
-    ProgramRun analyse("dyncal", {"analyse", bench_, "--json", folder_ / "analyse.json"}, folder_);
+    ProgramRun analyse("dyncal", {"analyse", bench_, "--output", folder_ / "analyse.json"},
+                       folder_);
     EXPECT_EQ(analyse.wait(patience), 0) << analyse.errors();
     const auto expected = read_json(folder_ / "analyse.json");
     const auto result = read_json(folder_ / "run.json");
@@ -105,7 +106,7 @@ TEST_P(LostAnalysis, RestartedGivesTheSameBits) {
   ProgramRun& analysis = start("dyncal-analysis", {});
   start("dyncal-acs", {bench_});
   ProgramRun& watch = start("dyncal", {"watch"});
-  ProgramRun& run = start("dyncal", {"run", bench_, "--json", folder_ / "run.json"});
+  ProgramRun& run = start("dyncal", {"run", bench_, "--output", folder_ / "run.json"});
   ASSERT_TRUE(wait_for_first_repetition(watch)) << watch.output();
   analysis.send(SIGKILL);
   start("dyncal-analysis", {});
@@ -119,7 +120,7 @@ TEST_P(LostAnalysis, AnotherOneTakesOverWithTheSameBits) {
   ProgramRun& leader = start("dyncal-analysis", {});
   start("dyncal-acs", {bench_});
   ProgramRun& watch = start("dyncal", {"watch"});
-  ProgramRun& run = start("dyncal", {"run", bench_, "--json", folder_ / "run.json"});
+  ProgramRun& run = start("dyncal", {"run", bench_, "--output", folder_ / "run.json"});
   ASSERT_TRUE(wait_for_first_repetition(watch)) << watch.output();
   ProgramRun& other = start("dyncal-analysis", {});
   leader.send(SIGKILL);
@@ -136,7 +137,7 @@ TEST_P(LostAnalysis, OneThatStoodByFromTheBeginningTakesOverWithTheSameBits) {
   std::vector<ProgramRun*> analyses{&start("dyncal-analysis", {}), &start("dyncal-analysis", {})};
   start("dyncal-acs", {bench_});
   ProgramRun& watch = start("dyncal", {"watch"});
-  ProgramRun& run = start("dyncal", {"run", bench_, "--json", folder_ / "run.json"});
+  ProgramRun& run = start("dyncal", {"run", bench_, "--output", folder_ / "run.json"});
   ASSERT_TRUE(wait_for_first_repetition(watch)) << watch.output();
   const auto leads = [](ProgramRun* one) { // both may have armed before they heard of each other
     const std::string log = one->errors();
@@ -156,7 +157,7 @@ TEST_P(LostAnalysis, StoppedForAWhileItGivesTheSameBits) {
   ProgramRun& analysis = start("dyncal-analysis", {});
   start("dyncal-acs", {bench_});
   ProgramRun& watch = start("dyncal", {"watch"});
-  ProgramRun& run = start("dyncal", {"run", bench_, "--json", folder_ / "run.json"});
+  ProgramRun& run = start("dyncal", {"run", bench_, "--output", folder_ / "run.json"});
   ASSERT_TRUE(wait_for_first_repetition(watch)) << watch.output();
   analysis.send(SIGSTOP);
   EXPECT_FALSE(run.wait(std::chrono::seconds(8))) << run.errors(); // longer than every lease
@@ -181,7 +182,7 @@ TEST_P(InterruptedRun, LeavesNothingToTheNextOne) {
   ASSERT_TRUE(wait_for_first_repetition(watch)) << watch.output();
   first.send(SIGINT);
   ASSERT_TRUE(first.wait(patience)) << first.errors();
-  ProgramRun& run = start("dyncal", {"run", bench_, "--json", folder_ / "run.json"});
+  ProgramRun& run = start("dyncal", {"run", bench_, "--output", folder_ / "run.json"});
   const auto status = run.wait(patience);
   ASSERT_TRUE(status) << run.errors();
   EXPECT_EQ(*status, 0) << run.errors();

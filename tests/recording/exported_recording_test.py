@@ -59,7 +59,7 @@ class ExportedRecording(unittest.TestCase):
             "rows": self.folder / f"{name}-rows.mcap",
         }
         for target in exported.values():
-            self.run_dyncal("export", recording, "--to", target)
+            self.run_dyncal("export", recording, "--output", target)
         refused = self.run_dyncal("analyse", exported["h5"], status=(1, 2))
         self.assertIn("the recording (.mcap)", refused.stderr)
         compared = subprocess.run(

@@ -100,7 +100,8 @@ acs_delay_s = 1e-8
   }
 
   int analyse() {
-    ProgramRun run("dyncal", {"analyse", folder_ / "bench.toml", "--json", folder_ / "result.json"},
+    ProgramRun run("dyncal",
+                   {"analyse", folder_ / "bench.toml", "--output", folder_ / "result.json"},
                    folder_);
     const auto status = run.wait(patience);
     errors_ = run.errors();

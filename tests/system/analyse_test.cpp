@@ -69,7 +69,7 @@ TEST(Analyse, MeetsTheExactAnswerOfTheSyncLink) {
   const nlohmann::json vector = read_json(vectors / "07_sync_link.json");
   ProgramRun run(
       "dyncal",
-      {"analyse", bench_of_vector(folder, vectors, vector), "--json", folder / "result.json"},
+      {"analyse", bench_of_vector(folder, vectors, vector), "--output", folder / "result.json"},
       folder);
   ASSERT_EQ(run.wait(patience), 0) << run.output() << run.errors();
   const nlohmann::json result = read_json(folder / "result.json");

@@ -84,7 +84,7 @@ TEST_P(BenchFault, IsSeenInTheResult) {
   const auto folder = fresh_folder(std::string("bench-fault-") + fault.name);
   const LiveBench bench(folder, settings_of(folder, fault.faults));
   ProgramRun run("dyncal",
-                 {"run", bench.bench_file(), "--json", folder / "result.json", "--domain",
+                 {"run", bench.bench_file(), "--output", folder / "result.json", "--domain",
                   std::to_string(own_dds_domain()), "--dds", "fastdds"},
                  folder);
   const auto status = run.wait(patience);
@@ -162,7 +162,7 @@ TEST_P(HumAtAStep, IsCoveredOrSeen) {
   const std::string channel = GetParam();
   const auto folder = fresh_folder("bench-fault-hum-" + channel);
   LiveBench bench(folder, settings_of(folder, {"hum=0.02,at=" + channel}, "50"));
-  ProgramRun& run = bench.start({"run", bench.bench_file(), "--json", folder / "result.json"});
+  ProgramRun& run = bench.start({"run", bench.bench_file(), "--output", folder / "result.json"});
   ASSERT_TRUE(run.wait(patience)) << run.errors();
   const auto result = read_json(folder / "result.json");
   const auto truth = bench.truth();
@@ -217,7 +217,7 @@ TEST(BenchResponse, ResultOfASensorFromAFileAgreesWithItAndOutsideItNothingIsExc
   LiveBench bench(folder, settings);
   bench.tell_generator(":SOURce1:FREQuency 126");
   EXPECT_THAT(bench.ask_generator(":SYSTem:ERRor?"), HasSubstr("Data out of range"));
-  ProgramRun& run = bench.start({"run", bench.bench_file(), "--json", folder / "result.json"});
+  ProgramRun& run = bench.start({"run", bench.bench_file(), "--output", folder / "result.json"});
   ASSERT_EQ(run.wait(patience), 0) << run.errors();
   std::size_t points = 0;
   const auto result = read_json(folder / "result.json");

@@ -80,7 +80,7 @@ TEST_P(BenchSwitch, IsSeenInTheTableAndOnThePageOrIsCovered) {
   LiveBench bench(folder, settings_of(folder, which));
   Laboratory laboratory(folder / "page");
   WebVisitor visitor(laboratory.start("dyncal-web", {"--listen", "127.0.0.1:0"}, "cyclonedds"));
-  ProgramRun& run = bench.start({"run", bench.bench_file(), "--json", folder / "result.json"});
+  ProgramRun& run = bench.start({"run", bench.bench_file(), "--output", folder / "result.json"});
   ASSERT_TRUE(run.wait(patience)) << run.errors();
   const json result = read_json(folder / "result.json");
   ASSERT_FALSE(result.is_discarded()) << run.errors();

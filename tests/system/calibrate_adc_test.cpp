@@ -72,7 +72,7 @@ TEST(CalibrateAdc, FindsTheResponseOfTheAdcAndARunWithItMeetsTheTruth) {
       bench.changed_bench_file("corrected.toml", "[uncertainty]",
                                "[corrections]\nadc = { file = \"adc.json\", channel = \"ADC1\", "
                                "phase_sign = \"lag\", test_amplitude_vpp = 1.95 }\n[uncertainty]");
-  ProgramRun& run = bench.start({"run", corrected, "--json", folder / "result.json"});
+  ProgramRun& run = bench.start({"run", corrected, "--output", folder / "result.json"});
   ASSERT_EQ(run.wait(patience), 0) << run.errors();
   std::map<std::pair<std::string, double>, nlohmann::json> measured;
   const nlohmann::json result = read_json(folder / "result.json");

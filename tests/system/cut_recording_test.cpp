@@ -60,7 +60,7 @@ protected:
   static json analysed(const fs::path& folder) {
     const auto place = folder.parent_path();
     const auto file = place / (folder.filename().string() + ".json");
-    ProgramRun analyse("dyncal", {"analyse", folder, "--json", file}, place);
+    ProgramRun analyse("dyncal", {"analyse", folder, "--output", file}, place);
     EXPECT_TRUE(analyse.wait(patience)) << analyse.errors();
     return read_json(file)["points"];
   }

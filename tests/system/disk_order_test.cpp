@@ -56,7 +56,7 @@ TEST(DiskOrder, HasResultsOnTheDiskBeforeTheDatabase) {
   setenv("DYNCAL_DISK_ORDER", log.c_str(), 1);
   setenv("LD_PRELOAD", DYNCAL_DISK_ORDER_SHIM, 1);
   ProgramRun& run = bench.start(
-      {"run", bench.bench_file(), "--folder", folder / "runs", "--json", folder / "asked.json"});
+      {"run", bench.bench_file(), "--folder", folder / "runs", "--output", folder / "asked.json"});
   unsetenv("LD_PRELOAD");
   unsetenv("DYNCAL_DISK_ORDER");
   ASSERT_EQ(run.wait(patience), 0) << run.errors();

@@ -24,7 +24,7 @@ protected:
                           .excitation = "frequencies_hz = [\"40\", \"80\", \"125\"]\nlevel = 20.0\n"
                                         "settling_s = 0.5\nduration_s = 5\n",
                           .rest = "adc_delay_s = 1e-6\n"});
-    std::vector<std::string> arguments{"run", bench_->bench_file(), "--json",
+    std::vector<std::string> arguments{"run", bench_->bench_file(), "--output",
                                        folder_ / "result.json"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     run_ = &bench_->start(arguments);
@@ -133,7 +133,7 @@ TEST_F(DisturbedRun, ARunWhoseProgramWasKilledIsResumed) {
   run_->send(SIGKILL);
   ASSERT_TRUE(run_->wait(patience));
   run_ = &bench_->start(
-      {"run", bench_->bench_file(), "--resume", "r7", "--json", folder_ / "result.json"});
+      {"run", bench_->bench_file(), "--resume", "r7", "--output", folder_ / "result.json"});
   ASSERT_TRUE(run_->wait_for_error_text("run 'r7' is resumed, with ", patience)) << run_->errors();
   expect_every_result();
 }

@@ -36,7 +36,7 @@ TEST(Excitation, ClosedLoopBringsTheLevelToItsValue) {
       folder,
       settings_with(
           "level_per_volt = 80.0\nlevel_tolerance_rel = 0.005\nmaximum_level_m_s2 = 40.0\n"));
-  ProgramRun& run = bench.start({"run", bench.bench_file(), "--json", folder / "result.json"});
+  ProgramRun& run = bench.start({"run", bench.bench_file(), "--output", folder / "result.json"});
   ASSERT_EQ(run.wait(patience), 0) << run.errors();
   const double amplitude_v =
       0.5 * std::stod(bench.ask_generator(":SOURce1:VOLTage?")); // of the last step, 200 Hz
@@ -153,7 +153,7 @@ TEST(Excitation, ALevelThatIsOffThePlanIsFlagged) {
   LiveBenchSettings settings = settings_with("level_per_volt = 50.0\n");
   settings.bench_arguments.insert(settings.bench_arguments.end(), {"--exciter-gain", "1.3"});
   LiveBench bench(folder, settings);
-  ProgramRun& run = bench.start({"run", bench.bench_file(), "--json", folder / "result.json"});
+  ProgramRun& run = bench.start({"run", bench.bench_file(), "--output", folder / "result.json"});
   ASSERT_EQ(run.wait(patience), 0) << run.errors();
   const auto result = read_json(folder / "result.json");
   ASSERT_EQ(result["points"].size(), 3U * 4U);
@@ -265,7 +265,7 @@ TEST(Excitation, ByHandFollowsTheOperator) {
     return text.replace(text.find("repetitions = 2"), 15, "repetitions = 1");
   }();
   const OperatorLine operator_line;
-  ProgramRun& run = bench.start({"run", folder / "hand.toml", "--json", folder / "result.json"});
+  ProgramRun& run = bench.start({"run", folder / "hand.toml", "--output", folder / "result.json"});
   ASSERT_TRUE(
       run.wait_for_error_text("set sine, 40 Hz, 0.4 V amplitude (0.8 V peak to peak)", patience))
       << run.errors();

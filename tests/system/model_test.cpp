@@ -117,7 +117,7 @@ protected:
   std::filesystem::path analysed() {
     write_records(folder, {});
     write_bench(folder);
-    ProgramRun run("dyncal", {"analyse", folder / "bench.toml", "--json", folder / "result.json"},
+    ProgramRun run("dyncal", {"analyse", folder / "bench.toml", "--output", folder / "result.json"},
                    folder);
     EXPECT_EQ(run.wait(patience), 0) << run.errors();
     return folder / "result.json";
@@ -164,7 +164,7 @@ void expect_truth(const nlohmann::json& model) {
 }
 
 TEST_F(Model, FindsTheSensorInAnAnalysedRecordAndUndoesIt) {
-  const std::string text = output_of({analysed(), "--json", folder / "model.json", "--figures",
+  const std::string text = output_of({analysed(), "--output", folder / "model.json", "--figures",
                                       folder / "figures", "--filter", "fir", "--cutoff-hz", "200"});
   EXPECT_THAT(text, HasSubstr("> second order with delay"));
   EXPECT_THAT(text, HasSubstr("resonance frequency f0 / Hz"));
@@ -202,7 +202,7 @@ TEST_F(Model, FindsTheSensorInAnAnalysedRecordAndUndoesIt) {
 
 // The schema holds every file that these tests write (program_run.cpp); here, what it refuses.
 TEST_F(Model, TheSchemaOfItsFileRefusesOtherKeys) {
-  output_of({analysed(), "--json", folder / "model.json", "--filter", "fir"});
+  output_of({analysed(), "--output", folder / "model.json", "--filter", "fir"});
   const auto json = read_json(folder / "model.json");
   const auto expect_refused = [&](const auto& change) {
     auto changed = json;
@@ -223,7 +223,7 @@ TEST_F(Model, JoinsResultsAndDesignsAnIirFilter) {
   auto json = read_json(result);
   json["transfer_function"].erase(0); // the other file has one value less
   std::ofstream(folder / "second.json") << json;
-  output_of({result, folder / "second.json", "--json", folder / "model.json", "--filter", "iir",
+  output_of({result, folder / "second.json", "--output", folder / "model.json", "--filter", "iir",
              "--kind", "second_order_with_delay"});
   const auto model = read_json(folder / "model.json")["models"][0];
   EXPECT_EQ(model["points"].size(), 2 * frequencies.size() - 1);
@@ -285,7 +285,7 @@ TEST_F(Model, LeavesOutWhatIsFlaggedOrNullAndSaysSo) {
   json["transfer_function"][5]["flag_names"].push_back("a_flag_of_tomorrow");
   json["transfer_function"][6]["flag_names"].push_back("samples_lost");
   std::ofstream(folder / "flagged.json") << json;
-  const std::string text = output_of({folder / "flagged.json", "--json", folder / "model.json"});
+  const std::string text = output_of({folder / "flagged.json", "--output", folder / "model.json"});
   EXPECT_THAT(text, HasSubstr("left out, flag over_range: 63 Hz"));
   EXPECT_THAT(text, HasSubstr("left out, flag a_flag_of_tomorrow: 80 Hz"));
   EXPECT_THAT(text, HasSubstr("left out, it has no value: 16 Hz"));

@@ -51,7 +51,7 @@ protected:
   std::vector<std::string> problems(const std::vector<std::string>& command) {
     fs::remove(folder_ / "result.json");
     std::vector<std::string> arguments = command;
-    arguments.insert(arguments.end(), {bench_, "--json", folder_ / "result.json"});
+    arguments.insert(arguments.end(), {bench_, "--output", folder_ / "result.json"});
     Laboratory laboratory(folder_);
     if (command.front() == "run") {
       laboratory.start("dyncal-analysis", {}, "cyclonedds");

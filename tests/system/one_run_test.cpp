@@ -34,7 +34,7 @@ TEST_P(OneRun, ASecondRunIsRefusedAndDoesNotTouchTheFirst) {
   const auto folder = fresh_folder("second_run_" + GetParam());
   LiveBench bench(folder, three_steps(GetParam()));
   ProgramRun& first =
-      bench.start({"run", bench.bench_file(), "--run", "first", "--json", folder / "first.json"});
+      bench.start({"run", bench.bench_file(), "--run", "first", "--output", folder / "first.json"});
   ASSERT_TRUE(first.wait_for_error_text("step 1 of 3", patience)) << first.errors();
   ProgramRun& second = bench.start({"run", bench.bench_file(), "--run", "second"});
   const auto refused = second.wait(patience);
@@ -110,7 +110,7 @@ TEST_P(OneRun, TheNextRunGetsTheBenchOfOneThatWasKilled) {
   EXPECT_TRUE(killed.wait(patience));
   ProgramRun& watch = bench.start({"watch"});
   ProgramRun& next =
-      bench.start({"run", bench.bench_file(), "--run", "next", "--json", folder / "next.json"});
+      bench.start({"run", bench.bench_file(), "--run", "next", "--output", folder / "next.json"});
   const auto status = next.wait(patience);
   ASSERT_TRUE(status);
   EXPECT_EQ(*status, 0) << next.errors();
@@ -139,7 +139,7 @@ TEST_P(OneRun, TheSameNameAgainIsAnotherRun) {
   const auto of_killed = published.of_run("R1");
   ASSERT_GE(of_killed.size(), 3U);
   ProgramRun& again =
-      bench.start({"run", bench.bench_file(), "--run", "R1", "--json", folder / "again.json"});
+      bench.start({"run", bench.bench_file(), "--run", "R1", "--output", folder / "again.json"});
   ASSERT_EQ(again.wait(patience), 0) << again.errors();
   const auto result = read_json(folder / "again.json");
   EXPECT_TRUE(result["run"].get<std::string>().starts_with("R1."));

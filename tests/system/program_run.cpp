@@ -33,11 +33,9 @@ std::optional<std::filesystem::path> result_of(const std::vector<std::string>& a
     return std::nullopt;
   }
   for (std::size_t i = 1; i + 1 < arguments.size(); ++i) {
-    if (arguments[i] == "--json") {
-      return arguments[i + 1];
-    }
-    if (is("demo") && arguments[i] == "--output") {
-      return std::filesystem::path(arguments[i + 1]) / "result.json";
+    if (arguments[i] == "--output") {
+      const std::filesystem::path output = arguments[i + 1];
+      return is("demo") ? output / "result.json" : output;
     }
   }
   return std::nullopt;

@@ -53,7 +53,7 @@ Recorded record_run(const std::string& name, const std::string& dds, const std::
   laboratory.start("dyncal-analysis", {}, dds);
   laboratory.start("dyncal-acs", {run.bench}, dds);
   ProgramRun& command =
-      laboratory.start("dyncal", {"run", run.bench, "--run", "R1", "--json", run.live}, dds);
+      laboratory.start("dyncal", {"run", run.bench, "--run", "R1", "--output", run.live}, dds);
   EXPECT_EQ(command.wait(patience), 0) << command.output() << command.errors();
   EXPECT_TRUE(service.wait_for_error_text(".mcap has", patience)) << service.errors();
   for (const auto& file : std::filesystem::directory_iterator(run.folder / "recordings/files")) {
@@ -65,7 +65,7 @@ Recorded record_run(const std::string& name, const std::string& dds, const std::
 
 void expect_same_result(const Recorded& run) {
   const std::filesystem::path json = run.folder / "again.json";
-  ProgramRun analyse("dyncal", {"analyse", run.recording, "--json", json}, run.folder);
+  ProgramRun analyse("dyncal", {"analyse", run.recording, "--output", json}, run.folder);
   EXPECT_EQ(analyse.wait(patience), 0) << analyse.errors();
   const auto live = lines_without_times(run.live);
   const auto again = lines_without_times(json);
@@ -102,7 +102,7 @@ TEST(Recording, IsEvaluatedByAnotherBenchFile) {
   const auto other = run.folder / "other.toml";
   std::ofstream(other) << text;
   const auto json = run.folder / "other.json";
-  ProgramRun analyse("dyncal", {"analyse", run.recording, "--recipe", other, "--json", json},
+  ProgramRun analyse("dyncal", {"analyse", run.recording, "--recipe", other, "--output", json},
                      run.folder);
   EXPECT_EQ(analyse.wait(patience), 0) << analyse.errors();
   const auto live = read_json(run.live);

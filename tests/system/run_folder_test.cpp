@@ -72,7 +72,7 @@ std::set<std::string> values_to(int last, const nlohmann::json& result) {
 TEST(RunFolder, HoldsWhatTheRunWasMadeFromAndWhatCameOut) {
   const auto folder = fresh_folder("run-folder");
   LiveBench bench(folder, quick_bench());
-  ProgramRun& run = bench.start({"run", bench.bench_file(), "--run", "monday", "--json",
+  ProgramRun& run = bench.start({"run", bench.bench_file(), "--run", "monday", "--output",
                                  folder / "asked-for.json", "--folder", folder / "kept"});
   ASSERT_EQ(run.wait(patience), 0) << run.errors();
   const auto folders = run_folders(folder / "kept");
@@ -88,7 +88,7 @@ TEST(RunFolder, HoldsWhatTheRunWasMadeFromAndWhatCameOut) {
   EXPECT_THAT(text_of(folders[0] / "log.txt"), HasSubstr("step 12 of 12, 160 Hz"));
 
   const auto again_json = folder / "again.json";
-  ProgramRun again("dyncal", {"analyse", folders[0], "--json", again_json}, folder);
+  ProgramRun again("dyncal", {"analyse", folders[0], "--output", again_json}, folder);
   ASSERT_EQ(again.wait(patience), 0) << again.errors();
   const auto result = read_json(folders[0] / "result.json");
   const auto repeated = read_json(again_json);
@@ -134,7 +134,7 @@ TEST(RunFolder, IsEvaluatedAgainWhenItsBenchIsGone) {
   fs::remove(folder / "acs.csv");
   const auto folders = run_folders(folder / "kept");
   ASSERT_EQ(folders.size(), 1U);
-  ProgramRun again("dyncal", {"analyse", folders[0], "--json", folder / "again.json"}, folder);
+  ProgramRun again("dyncal", {"analyse", folders[0], "--output", folder / "again.json"}, folder);
   ASSERT_EQ(again.wait(patience), 0) << again.errors();
   const auto first = read_json(folders[0] / "result.json");
   const auto second = read_json(folder / "again.json");
@@ -197,7 +197,7 @@ TEST(RunFolder, HasEveryResultItPromisedWhenTheRunIsKilled) {
     EXPECT_EQ(text_of(folders[0] / "bench.toml"), text_of(bench.bench_file()));
     const auto again_json = folder / "again.json";
     fs::remove(again_json);
-    ProgramRun again("dyncal", {"analyse", folders[0], "--json", again_json}, folder);
+    ProgramRun again("dyncal", {"analyse", folders[0], "--output", again_json}, folder);
     EXPECT_TRUE(again.wait(patience)); // not well: the run has not all of its steps
     const auto repeated = read_json(again_json);
     ASSERT_FALSE(repeated.is_discarded()) << again.errors();

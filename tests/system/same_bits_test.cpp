@@ -13,7 +13,7 @@ nlohmann::json result_over(const std::filesystem::path& folder, const std::files
   laboratory.start("dyncal-analysis", {}, analysis);
   laboratory.start("dyncal-acs", {bench}, acs);
   const std::filesystem::path json = folder / (name + ".json");
-  ProgramRun& command = laboratory.start("dyncal", {"run", bench, "--json", json}, run);
+  ProgramRun& command = laboratory.start("dyncal", {"run", bench, "--output", json}, run);
   EXPECT_EQ(command.wait(patience), 0) << name << command.output() << command.errors();
   return read_json(json);
 }
@@ -25,7 +25,7 @@ TEST(SameBits, ComeOutOverFastDdsOverCycloneDdsOverBothAndWithoutANetwork) {
   const auto cyclone =
       result_over(folder, bench, "cyclone", "cyclonedds", "cyclonedds", "cyclonedds");
   const auto mixed = result_over(folder, bench, "mixed", "cyclonedds", "fastdds", "cyclonedds");
-  ProgramRun analyse("dyncal", {"analyse", bench, "--json", folder / "analyse.json"}, folder);
+  ProgramRun analyse("dyncal", {"analyse", bench, "--output", folder / "analyse.json"}, folder);
   EXPECT_EQ(analyse.wait(patience), 0) << analyse.errors();
   const auto without_network = read_json(folder / "analyse.json");
   ASSERT_FALSE(fast.is_discarded() || cyclone.is_discarded() || mixed.is_discarded());

@@ -57,8 +57,9 @@ protected:
   }
 
   nlohmann::json run(int status = 0) {
-    run_ = &laboratory_->start(
-        "dyncal", {"run", folder_ / "bench.toml", "--json", folder_ / "result.json"}, "cyclonedds");
+    run_ = &laboratory_->start("dyncal",
+                               {"run", folder_ / "bench.toml", "--output", folder_ / "result.json"},
+                               "cyclonedds");
     EXPECT_EQ(run_->wait(patience), status) << run_->errors();
     return read_json(folder_ / "result.json");
   }

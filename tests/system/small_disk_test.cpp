@@ -124,7 +124,7 @@ TEST_F(SmallDisk, HasWhatWasPromisedWhenItFillsUpInTheRun) {
   EXPECT_EQ(check.wait(patience), 0) << check.output() << check.errors();
   EXPECT_THAT(check.output(), HasSubstr("0 places are damaged"));
   const auto again_json = folder_ / "again.json";
-  ProgramRun again("dyncal", {"analyse", folders[0], "--json", again_json}, folder_);
+  ProgramRun again("dyncal", {"analyse", folders[0], "--output", again_json}, folder_);
   EXPECT_TRUE(again.wait(patience) == 0 || again.errors().find("step") != std::string::npos)
       << again.errors();
   EXPECT_GE(read_json(again_json)["points"].size(), 6U) << again.errors();
@@ -133,7 +133,7 @@ TEST_F(SmallDisk, HasWhatWasPromisedWhenItFillsUpInTheRun) {
   fs::create_directories(tiny);
   ASSERT_EQ(mount("tmpfs", tiny.c_str(), "tmpfs", 0, "size=128k"), 0);
   for (const char* target : {"run.h5", "run.npz", "run", "run.mcap"}) {
-    ProgramRun exported("dyncal", {"export", folders[0], "--to", tiny / target}, folder_);
+    ProgramRun exported("dyncal", {"export", folders[0], "--output", tiny / target}, folder_);
     EXPECT_THAT(exported.wait(patience).value_or(-1), testing::AnyOf(1, 2)) << target;
     EXPECT_THAT(exported.errors(), testing::AnyOf(HasSubstr("No space left on device"),
                                                   HasSubstr("this build has no HDF5")));

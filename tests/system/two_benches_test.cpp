@@ -22,7 +22,7 @@ TEST(TwoBenches, GetTheirOwnResultsUnchangedByEachOther) {
   laboratory.start("dyncal-acs", {bench_b}, "cyclonedds");
   const auto run = [&](const std::filesystem::path& bench,
                        const std::filesystem::path& json) -> ProgramRun& {
-    return laboratory.start("dyncal", {"run", bench, "--json", json}, "fastdds");
+    return laboratory.start("dyncal", {"run", bench, "--output", json}, "fastdds");
   };
   ProgramRun& alone = run(bench_a, folder / "alone.json");
   ASSERT_EQ(alone.wait(patience), 0) << alone.errors();
@@ -48,7 +48,7 @@ TEST(TwoBenches, OneThatIsCostlyToEvaluateHoldsNobodyUp) {
   const auto bench_a = recorded_bench(folder / "a", "bench-a", "5");
   const auto bench_b = recorded_bench(folder / "b", "bench-b", "6");
   std::ofstream(bench_b, std::ios::app) << "monte_carlo_trials = 100000000\n";
-  ProgramRun alone("dyncal", {"analyse", bench_a, "--json", folder / "alone.json"}, folder);
+  ProgramRun alone("dyncal", {"analyse", bench_a, "--output", folder / "alone.json"}, folder);
   ASSERT_EQ(alone.wait(patience), 0) << alone.errors();
 
   Laboratory laboratory(folder);
@@ -58,7 +58,7 @@ TEST(TwoBenches, OneThatIsCostlyToEvaluateHoldsNobodyUp) {
   ProgramRun& b = laboratory.start("dyncal", {"run", bench_b}, "cyclonedds");
   ASSERT_TRUE(analysis.wait_for_error_text(": armed", patience)) << analysis.errors();
   ProgramRun& a =
-      laboratory.start("dyncal", {"run", bench_a, "--json", folder / "a.json"}, "cyclonedds");
+      laboratory.start("dyncal", {"run", bench_a, "--output", folder / "a.json"}, "cyclonedds");
   ASSERT_EQ(a.wait(patience), 0) << a.errors();
   EXPECT_FALSE(b.wait(std::chrono::nanoseconds(0))) << "it was not costly: " << b.errors();
   const auto a_json = read_json(folder / "a.json");

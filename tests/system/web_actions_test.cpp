@@ -79,7 +79,8 @@ protected:
 // From the recording, with the pause and the step that was excited twice.
 void expect_same_again(const fs::path& run_folder) {
   const fs::path again = run_folder.parent_path() / "again.json";
-  ProgramRun analyse("dyncal", {"analyse", run_folder, "--json", again}, run_folder.parent_path());
+  ProgramRun analyse("dyncal", {"analyse", run_folder, "--output", again},
+                     run_folder.parent_path());
   ASSERT_EQ(analyse.wait(patience), 0) << analyse.errors();
   const json live = read_json(run_folder / "result.json");
   const json repeated = read_json(again);

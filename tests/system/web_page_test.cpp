@@ -76,7 +76,7 @@ TEST(WebPage, TellsOfARunWhatItsResultFileDoesAndOfADeadSourceThatItIsGone) {
   ProgramRun& sources = laboratory.start("dyncal-acs", {bench}, "cyclonedds");
   ProgramRun& early = laboratory.start("dyncal-web", {"--listen", "127.0.0.1:0"}, "cyclonedds");
   ProgramRun& run = laboratory.start(
-      "dyncal", {"run", bench, "--run", "R1", "--json", folder / "result.json"}, "fastdds");
+      "dyncal", {"run", bench, "--run", "R1", "--output", folder / "result.json"}, "fastdds");
   // The analysis says that the run goes on, its conductor what is planned: either may come first.
   const json running = WebVisitor(early).ask_until(address, [](const json& answer) {
     return answer.value("state", "") == "running" && answer.value("step_count", json()).is_number();

@@ -41,7 +41,7 @@ struct AnalyseOptions {
   std::filesystem::path bench_file; // or a run folder (services/records/run_folder), or a recording
   std::string run;                  // of the recording; empty: the only one
   std::optional<std::filesystem::path> recipe; // bench file to evaluate the recording by
-  std::optional<std::filesystem::path> json;
+  std::optional<std::filesystem::path> output; // the result as JSON
   FigureFiles figures;
 };
 
@@ -53,7 +53,7 @@ void add_analyse(CLI::App& command, AnalyseOptions& analyse) {
   command.add_option("--run", analyse.run, "run of the recording (default: the only one)");
   command.add_option("--recipe", analyse.recipe,
                      "evaluate the recording by this bench file, not by the one of its run");
-  command.add_option("--json", analyse.json, "write the result to this file as JSON");
+  command.add_option("--output", analyse.output, "write the result to this file as JSON");
   add_figure_options(command, analyse.figures);
 }
 
@@ -278,10 +278,10 @@ Expected<RunOutcome> analyse(const AnalyseOptions& command, const std::stop_toke
 }
 
 Expected<void> run_analyse(const AnalyseOptions& command, const std::stop_token& stop) {
-  DYNCAL_TRY(check_outputs(command.json, command.figures));
+  DYNCAL_TRY(check_outputs(command.output, command.figures));
   keep_memory_for_samples();
   DYNCAL_TRY(const auto outcome, analyse(command, stop));
-  DYNCAL_TRY(show_outcome(outcome, command.json, command.figures));
+  DYNCAL_TRY(show_outcome(outcome, command.output, command.figures));
   return check_complete(outcome);
 }
 

@@ -45,7 +45,6 @@ struct DemoOptions {
   std::uint64_t seed = 1;
   std::optional<int> domain; // chosen by itself
   std::filesystem::path folder = "demo";
-  std::optional<std::filesystem::path> json;
   KeepOptions keep; // no run folder unless it names one
   std::optional<int> repetitions;
   std::optional<double> duration_s;
@@ -77,8 +76,6 @@ void add_demo(CLI::App& command, DemoOptions& demo) {
       ->envname("DYNCAL_DOMAIN")
       ->check(CLI::Range(0, 232));
   command.add_option("--output", demo.folder, "folder of all files")->capture_default_str();
-  command.add_option("--json", demo.json,
-                     "write the result to this file as JSON (default: result.json in the folder)");
   command.add_option("--folder", demo.keep.folder,
                      "keep the run below this folder as 'dyncal run' does (default: not)");
   command.add_option("--store", demo.keep.store, "store for that run, as in 'dyncal run'");
@@ -360,7 +357,7 @@ Expected<RunOutcome> conduct(const DemoOptions& command, Demo& demo, const std::
   DYNCAL_TRY(start_services(demo));
   RunOptions run;
   run.bench_file = demo.folder / "bench.toml";
-  run.json = command.json ? *command.json : demo.folder / "result.json";
+  run.output = demo.folder / "result.json";
   run.figures.folder = demo.folder;
   run.keep = command.keep;
   run.network.dds = demo.dds["run"];

@@ -1,4 +1,4 @@
-// `dyncal export SOURCE --to TARGET`: a recording in a format of other programs
+// `dyncal export SOURCE --output TARGET`: a recording in a format of other programs
 // (services/records/exchange/export_recording.hpp). Belongs to one thread.
 #include <spdlog/spdlog.h>
 
@@ -26,7 +26,8 @@ void add_export(CLI::App& command, ExportCommand& exported) {
   ExportOptions& options = exported.options;
   take_run(command.add_option("SOURCE", options.recording, "folder of a run, or recording (.mcap)"))
       ->required();
-  command.add_option("--to", options.to, "file to write, a folder for csv; nothing is overwritten")
+  command
+      .add_option("--output", options.to, "file to write, a folder for csv; nothing is overwritten")
       ->required();
   command.add_option("--format", exported.format,
                      "hdf5, npz, csv or mcap-rows (for PlotJuggler, Foxglove, Lichtblick); "

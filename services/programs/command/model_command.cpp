@@ -29,7 +29,7 @@ struct ModelOptions {
   std::vector<std::string> channels; // empty: all that respond
   std::string kind = "auto";
   bool include_flagged = false;
-  std::filesystem::path json;
+  std::filesystem::path output; // as JSON
   std::filesystem::path figures;
   std::string filter; // empty: none; fir, iir
   double rate_hz = 0.0;
@@ -74,7 +74,7 @@ void add_model(CLI::App& command, ModelOptions& model) {
       ->capture_default_str();
   command.add_flag("--include-flagged", model.include_flagged,
                    "also fit values whose flags say that they may be wrong beyond u");
-  command.add_option("--json", model.json,
+  command.add_option("--output", model.output,
                      "write models, covariances and filters to this file as JSON");
   command.add_option("--figures", model.figures,
                      "write figures of the residuals (SVG and CSV) into this folder");
@@ -125,13 +125,13 @@ Expected<std::vector<ChannelModel>> models_of(const ModelOptions& command) {
 }
 
 Expected<void> write_files(const ModelOptions& command, const std::vector<ChannelModel>& models) {
-  if (!command.json.empty()) {
+  if (!command.output.empty()) {
     std::vector<std::string> files;
     for (const std::filesystem::path& file : command.results) {
       files.push_back(file.string());
     }
-    DYNCAL_TRY(write_json(command.json, model_json(files, models)));
-    fmt::print("\n{} written\n", command.json.string());
+    DYNCAL_TRY(write_json(command.output, model_json(files, models)));
+    fmt::print("\n{} written\n", command.output.string());
   }
   if (!command.figures.empty()) {
     for (const ChannelModel& model : models) {

@@ -38,7 +38,7 @@ void add_run(CLI::App& command, RunOptions& run) {
   command.add_option("--resume", run.resume, "resume the named run after its conductor died")
       ->excludes("--run")
       ->excludes(wait);
-  command.add_option("--json", run.json, "write the result to this file as JSON");
+  command.add_option("--output", run.output, "write the result to this file as JSON");
   add_figure_options(command, run.figures);
   run.keep.folder = "runs";
   add_keep_options(command, run.keep);
@@ -203,7 +203,7 @@ Expected<void> show_and_keep(const Conduct& conduct, ConductedRun& run) {
   auto statuses = conduct.participant.reader(bus::topics::service_status, conduct.bench.bench,
                                              std::make_shared<bus::WakeUp>());
   const auto kept = run.kept->finish(run.outcome);
-  auto shown = show_outcome(run.outcome, command.json, command.figures);
+  auto shown = show_outcome(run.outcome, command.output, command.figures);
   if (const auto folder = run.kept->folder(); folder && kept) {
     fmt::print("kept in {}\n", folder->string());
     std::fflush(stdout);
@@ -255,7 +255,7 @@ Expected<RunOutcome> conduct_run(const RunOptions& command, const std::stop_toke
   DYNCAL_TRY(const auto bench, read_bench_file(command.bench_file));
   DYNCAL_TRY(check_bench(bench));
   DYNCAL_TRY(const auto adc, read_adc_calibration(bench));
-  DYNCAL_TRY(check_outputs(command.json, command.figures));
+  DYNCAL_TRY(check_outputs(command.output, command.figures));
   NetworkOptions network = command.network;
   add_network_settings(bench.network, network);
   const auto links = doctor::link_changes();

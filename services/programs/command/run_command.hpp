@@ -17,11 +17,11 @@ namespace dyncal::inline programs {
 
 struct RunOptions {
   std::filesystem::path bench_file;
-  std::string run; // its name; empty: the time
-  std::optional<std::filesystem::path> json;
-  FigureFiles figures; // folder
-  bool wait = false;   // for the end of another run of the bench
-  std::string resume;  // the run to go on with, the newest of that name; empty: a new one
+  std::string run;                             // its name; empty: the time
+  std::optional<std::filesystem::path> output; // the result as JSON
+  FigureFiles figures;                         // folder
+  bool wait = false;                           // for the end of another run of the bench
+  std::string resume; // the run to go on with, the newest of that name; empty: a new one
   KeepOptions keep;
   NetworkOptions network;
 };

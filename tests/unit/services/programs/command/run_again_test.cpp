@@ -9,8 +9,8 @@ using Words = std::vector<std::string>;
 
 TEST(RunAgain, GoesOnWithTheRunInPlaceOfItsName) {
   EXPECT_EQ(
-      arguments_again({"dyncal", "run", "b.toml", "--run", "first", "--json", "r.json"}, "first"),
-      (Words{"dyncal", "run", "b.toml", "--json", "r.json", "--resume=first"}));
+      arguments_again({"dyncal", "run", "b.toml", "--run", "first", "--output", "r.json"}, "first"),
+      (Words{"dyncal", "run", "b.toml", "--output", "r.json", "--resume=first"}));
   EXPECT_EQ(arguments_again({"dyncal", "run", "--run=first", "--wait", "b.toml"}, "first"),
             (Words{"dyncal", "run", "b.toml", "--resume=first"}));
 }
