@@ -108,8 +108,8 @@ def main():
         (folder / "bad.toml").write_text(
             (folder / "smartup-socket-scpi.toml").read_text().replace("level =", "levl =")
         )
-        refuse(1, "did you mean 'level'?", "check", "bad.toml", cwd=folder)
-        refuse(1, "cannot read this bench file", "check", "gone.toml", cwd=folder)
+        refuse(3, "did you mean 'level'?", "check", "bad.toml", cwd=folder)
+        refuse(3, "cannot read this bench file", "check", "gone.toml", cwd=folder)
     examples = sorted((SOURCE / "deploy/example-lab").glob("*.toml"))
     expect(len(examples) >= 4, f"only {examples}")
     for example in examples:

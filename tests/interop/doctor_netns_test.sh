@@ -91,31 +91,31 @@ for from in "${vendors[@]}"; do
     services=()
     begin dyncal-analysis --dds "$from"
     begin dyncal-acs "$folder/bench.toml" --dds "$from"
-    doctor "the clock of another host" 1 "the clock of lab-2 is [+-]0\.00" --seconds 4
-    doctor "who is there, and that the bench file is the same" 1 \
+    doctor "the clock of another host" 5 "the clock of lab-2 is [+-]0\.00" --seconds 4
+    doctor "who is there, and that the bench file is the same" 5 \
       "all sources of .* are there, and their services have read this file" \
       "$folder/bench.toml" --seconds 4
-    doctor "a bench file that differs" 2 'netns/acs.* on lab-2\|key .sources.acs.serial. is "7"' \
+    doctor "a bench file that differs" 3 'netns/acs.* on lab-2\|key .sources.acs.serial. is "7"' \
       "$folder/other.toml" --seconds 4
     drop "ip daddr 239.255.0.1"
-    doctor "no multicast" 1 "no multicast comes from dyncal-a" --seconds 4
+    doctor "no multicast" 5 "no multicast comes from dyncal-a" --seconds 4
     let_through
     # Domain 45 has its ports from 18650; odd ones take messages.
     drop "iifname lab udp dport { 18661, 18663, 18665, 18667, 18669, 18671 }"
-    doctor "a firewall before the messages" 2 "must let UDP 18650 to 18723 through" --seconds 4
+    doctor "a firewall before the messages" 3 "must let UDP 18650 to 18723 through" --seconds 4
     let_through
-    doctor "no losses" 1 '"losses"' --seconds 5 --json
+    doctor "no losses" 5 '"losses"' --seconds 5 --json
     losses 0 0
     lose "$writing"
-    doctor "losses on the way there" 1 '"losses"' --seconds 10 --json
+    doctor "losses on the way there" 5 '"losses"' --seconds 10 --json
     losses 5 16
     let_through_to "$writing"
     lose "$reading"
-    doctor "losses on the way back" 1 '"losses"' --seconds 10 --json
+    doctor "losses on the way back" 5 '"losses"' --seconds 10 --json
     losses 5 16
     let_through_to "$reading"
     drop "iifname lo udp dport 18650-18723" # as own firewalls do that forget loopback
-    doctor "a firewall before the own packets" 1 "all sources\|the clock of lab-2" \
+    doctor "a firewall before the own packets" 5 "all sources\|the clock of lab-2" \
       "$folder/bench.toml" --seconds 4
     let_through
     kill "${services[@]}" 2>/dev/null || true

@@ -49,7 +49,7 @@ protected:
 
 TEST_F(DoctorTest, SaysThatNothingIsThere) {
   const Answer answer = ask({});
-  EXPECT_EQ(answer.status, 1) << answer.text;
+  EXPECT_EQ(answer.status, 5) << answer.text;
   EXPECT_THAT(findings(answer, "warning"), Contains(HasSubstr("nothing is on DDS domain")));
   EXPECT_TRUE(findings(answer, "problem").empty()) << answer.text;
   EXPECT_TRUE(answer.report["programs"].empty());
@@ -58,12 +58,12 @@ TEST_F(DoctorTest, SaysThatNothingIsThere) {
 TEST_F(DoctorTest, MissesTheSourcesOfABenchFile) {
   recorded_bench(folder_, "doctored", "1");
   const Answer answer = ask({folder_ / "bench.toml"});
-  EXPECT_EQ(answer.status, 2) << answer.text;
+  EXPECT_EQ(answer.status, 3) << answer.text;
   EXPECT_THAT(findings(answer, "problem"), Contains(HasSubstr("source doctored/dau of")).Times(1));
 }
 
 TEST_F(DoctorTest, RefusesABenchFileThatIsNotThere) {
-  EXPECT_EQ(ask({folder_ / "nothing.toml"}).status, 3) << "1 is for warnings of what it saw";
+  EXPECT_EQ(ask({folder_ / "nothing.toml"}).status, 4) << "3 is for problems of what it saw";
 }
 
 class DoctorWithServices : public DoctorTest, public testing::WithParamInterface<std::string> {};
@@ -74,7 +74,7 @@ TEST_P(DoctorWithServices, SeesThemInWhicheverVendor) {
   laboratory.start("dyncal-analysis", {}, "cyclonedds");
   laboratory.start("dyncal-acs", {bench}, "fastdds");
   const Answer answer = ask({bench, "--dds", GetParam()});
-  EXPECT_NE(answer.status, 2) << answer.text;
+  EXPECT_THAT(answer.status, testing::AnyOf(0, 5)) << answer.text;
   std::vector<std::string> programs;
   for (const auto& program : answer.report["programs"]) {
     programs.push_back(program["program"].get<std::string>() + " " +
@@ -103,7 +103,7 @@ TEST_F(DoctorTest, NamesWhatDiffersInTheBenchFile) {
   text.replace(text.find(line), line.size(), line + "serial = \"4711\"\n");
   std::ofstream(folder_ / "other.toml") << text;
   const Answer answer = ask({folder_ / "other.toml"}, false);
-  EXPECT_EQ(answer.status, 2) << answer.text;
+  EXPECT_EQ(answer.status, 3) << answer.text;
   EXPECT_THAT(answer.text,
               HasSubstr("key 'sources.acs.serial' is nothing there and \"4711\" here"));
   EXPECT_THAT(answer.text, Not(HasSubstr("sources.dau")));

@@ -20,10 +20,6 @@ std::string counted(std::size_t number, const char* what) {
 
 } // namespace
 
-int exit_status(const Findings& findings) {
-  return count(findings, Severity::error) > 0 ? 1 : 0;
-}
-
 std::string as_text(const Findings& findings) {
   std::string text;
   for (const Finding& finding : findings) {

@@ -11,9 +11,6 @@
 
 namespace dyncal::inline checks::bench_check {
 
-// 0: no errors; 1: there are.
-[[nodiscard]] int exit_status(const Findings& findings);
-
 // "FILE:LINE: error: key 'x' ...", one a line, and a last line with what came of all.
 [[nodiscard]] std::string as_text(const Findings& findings);
 

@@ -115,11 +115,6 @@ void shorten(ordered_json& json) {
 
 } // namespace
 
-int exit_status(const Findings& findings) {
-  const Severity gravest = worst(findings);
-  return gravest >= Severity::error ? 2 : gravest >= Severity::warning ? 1 : 0;
-}
-
 std::string as_text(const Findings& findings) {
   std::string text;
   int warnings = 0;

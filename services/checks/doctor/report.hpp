@@ -1,5 +1,4 @@
-// Findings for people and for programs that watch, and the exit status that goes with them. Plain
-// functions, any thread.
+// Findings for people and for programs that watch. Plain functions, any thread.
 #pragma once
 
 #include <string>
@@ -10,9 +9,6 @@
 #include "services/checks/doctor/laboratory_view.hpp"
 
 namespace dyncal::inline checks::doctor {
-
-// 0 nothing is wrong, 1 warnings, 2 problems.
-[[nodiscard]] int exit_status(const Findings& findings);
 
 // One line a finding, in their order, and a last line with what came of all.
 [[nodiscard]] std::string as_text(const Findings& findings);

@@ -96,8 +96,8 @@ compare(const CompareOptions& command, const ResultPoints& first, const ResultPo
     const auto comparison = analysis::compare_transfer(
         point.value, match->second.value, {command.common_magnitude_rel, command.common_phase_rad});
     if (!comparison) {
-      return fail(ErrorCode::bad_argument, fmt::format("{} at {} Hz: {}", channel, frequency_hz,
-                                                       comparison.error().message));
+      return fail(ErrorCode::no_result, fmt::format("{} at {} Hz: {}", channel, frequency_hz,
+                                                    comparison.error().message));
     }
     compared.push_back(
         {channel, other, frequency_hz, point.value, match->second.value, *comparison});

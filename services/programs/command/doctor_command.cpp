@@ -1,8 +1,8 @@
 // `dyncal doctor`: who is on the network, what does not fit together, and what to do about it
 // (services/checks/doctor). Works where nothing is on the network, too.
 //
-// The exit status is for monitoring: 0 nothing is wrong, 1 warnings, 2 problems, 3 it could not
-// look. Belongs to one thread.
+// The exit status is for monitoring: 0 nothing is wrong, 3 problems, 4 it could not look, 5
+// warnings and no problem. Belongs to one thread.
 #include <cstdio>
 #include <cstdlib>
 #include <stop_token>
@@ -36,8 +36,8 @@ void add_doctor(CLI::App& command, DoctorOptions& doctor) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command.add_flag("--json", doctor.json, "print JSON");
-  command.footer("Exit status: 0 nothing is wrong, 1 warnings, 2 problems or a wrong command line, "
-                 "3 the bench file or the network cannot be used.");
+  command.footer("Exit status: 0 nothing is wrong, 2 wrong command line, 3 problems, 4 the bench "
+                 "file or the network cannot be used, 5 warnings and no problem.");
   add_network_options(command, doctor.network);
 }
 
@@ -68,6 +68,14 @@ Findings judge(const LaboratoryLook& look, const std::optional<BenchFile>& bench
   return findings;
 }
 
+int status_of(const Findings& findings) {
+  constexpr int only_warnings = 5;
+  const Severity gravest = worst(findings);
+  return gravest >= Severity::error     ? problems_found
+         : gravest >= Severity::warning ? only_warnings
+                                        : 0;
+}
+
 // Ends the program where there is something to judge.
 Expected<void> look_and_judge(DoctorOptions& command, const std::stop_token& stop) {
   DYNCAL_TRY(const auto bench, read_bench(command));
@@ -77,12 +85,11 @@ Expected<void> look_and_judge(DoctorOptions& command, const std::stop_token& sto
         fmt::print("{}", command.json ? json_text(doctor::as_json(findings, look.view), 2) + "\n"
                                       : doctor::as_text(findings));
         std::fflush(stdout);
-        std::_Exit(doctor::exit_status(findings));
+        std::_Exit(status_of(findings));
       });
 }
 
 Expected<int> run_doctor(DoctorOptions& command, const std::stop_token& stop) {
-  constexpr int could_not_look = 3;
   const int status = report_error(look_and_judge(command, stop).error());
   return status == 1 ? could_not_look : status;
 }

@@ -228,7 +228,8 @@ Expected<std::optional<ResponsePoint>> response_at(const Measured& measured, dou
   }
   const auto response = analysis::evaluate_triaxial(excitations);
   if (!response) {
-    return bad(fmt::format("{} Hz: {}", frequency_hz, response.error().message));
+    return fail(ErrorCode::no_result,
+                fmt::format("{} Hz: {}", frequency_hz, response.error().message));
   }
   for (std::size_t j = 0; j < 3; ++j) {
     for (std::size_t i = 0; i < 3; ++i) {
@@ -252,8 +253,9 @@ Expected<void> add_transverse(ResponsePoint& point, double transverse_motion_rel
     const auto transverse = analysis::transverse_sensitivity(*point.columns[j], point.u[j], j, own,
                                                              transverse_motion_rel);
     if (!transverse) {
-      return bad(fmt::format("{} Hz, excitation along {}: {}", point.frequency_hz, axis_names[j],
-                             transverse.error().message));
+      return fail(ErrorCode::no_result,
+                  fmt::format("{} Hz, excitation along {}: {}", point.frequency_hz, axis_names[j],
+                              transverse.error().message));
     }
     point.transverse[j] = *transverse;
   }
@@ -278,7 +280,8 @@ Expected<std::vector<ResponsePoint>> evaluate(const TriaxialOptions& command,
     points.push_back(*point);
   }
   if (points.empty()) {
-    return bad(
+    return fail(
+        ErrorCode::bad_file,
         fmt::format("the files have no frequency in common at which {}, {} and {} have values",
                     measured.channels[0], measured.channels[1], measured.channels[2]));
   }

@@ -12,13 +12,6 @@ const Finding fine{Severity::ok, "disk", "100 MB are free"};
 const Finding warning{Severity::warning, "clocks", "the clock of lab-2 is far"};
 const Finding problem{Severity::error, "sources", "source acc-1/dau is silent"};
 
-TEST(DoctorReport, HasTheStatusOfTheGravestFinding) {
-  EXPECT_EQ(exit_status({}), 0);
-  EXPECT_EQ(exit_status({fine}), 0);
-  EXPECT_EQ(exit_status({warning, fine}), 1);
-  EXPECT_EQ(exit_status({problem, warning, fine}), 2);
-}
-
 TEST(DoctorReport, HasALineForEachFinding) {
   EXPECT_EQ(as_text({problem, warning, fine}), "PROBLEM  sources     source acc-1/dau is silent\n"
                                                "WARNING  clocks      the clock of lab-2 is far\n"
