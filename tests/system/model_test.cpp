@@ -248,7 +248,7 @@ TEST_F(Model, SaysInOneLineWhatIsWrong) {
               HasSubstr("result.json: this result is given twice"));
   EXPECT_THAT(error_of({result, "--channel", "dau/other"}),
               HasSubstr("there is no channel 'dau/other'; the channels are: dau/acceleration"));
-  EXPECT_THAT(error_of({result, "--rate-hz", "100"}), HasSubstr("add --filter fir"));
+  EXPECT_THAT(error_of({result, "--rate-hz", "100"}), HasSubstr("--rate-hz requires --filter"));
   EXPECT_THAT(error_of({result, "--filter", "fir", "--rate-hz", "300"}),
               HasSubstr("below half the sample rate (rate 300 Hz, --cutoff-hz 250)"));
   EXPECT_THAT(error_of({changed([](auto& json) { json["schema"]["name"] = "other"; })}),

@@ -9,8 +9,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <optional>
-#include <stop_token>
-#include <string>
 #include <thread>
 
 #include <fmt/core.h>
@@ -104,17 +102,16 @@ Expected<Inputs> open_inputs(const BenchFile& bench, RunEvaluator& evaluator, Ru
 }
 
 void collect(EvaluationOutput output, RunOutcome& outcome) {
-  std::move(output.results.begin(), output.results.end(), std::back_inserter(outcome.results));
+  const auto append = [](auto& from, auto& to) { std::ranges::move(from, std::back_inserter(to)); };
+  append(output.results, outcome.results);
   for (StepResult& settled : output.settled) {
     *std::find_if(outcome.results.begin(), outcome.results.end(), [&](const StepResult& one) {
       return one.channel == settled.channel && one.step == settled.step &&
              one.repetition == settled.repetition;
     }) = std::move(settled);
   }
-  std::move(output.transfer_functions.begin(), output.transfer_functions.end(),
-            std::back_inserter(outcome.transfer_functions));
-  std::move(output.clock_reports.begin(), output.clock_reports.end(),
-            std::back_inserter(outcome.clock_reports));
+  append(output.transfer_functions, outcome.transfer_functions);
+  append(output.clock_reports, outcome.clock_reports);
 }
 
 // Takes from the file that is behind in its own time, so that no record has to wait long for the

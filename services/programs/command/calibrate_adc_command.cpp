@@ -18,8 +18,6 @@
 #include <filesystem>
 #include <map>
 #include <numbers>
-#include <stop_token>
-#include <string>
 #include <vector>
 
 #include <fmt/chrono.h>
@@ -63,21 +61,14 @@ void add_adc(CLI::App& command, CalibrateAdcOptions& adc) {
                   "sync (default: the bench's levels, one amplitude)")
       ->delimiter(',')
       ->check(CLI::PositiveNumber);
-  command.add_option("--channel", adc.channel, "name of the ADC in the file")
-      ->capture_default_str();
-  command
-      .add_option("--time-uncertainty", adc.u_time_scale_s,
-                  "standard uncertainty of the stamps of DAU and ACS against each other, in "
-                  "seconds (see calibrate time)")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  command
-      .add_option("--gain-uncertainty", adc.u_acs_gain_rel,
-                  "relative standard uncertainty of the ACS's sync channel")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  command.add_option("--output", adc.output, "file that [corrections] adc of a bench file names")
-      ->capture_default_str();
+  add_default(command, "--channel", adc.channel, "name of the ADC in the file");
+  add_default(command, "--time-uncertainty", adc.u_time_scale_s,
+              "standard uncertainty of the stamps of DAU and ACS against each other, in seconds "
+              "(see calibrate time)",
+              CLI::NonNegativeNumber);
+  add_default(command, "--gain-uncertainty", adc.u_acs_gain_rel,
+              "relative standard uncertainty of the ACS's sync channel", CLI::NonNegativeNumber);
+  add_default(command, "--output", adc.output, "file that [corrections] adc of a bench file names");
   add_network_options(command, adc.network);
 }
 
@@ -303,6 +294,7 @@ Expected<void> run_calibrate_adc(CalibrateAdcOptions& command, const std::stop_t
   return {};
 }
 
+const Command calibrate_command{260, "calibrate", "calibrate an instrument of the bench"};
 const Command calibrate_adc_command{270, "calibrate adc",
                                     "response of a DAU's sync ADC over frequency and amplitude, "
                                     "against the ACS; both must stamp in "

@@ -12,8 +12,6 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <stop_token>
-#include <string>
 #include <vector>
 
 #include <fmt/core.h>
@@ -53,40 +51,24 @@ void add_dso_delay(CLI::App& command, CalibrateDsoDelayOptions& delay) {
   command.add_option("--family", delay.family,
                      "command family of the oscilloscope (default: by its identity)");
   command.add_option("--generator", delay.generator, "HOST:PORT (default: set by hand)");
-  command
-      .add_option("--by", delay.by,
-                  "sync signal: rectangle (from edge to edge) or sine (from the trigger point; "
-                  "its noise is reported)")
-      ->check(CLI::IsMember({"rectangle", "sine"}))
-      ->capture_default_str();
-  command.add_option("--frequency", delay.frequency_hz, "frequency of the generator in Hz")
-      ->capture_default_str();
-  command
-      .add_option("--amplitude", delay.amplitude_v, "amplitude of the generator in V, zero to peak")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  command
-      .add_option("--sync-input", delay.sync_input,
-                  "input of the oscilloscope that sync is connected to; it triggers")
-      ->check(CLI::Range(1, 8))
-      ->capture_default_str();
-  command
-      .add_option("--output-input", delay.output_input,
-                  "input of the oscilloscope that its trigger output is connected to")
-      ->check(CLI::Range(1, 8))
-      ->capture_default_str();
-  command.add_option("--sync-range", delay.sync_range_v, "range of that input in V peak to peak")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  command
-      .add_option("--output-range", delay.output_range_v, "range of that input in V peak to peak")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  command.add_option("--shots", delay.shots, "shots to take")
-      ->check(CLI::Range(3, 100000))
-      ->capture_default_str();
-  command.add_option("--output", delay.output, "file for the result as JSON")
-      ->capture_default_str();
+  add_default(command, "--by", delay.by,
+              "sync signal: rectangle (from edge to edge) or sine (from the trigger point; its "
+              "noise is reported)",
+              CLI::IsMember({"rectangle", "sine"}));
+  add_default(command, "--frequency", delay.frequency_hz, "frequency of the generator in Hz");
+  add_default(command, "--amplitude", delay.amplitude_v,
+              "amplitude of the generator in V, zero to peak", CLI::PositiveNumber);
+  add_default(command, "--sync-input", delay.sync_input,
+              "input of the oscilloscope that sync is connected to; it triggers", CLI::Range(1, 8));
+  add_default(command, "--output-input", delay.output_input,
+              "input of the oscilloscope that its trigger output is connected to",
+              CLI::Range(1, 8));
+  add_default(command, "--sync-range", delay.sync_range_v, "range of that input in V peak to peak",
+              CLI::PositiveNumber);
+  add_default(command, "--output-range", delay.output_range_v,
+              "range of that input in V peak to peak", CLI::PositiveNumber);
+  add_default(command, "--shots", delay.shots, "shots to take", CLI::Range(3, 100000));
+  add_default(command, "--output", delay.output, "file for the result as JSON");
 }
 
 using drivers::generator::ScpiGenerator;

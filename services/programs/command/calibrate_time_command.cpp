@@ -6,7 +6,8 @@
 // OUTPUT.svg and OUTPUT.csv. A record of the GPS pulse alone has no deviation: it is judged by how
 // well its pulses can be foretold from the ones before, and the status is that of success. Belongs
 // to one thread.
-#include <cmath>
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <vector>
@@ -42,15 +43,10 @@ void add_time(CLI::App& command, CalibrateTimeOptions& time) {
   command.add_option("--reference-offset", time.reference_offset_s,
                      "seconds by which the reference pulse comes after the second of GPS, if that "
                      "is known: gives the mean a meaning");
-  command
-      .add_option("--reference-uncertainty", time.u_reference_s,
-                  "standard uncertainty of the reference pulse, in seconds")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  command
-      .add_option("--output", time.output,
-                  "file for the result as JSON; a figure (SVG and CSV) comes beside it")
-      ->capture_default_str();
+  add_default(command, "--reference-uncertainty", time.u_reference_s,
+              "standard uncertainty of the reference pulse, in seconds", CLI::NonNegativeNumber);
+  add_default(command, "--output", time.output,
+              "file for the result as JSON; a figure (SVG and CSV) comes beside it");
 }
 
 using analysis::PulseFault;
@@ -70,20 +66,10 @@ const char* name_of(PulseInput input) {
   return input == PulseInput::gps ? "GPS" : "reference";
 }
 
-const char* name_of(PulseFault fault) {
-  switch (fault) {
-  case PulseFault::extra:
-    return "extra edge";
-  case PulseFault::missing:
-    return "missing edges";
-  case PulseFault::duplicate:
-    return "duplicate";
-  case PulseFault::pulse_step:
-    return "pulses moved";
-  case PulseFault::session_restart:
-    return "session restart";
-  }
-  return "";
+const char* name_of(PulseFault fault) { // in the order of the enumeration
+  constexpr std::array names{"extra edge", "missing edges", "duplicate", "pulses moved",
+                             "session restart"};
+  return names.at(static_cast<std::size_t>(fault));
 }
 
 std::size_t seconds_of(const analysis::SortedPulses& pulses, PulseInput input) {
@@ -247,11 +233,7 @@ Json deviation_json(const CalibrateTimeOptions& command,
 }
 
 Json result_json(const CalibrateTimeOptions& command, const EvaluatedPulses& evaluated) {
-  Json files = Json::array();
-  for (const std::filesystem::path& file : command.files) {
-    files.push_back(file.string());
-  }
-  Json json{{"files", files},
+  Json json{{"files", std::vector<std::string>(command.files.begin(), command.files.end())},
             {"sign", "positive: the stamp is later than the reference pulse"},
             {"sessions", evaluated.pulses.sessions.size()},
             {"gps", counts_json(evaluated.pulses, PulseInput::gps)},

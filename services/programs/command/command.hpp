@@ -59,6 +59,19 @@ private:
   }
 };
 
+// An option that takes only what `check` passes.
+template <class T>
+CLI::Option* add_checked(CLI::App& command, const std::string& name, T& value,
+                         const std::string& help, const CLI::Validator& check) {
+  return command.add_option(name, value, help)->check(check);
+}
+// The same, where the help has the value before the command line is read, and any may pass.
+template <class T>
+CLI::Option* add_default(CLI::App& command, const std::string& name, T& value,
+                         const std::string& help, const CLI::Validator& check = {}) {
+  return add_checked(command, name, value, help, check)->capture_default_str();
+}
+
 // Adds every command that has registered itself. `chosen`: what is to be done, once `app` has read
 // the command line; both outlive that.
 void add_commands(CLI::App& app, Command::Action& chosen);

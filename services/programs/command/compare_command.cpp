@@ -11,7 +11,6 @@
 #include <cmath>
 #include <filesystem>
 #include <numbers>
-#include <string>
 #include <vector>
 
 #include <fmt/core.h>
@@ -43,14 +42,12 @@ void add_compare(CLI::App& command, CompareOptions& compare) {
   command.add_option("--channel", compare.first_channel, "only this channel (default: all)");
   command.add_option("--other-channel", compare.second_channel,
                      "its name in the other result (default: the same)");
-  command
-      .add_option("--common-magnitude", compare.common_magnitude_rel,
-                  "relative standard uncertainty that both results share, e.g. of one reference")
-      ->check(CLI::NonNegativeNumber);
-  command
-      .add_option("--common-phase", compare.common_phase_rad,
-                  "standard uncertainty of the phase that both results share, in rad")
-      ->check(CLI::NonNegativeNumber);
+  add_checked(command, "--common-magnitude", compare.common_magnitude_rel,
+              "relative standard uncertainty that both results share, e.g. of one reference",
+              CLI::NonNegativeNumber);
+  add_checked(command, "--common-phase", compare.common_phase_rad,
+              "standard uncertainty of the phase that both results share, in rad",
+              CLI::NonNegativeNumber);
   command.add_flag("--json", compare.json, "print JSON");
 }
 

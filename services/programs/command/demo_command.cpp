@@ -15,8 +15,6 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
-#include <stop_token>
-#include <string>
 #include <thread>
 #include <vector>
 
@@ -24,6 +22,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "drivers/link/file_descriptor.hpp"
 #include "drivers/virtual_bench/model/response_file.hpp"
 #include "services/base/output_file.hpp"
 #include "services/daemon/program/child_process.hpp"
@@ -58,55 +57,48 @@ struct DemoOptions {
 };
 
 void add_demo(CLI::App& command, DemoOptions& demo) {
-  command
-      .add_option("--preset", demo.preset,
-                  "mpu9250-paper, mpu9250-ptb, bma280, tss, can or can-sync")
-      ->capture_default_str();
+  std::vector<std::string> presets;
+  for (const DemoPreset& preset : demo_presets()) {
+    presets.push_back(preset.name);
+  }
+  add_default(command, "--preset", demo.preset, "the bench that is played", CLI::IsMember(presets));
   command.add_option("--dds", demo.dds,
                      "fastdds, cyclonedds, or one for each: "
                      "dau=cyclonedds,acs=fastdds,analysis=cyclonedds,run=fastdds");
   command.add_flag("--trigger-correction,!--no-trigger-correction", demo.trigger_phase_correction,
                    "preset tss: correct every shot for the phase of sync at the trigger "
                    "(default); without it you see what the correction is worth");
-  command.add_option("--speed", demo.speed, "multiple of real time, or max")->capture_default_str();
-  command.add_option("--seed", demo.seed, "seed of the virtual bench's random numbers")
-      ->capture_default_str();
+  add_default(command, "--speed", demo.speed, "multiple of real time, or max");
+  add_default(command, "--seed", demo.seed, "seed of the virtual bench's random numbers");
   command
       .add_option("--domain", demo.domain, "DDS domain (default: one that other demos do not use)")
       ->envname("DYNCAL_DOMAIN")
       ->check(CLI::Range(0, 232));
-  command.add_option("--output", demo.folder, "folder of all files")->capture_default_str();
+  add_default(command, "--output", demo.folder, "folder of all files");
   command.add_option("--folder", demo.keep.folder,
                      "keep the run below this folder as 'dyncal run' does (default: not)");
   command.add_option("--store", demo.keep.store, "store for that run, as in 'dyncal run'");
-  command.add_option("--repetitions", demo.repetitions, "repetitions of the excitation list")
-      ->check(CLI::Range(1, 1000));
-  command
-      .add_option("--duration", demo.duration_s,
-                  "duration of the evaluated part of a step, in seconds of the bench")
-      ->check(CLI::PositiveNumber);
-  command.add_option("--loss", demo.loss, "fraction of the unit's datagrams that are lost, 0 to 1")
-      ->check(CLI::Range(0.0, 1.0));
-  command
-      .add_option("--duplicate", demo.duplicates,
-                  "fraction of the unit's datagrams that arrive twice, 0 to 1")
-      ->check(CLI::Range(0.0, 1.0));
+  add_checked(command, "--repetitions", demo.repetitions, "repetitions of the excitation list",
+              CLI::Range(1, 1000));
+  add_checked(command, "--duration", demo.duration_s,
+              "duration of the evaluated part of a step, in seconds of the bench",
+              CLI::PositiveNumber);
+  add_checked(command, "--loss", demo.loss,
+              "fraction of the unit's datagrams that are lost, 0 to 1", CLI::Range(0.0, 1.0));
+  add_checked(command, "--duplicate", demo.duplicates,
+              "fraction of the unit's datagrams that arrive twice, 0 to 1", CLI::Range(0.0, 1.0));
   command.add_option("--response", demo.response,
                      "put a sensor with this response on the bench: CSV file, "
                      "frequency_hz,magnitude,phase_rad");
   command.add_option("--fault", demo.faults,
                      "what is wrong on purpose, again for each fault, as "
                      "'dyncal-virtual-bench --help' lists it: hum=0.01,at=sensor");
-  command
-      .add_option("--can", demo.can_interface,
-                  "interface for presets can and can-sync; 'ip link add vcan0 type vcan' makes a "
-                  "virtual one")
-      ->capture_default_str();
-  command
-      .add_option("--can-bus", demo.can_bus,
-                  "500k, 1M (classic CAN) or fd-5M (CAN FD, 1 and 5 Mbit/s)")
-      ->check(CLI::IsMember({"500k", "1M", "fd-5M"}))
-      ->capture_default_str();
+  add_default(
+      command, "--can", demo.can_interface,
+      "interface for presets can and can-sync; 'ip link add vcan0 type vcan' makes a virtual one");
+  add_default(command, "--can-bus", demo.can_bus,
+              "500k, 1M (classic CAN) or fd-5M (CAN FD, 1 and 5 Mbit/s)",
+              CLI::IsMember({"500k", "1M", "fd-5M"}));
 }
 
 using namespace std::chrono_literals;
@@ -132,15 +124,13 @@ struct Demo {
 };
 
 bool is_free_udp_port(std::uint16_t port) {
-  const int probe = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  const drivers::FileDescriptor probe(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(port);
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   void* raw = &address;
-  const bool is_free = probe >= 0 && bind(probe, static_cast<sockaddr*>(raw), sizeof address) == 0;
-  close(probe);
-  return is_free;
+  return probe.is_open() && bind(probe.number(), static_cast<sockaddr*>(raw), sizeof address) == 0;
 }
 
 // The unit sends to it, so it must be known before the receiver opens it. Linux does not give ports
@@ -155,11 +145,6 @@ Expected<std::uint16_t> free_udp_port() {
     }
   }
   return fail(ErrorCode::network, "this machine has no free UDP port on 127.0.0.1");
-}
-
-Error cannot_write(const std::filesystem::path& path) {
-  return {ErrorCode::bad_file,
-          fmt::format("{}: cannot write here; choose another folder with --output", path.string())};
 }
 
 // Excites where the response is known.
@@ -184,17 +169,7 @@ Expected<void> follow_response(const std::filesystem::path& file, DemoPreset& pr
 
 Expected<Demo> prepare(const DemoOptions& command) {
   Demo demo;
-  const auto& presets = demo_presets();
-  const auto preset = std::find_if(presets.begin(), presets.end(), [&](const DemoPreset& one) {
-    return one.name == command.preset;
-  });
-  if (preset == presets.end()) {
-    return fail(ErrorCode::bad_argument,
-                fmt::format("unknown preset '{}'; there are mpu9250-paper, mpu9250-ptb, "
-                            "bma280, tss, can, can-sync",
-                            command.preset));
-  }
-  demo.preset = *preset;
+  demo.preset = *std::ranges::find(demo_presets(), command.preset, &DemoPreset::name);
   demo.preset.repetitions = command.repetitions.value_or(demo.preset.repetitions);
   demo.preset.duration_s = command.duration_s.value_or(demo.preset.duration_s);
   demo.preset.trigger_phase_correction = command.trigger_phase_correction;
@@ -205,12 +180,8 @@ Expected<Demo> prepare(const DemoOptions& command) {
   demo.domain =
       command.domain.value_or(first_demo_domain + static_cast<int>(getpid() % demo_domains));
   demo.bench = fmt::format("demo-{}", getpid());
-  std::error_code failed;
-  std::filesystem::create_directories(command.folder, failed);
   demo.folder = std::filesystem::absolute(command.folder);
-  if (failed) {
-    return fail(cannot_write(demo.folder));
-  }
+  DYNCAL_TRY(check_output_folder(demo.folder));
   return demo;
 }
 
@@ -247,7 +218,7 @@ double bench_seconds(const DemoPreset& preset) {
 std::vector<std::string> bench_arguments(const DemoOptions& command, const Demo& demo,
                                          std::uint16_t dau_port) {
   const DemoPreset& preset = demo.preset;
-  const std::vector<std::pair<std::string, std::string>> options{
+  std::vector<std::pair<std::string, std::string>> options{
       {"--preset", preset.sensor()},
       {"--seed", std::to_string(command.seed)},
       {"--speed", command.speed},
@@ -265,20 +236,20 @@ std::vector<std::string> bench_arguments(const DemoOptions& command, const Demo&
       {"--thermal-cycle", fmt::format("{:.0f}", bench_seconds(preset))},
       {"--loss", std::to_string(command.loss)},
       {"--duplicate", std::to_string(command.duplicates)}};
-  std::vector<std::string> arguments;
   if (preset.can != DemoPreset::CanLink::none) {
-    arguments = {"--can",         command.can_interface, "--can-bus",
-                 command.can_bus, "--dbc-file",          demo.folder / "sensor.dbc"};
-  }
-  for (const auto& [name, value] : options) {
-    arguments.push_back(name);
-    arguments.push_back(value);
+    options.insert(options.end(), {{"--can", command.can_interface},
+                                   {"--can-bus", command.can_bus},
+                                   {"--dbc-file", demo.folder / "sensor.dbc"}});
   }
   if (command.response) {
-    arguments.insert(arguments.end(), {"--response", *command.response});
+    options.emplace_back("--response", *command.response);
   }
   for (const std::string& fault : command.faults) {
-    arguments.insert(arguments.end(), {"--fault", fault});
+    options.emplace_back("--fault", fault);
+  }
+  std::vector<std::string> arguments;
+  for (const auto& [name, value] : options) {
+    arguments.insert(arguments.end(), {name, value});
   }
   return arguments;
 }

@@ -5,8 +5,6 @@
 // warnings and no problem. Belongs to one thread.
 #include <cstdio>
 #include <cstdlib>
-#include <stop_token>
-#include <string>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
@@ -32,9 +30,7 @@ struct DoctorOptions {
 void add_doctor(CLI::App& command, DoctorOptions& doctor) {
   command.add_option("BENCH.toml", doctor.bench_file,
                      "bench file that the services should have read");
-  command.add_option("--seconds", doctor.seconds, "look for this time")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  add_default(command, "--seconds", doctor.seconds, "look for this time", CLI::PositiveNumber);
   command.add_flag("--json", doctor.json, "print JSON");
   command.footer("Exit status: 0 nothing is wrong, 2 wrong command line, 3 problems, 4 the bench "
                  "file or the network cannot be used, 5 warnings and no problem.");

@@ -2,8 +2,6 @@
 // (services/records/exchange/export_recording.hpp). Belongs to one thread.
 #include <spdlog/spdlog.h>
 
-#include <stop_token>
-#include <string>
 #include <utility>
 
 #include <fmt/core.h>

@@ -1,24 +1,10 @@
 #include "services/programs/command/figure_options.hpp"
 
-#include <map>
 #include <string>
-#include <vector>
+
+#include "services/views/figures/error_bar_names.hpp"
 
 namespace dyncal::inline programs {
-namespace {
-
-using figures::ErrorBars;
-
-ErrorBars bars_named(const std::string& name) {
-  static const std::map<std::string, ErrorBars> names{{"standard", ErrorBars::standard},
-                                                      {"u", ErrorBars::standard}, // as on the page
-                                                      {"expanded", ErrorBars::expanded},
-                                                      {"U", ErrorBars::expanded},
-                                                      {"none", ErrorBars::none}};
-  return names.at(name);
-}
-
-} // namespace
 
 void add_figure_options(CLI::App& command, FigureFiles& files) {
   CLI::Option* folder =
@@ -26,9 +12,11 @@ void add_figure_options(CLI::App& command, FigureFiles& files) {
   command
       .add_option_function<std::string>(
           "--error-bars",
-          [&files](const std::string& name) { files.error_bars = bars_named(name); },
+          [&files](const std::string& name) {
+            files.error_bars = *figures::parse_error_bars(name);
+          },
           "what the bars of the figures show: standard (u, default), expanded (U) or none")
-      ->check(CLI::IsMember(std::vector<std::string>{"standard", "u", "expanded", "U", "none"}))
+      ->check(CLI::IsMember({"standard", "u", "expanded", "U", "none"}))
       ->needs(folder);
 }
 

@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <numbers>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include <fmt/format.h>
@@ -56,15 +55,13 @@ void add_fit(CLI::App& command, FitOptions& fit) {
   command.add_option("--column", fit.columns, "column to fit (repeatable; default: all)");
   command.add_option("--reference-time", fit.reference_time_ns,
                      "instant at which the phase is given, in ns (default: the first stamp)");
-  command.add_option("--drift", fit.drift, "highest power of a drift beside the sine")
-      ->check(CLI::Range(0, 8));
-  command.add_option("--harmonics", fit.harmonics, "highest harmonic beside the sine")
-      ->check(CLI::Range(1, 50));
+  add_checked(command, "--drift", fit.drift, "highest power of a drift beside the sine",
+              CLI::Range(0, 8));
+  add_checked(command, "--harmonics", fit.harmonics, "highest harmonic beside the sine",
+              CLI::Range(1, 50));
   command.add_option("--hum", fit.hum, "frequency of a further line in Hz (repeatable)");
-  command
-      .add_option("--nominal-rate", fit.nominal_rate_hz,
-                  "replace the file's stamps by those of this rate in Hz")
-      ->check(CLI::PositiveNumber);
+  add_checked(command, "--nominal-rate", fit.nominal_rate_hz,
+              "replace the file's stamps by those of this rate in Hz", CLI::PositiveNumber);
   command.add_flag("--json", fit.json, "print JSON");
 }
 
@@ -82,10 +79,6 @@ struct Fit {
   std::vector<analysis::SineFit> fits;
   std::vector<double> shortening_rel; // put back, for each of them; 0: nothing to be seen
 };
-
-Error at(const FitOptions& command, const analysis::Error& error) {
-  return {ErrorCode::bad_file, fmt::format("{}: {}", command.file.string(), error.message)};
-}
 
 Expected<std::vector<std::span<const double>>>
 chosen_columns(const SeriesFile& series, const std::vector<std::string>& names) {
@@ -299,7 +292,8 @@ Expected<Fit> fit_file(const FitOptions& command) {
     return fit_columns(command, series, columns, count, fit);
   });
   if (!fitted) {
-    return fail(at(command, fitted.error()));
+    return fail(ErrorCode::bad_file,
+                fmt::format("{}: {}", command.file.string(), fitted.error().message));
   }
   correct_scatter(series, columns, fit);
   allow_for_beat(series, fit);

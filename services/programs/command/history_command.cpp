@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <numbers>
 #include <optional>
-#include <string>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -39,8 +38,8 @@ void add_history(CLI::App& command, HistoryOptions& history) {
       .add_option("SENSOR", history.sensor, "serial number, device or source, as 'runs' lists it")
       ->required();
   command.add_option("--channel", history.channel, "only this channel (default: all)");
-  command.add_option("--frequency", history.frequency_hz, "only this frequency in Hz")
-      ->check(CLI::PositiveNumber);
+  add_checked(command, "--frequency", history.frequency_hz, "only this frequency in Hz",
+              CLI::PositiveNumber);
   command.add_option("--figures", history.figures, "write figures (SVG and CSV) into this folder");
   command.add_flag("--json", history.json, "print JSON");
   add_store_place(command, history.store);

@@ -3,7 +3,6 @@
 // Belongs to one thread.
 #include <cmath>
 #include <filesystem>
-#include <string>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
@@ -30,13 +29,10 @@ void add_intervals(CLI::App& command, IntervalsOptions& intervals) {
       ->required();
   command.add_option("--temperature", intervals.temperature,
                      "column with the sensor's temperature");
-  command
-      .add_option("--tick", intervals.clock.tick_s,
-                  "tick of the counter that made the stamps, in seconds")
-      ->check(CLI::PositiveNumber);
-  command
-      .add_option("--nominal-rate", intervals.clock.nominal_rate_hz, "nominal sample rate in Hz")
-      ->check(CLI::PositiveNumber);
+  add_checked(command, "--tick", intervals.clock.tick_s,
+              "tick of the counter that made the stamps, in seconds", CLI::PositiveNumber);
+  add_checked(command, "--nominal-rate", intervals.clock.nominal_rate_hz,
+              "nominal sample rate in Hz", CLI::PositiveNumber);
   command.add_flag("--json", intervals.json, "print JSON");
 }
 
@@ -60,7 +56,9 @@ void push_series(const SeriesFile& series, std::span<const double> temperature,
 
 // As in a result file, with all that one has no room for.
 void print_json(const analysis::SampleClockStatistics& clock) {
-  Json json = JsonWriter::of(ClockReport{.clock = clock});
+  ClockReport report;
+  report.clock = clock;
+  Json json = JsonWriter::of(report);
   for (const char* of_a_run : {"source", "flags", "flag_names"}) {
     json.erase(of_a_run);
   }

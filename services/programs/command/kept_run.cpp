@@ -7,6 +7,7 @@
 #include "services/bench/file/named_files.hpp"
 #include "services/contract/run_identity.hpp"
 #include "services/programs/command/own_recording.hpp"
+#include "services/programs/command/progress_line.hpp"
 #include "services/records/store/store.hpp"
 #include "services/views/report/show_outcome.hpp"
 #include "services/views/report/stored_result.hpp"
@@ -44,8 +45,7 @@ std::optional<BegunRun> begun_run(const std::filesystem::path& folder) {
   if (!result) {
     return std::nullopt;
   }
-  BegunRun begun{result->recipe_sha256, result->sources, !result->points.empty()};
-  return begun;
+  return BegunRun{result->recipe_sha256, result->sources, !result->points.empty()};
 }
 
 std::string line_of(const RunProgress& progress) {
@@ -55,12 +55,7 @@ std::string line_of(const RunProgress& progress) {
   if (!progress.request.empty()) {
     return progress.request;
   }
-  if (progress.step == 0) {
-    return progress.phase;
-  }
-  return fmt::format("step {} of {}, {} Hz, {}{}", progress.step, progress.steps,
-                     progress.frequency_hz, progress.phase,
-                     progress.attempt > 1 ? fmt::format(", attempt {}", progress.attempt) : "");
+  return progress.step == 0 ? progress.phase : step_text(progress);
 }
 
 } // namespace
@@ -86,7 +81,7 @@ Expected<std::unique_ptr<KeptRun>> KeptRun::open(const KeepOptions& options, con
     if (recorder) {
       recorder->reset();
     }
-    (folder)->discard();
+    folder->discard();
     return fail(std::move(*error));
   }
   log->write(fmt::format("bench '{}', run '{}', bench file {}", bench.bench, setup.run,

@@ -6,7 +6,6 @@
 
 #include "services/base/rounding.hpp"
 #include "services/evaluation/result/result_flag.hpp"
-#include "services/programs/command/clock_offset_text.hpp"
 #include "services/programs/command/harmless_text.hpp"
 
 namespace dyncal::inline programs {
@@ -133,6 +132,12 @@ void add_bench(const network::Bench& bench, Lines& lines) {
 }
 
 } // namespace
+
+std::string clock_offset_text(const ClockOffset& clock) {
+  const RoundedValue offset = round_by_uncertainty(clock.offset_s, clock.bound_s);
+  return fmt::format("{}{} s from ours (within {} s)", clock.offset_s > 0.0 ? "+" : "",
+                     offset.value, offset.u);
+}
 
 std::map<std::string, std::string> laboratory_lines(const network::BusState& laboratory) {
   Lines lines;

@@ -1,8 +1,9 @@
 #include "services/programs/command/laboratory_table.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <map>
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -11,8 +12,9 @@
 #include "services/base/rounding.hpp"
 #include "services/contract/run_identity.hpp"
 #include "services/contract/unit.hpp"
-#include "services/programs/command/clock_offset_text.hpp"
 #include "services/programs/command/harmless_text.hpp"
+#include "services/programs/command/laboratory_lines.hpp"
+#include "services/programs/command/work_progress.hpp"
 
 namespace dyncal::inline programs {
 namespace {
@@ -45,11 +47,6 @@ bool is_conducted(BenchState state) {
   return state == BenchState::arming || state == BenchState::running || state == BenchState::paused;
 }
 
-std::string time_text(double seconds) {
-  const auto whole = static_cast<long>(std::ceil(seconds));
-  return whole < 600 ? fmt::format("{} s", whole) : fmt::format("{} min", (whole + 59) / 60);
-}
-
 // "step 7 of 51, 40 Hz, steady, 38 s left, run r1"
 std::string run_text(const Run& run, Clock::Instant now) {
   if (run.is_over()) {
@@ -66,7 +63,7 @@ std::string run_text(const Run& run, Clock::Instant now) {
                         to_string(run.now->step.state));
   }
   if (const auto left_s = run.time_left_s(now)) {
-    text += fmt::format("{} left, ", time_text(*left_s));
+    text += fmt::format("{} left, ", duration_text(*left_s));
   }
   return text + fmt::format("run {}", harmless(RunIdentity::parse(run.name).name));
 }
@@ -214,15 +211,6 @@ void add_wrapped(const std::string& text, std::size_t indent, Rank rank, std::si
   lines.push_back({rank, Severity::note, std::move(line)});
 }
 
-// Each with how many results have it: "samples_lost 3, values_stuck 1".
-std::string all_flags_text(const ChannelSummary& channel) {
-  std::string text;
-  for (const auto& [kind, results] : channel.flags) {
-    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name_of(kind), results);
-  }
-  return text;
-}
-
 struct Table {
   TableLayout layout;
   Clock::Instant now;
@@ -238,10 +226,12 @@ void add_channel(const std::string& name, const ChannelSummary& channel, BenchSt
   const Rank rank = line.rank;
   table.lines.push_back(std::move(line));
   if (table.layout.flags && !channel.flags.empty()) {
-    add_wrapped(all_flags_text(channel), 4, rank, columns, table.lines);
+    std::string text; // "samples_lost 3, values_stuck 1": how many results have it
     for (const auto& [kind, results] : channel.flags) {
+      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name_of(kind), results);
       table.flags.insert(kind);
     }
+    add_wrapped(text, 4, rank, columns, table.lines);
   }
 }
 
@@ -301,30 +291,18 @@ void add_clocks(const network::BusState& laboratory, Table& table) {
 }
 
 std::string head(const network::BusState& laboratory) {
-  std::size_t running = 0;
   const Clock::Instant now = laboratory.clock().now();
-  for (const auto& [name, bench] : laboratory.benches()) {
-    running += is_conducted(state_of(bench, now)) ? 1 : 0;
-  }
+  const auto running = std::ranges::count_if(laboratory.benches(), [&](const auto& named) {
+    return is_conducted(state_of(named.second, now));
+  });
   const std::size_t benches = laboratory.benches().size();
   return fmt::format("{} bench{}, {} with a run, {} programs; arg in rad", benches,
                      benches == 1 ? "" : "es", running, laboratory.programs().size());
 }
 
-const char* colour_of(Severity severity) {
-  switch (severity) {
-  case Severity::ok:
-    return "";
-  case Severity::note:
-    return "\x1b[36m";
-  case Severity::warning:
-    return "\x1b[33m";
-  case Severity::error:
-    return "\x1b[31m";
-  case Severity::stale:
-    return "\x1b[2m";
-  }
-  return "";
+const char* colour_of(Severity severity) { // ok, note, warning, error, stale
+  constexpr std::array colours{"", "\x1b[36m", "\x1b[33m", "\x1b[31m", "\x1b[2m"};
+  return colours.at(static_cast<std::size_t>(severity));
 }
 
 std::string written(const Line& line, const TableLayout& layout) {
@@ -336,15 +314,11 @@ std::string written(const Line& line, const TableLayout& layout) {
 // The highest rank of which all lines fit into `rows`, and how many of the next one.
 void leave_out(std::vector<Line>& lines, std::size_t rows) {
   std::vector<std::size_t> order(lines.size());
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    order[i] = i;
-  }
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return lines[a].rank < lines[b].rank; });
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t place) { return lines[place].rank; });
   order.resize(rows);
-  std::sort(order.begin(), order.end());
+  std::ranges::sort(order);
   std::vector<Line> remaining;
-  remaining.reserve(rows);
   for (const std::size_t place : order) {
     remaining.push_back(std::move(lines[place]));
   }

@@ -2,8 +2,6 @@
 // until nothing new has come for a second, for `seconds` at most. Belongs to one thread.
 #include <algorithm>
 #include <chrono>
-#include <stop_token>
-#include <string>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
@@ -27,9 +25,8 @@ struct ListOptions {
 
 void add_list(CLI::App& command, ListOptions& list) {
   command.add_option("--bench", list.bench, "only this bench (default: all)");
-  command.add_option("--seconds", list.seconds, "listen for this time at the most")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  add_default(command, "--seconds", list.seconds, "listen for this time at the most",
+              CLI::PositiveNumber);
   command.add_flag("--json", list.json, "print JSON");
   add_network_options(command, list.network);
 }

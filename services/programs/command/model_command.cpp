@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include <fmt/core.h>
@@ -26,40 +25,59 @@ namespace {
 
 struct ModelOptions {
   std::vector<std::filesystem::path> results;
-  std::vector<std::string> channels; // empty: all that respond
-  std::string kind = "auto";
-  bool include_flagged = false;
+  ResponseSelection selection;
+  ModelRequest request;
+  std::string filter; // empty: none; fir, iir
+  FilterRequest filter_settings;
   std::filesystem::path output; // as JSON
   std::filesystem::path figures;
-  std::string filter; // empty: none; fir, iir
-  double rate_hz = 0.0;
-  double cutoff_hz = 0.0;
-  int taps = 0;
-  std::optional<int> delay_samples;
 };
 
 void add_model_filter(CLI::App& command, ModelOptions& model) {
+  FilterRequest& settings = model.filter_settings;
+  CLI::Option* filter =
+      add_checked(command, "--filter", model.filter,
+                  "design a filter that undoes the response, with a low pass: fir or iir",
+                  CLI::IsMember({"fir", "iir"}));
   command
-      .add_option("--filter", model.filter,
-                  "design a filter that undoes the response, with a low pass: fir or iir")
-      ->check(CLI::IsMember({"fir", "iir"}));
-  command
-      .add_option("--rate-hz", model.rate_hz,
+      .add_option("--rate-hz", settings.rate_hz,
                   "sample rate of the filter (default: the sensor's, as measured)")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::PositiveNumber)
+      ->needs(filter);
   command
-      .add_option("--cutoff-hz", model.cutoff_hz,
+      .add_option("--cutoff-hz", settings.cutoff_hz,
                   "end of the filter's pass band (default: the highest fitted frequency)")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::PositiveNumber)
+      ->needs(filter);
   command
-      .add_option("--taps", model.taps,
+      .add_option("--taps", settings.taps,
                   "coefficients b of the filter (default: by the width of the transition)")
-      ->check(CLI::Range(2, 513));
+      ->check(CLI::Range(2, 513))
+      ->needs(filter);
   command
-      .add_option("--delay-samples", model.delay_samples,
+      .add_option("--delay-samples", settings.delay_samples,
                   "by how many samples the filter's output may be late (default: that with the "
                   "smallest error)")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::NonNegativeNumber)
+      ->needs(filter);
+}
+
+// "auto" and every kind.
+void add_kind(CLI::App& command, std::optional<analysis::ResponseKind>& chosen) {
+  std::vector<std::string> names{"auto"};
+  for (const analysis::ResponseKind kind : analysis::all_response_kinds) {
+    names.emplace_back(name_of(kind));
+  }
+  const auto choose = [&chosen](const std::string& name) {
+    const auto& kinds = analysis::all_response_kinds;
+    const auto found = std::ranges::find(kinds, name, [](auto kind) { return name_of(kind); });
+    chosen = found == kinds.end() ? std::nullopt : std::optional(*found);
+  };
+  command
+      .add_option_function<std::string>("--kind", choose,
+                                        "the model (default: what the values support)")
+      ->check(CLI::IsMember(names))
+      ->default_str("auto");
 }
 
 void add_model(CLI::App& command, ModelOptions& model) {
@@ -67,12 +85,10 @@ void add_model(CLI::App& command, ModelOptions& model) {
       .add_option("RESULT.json", model.results,
                   "result of dyncal run or analyse; several are joined")
       ->required();
-  command.add_option("--channel", model.channels,
+  command.add_option("--channel", model.selection.channels,
                      "channel to fit (repeatable; default: all that respond)");
-  command.add_option("--kind", model.kind, "the model (default: what the values support)")
-      ->check(CLI::IsMember(model_kind_names()))
-      ->capture_default_str();
-  command.add_flag("--include-flagged", model.include_flagged,
+  add_kind(command, model.request.kind);
+  command.add_flag("--include-flagged", model.selection.include_flagged,
                    "also fit values whose flags say that they may be wrong beyond u");
   command.add_option("--output", model.output,
                      "write models, covariances and filters to this file as JSON");
@@ -81,44 +97,13 @@ void add_model(CLI::App& command, ModelOptions& model) {
   add_model_filter(command, model);
 }
 
-ModelRequest request_of(const ModelOptions& command) {
-  ModelRequest request;
-  for (const analysis::ResponseKind kind : analysis::all_response_kinds) {
-    if (command.kind == name_of(kind)) {
-      request.kind = kind;
-    }
-  }
-  if (!command.filter.empty()) {
-    request.filter = {.iir = command.filter == "iir",
-                      .rate_hz = command.rate_hz,
-                      .cutoff_hz = command.cutoff_hz,
-                      .taps = command.taps,
-                      .delay_samples = command.delay_samples};
-  }
-  return request;
-}
-
-Expected<void> check_options(const ModelOptions& command) {
-  const bool asks_for_filter = command.rate_hz > 0.0 || command.cutoff_hz > 0.0 ||
-                               command.taps > 0 || command.delay_samples.has_value();
-  if (command.filter.empty() && asks_for_filter) {
-    return fail(ErrorCode::bad_argument, "--rate-hz, --cutoff-hz, --taps and --delay-samples are "
-                                         "settings of a filter: add --filter fir or --filter iir");
-  }
-  return {};
-}
-
 Expected<std::vector<ChannelModel>> models_of(const ModelOptions& command) {
-  DYNCAL_TRY(check_options(command));
   const WorkProgress progress("reading");
-  DYNCAL_TRY(auto responses,
-             read_responses(command.results, {command.channels, command.include_flagged},
-                            progress.count()));
+  DYNCAL_TRY(auto responses, read_responses(command.results, command.selection, progress.count()));
   progress.count()->begin("fitting", "channels", responses.size());
   std::vector<ChannelModel> models;
   for (MeasuredResponse& response : responses) {
-    DYNCAL_TRY(auto model, model_channel(std::move(response), request_of(command)));
-    models.push_back(std::move(model));
+    DYNCAL_TRY(models.emplace_back(), model_channel(std::move(response), command.request));
     progress.count()->add_done();
   }
   return models;
@@ -126,10 +111,7 @@ Expected<std::vector<ChannelModel>> models_of(const ModelOptions& command) {
 
 Expected<void> write_files(const ModelOptions& command, const std::vector<ChannelModel>& models) {
   if (!command.output.empty()) {
-    std::vector<std::string> files;
-    for (const std::filesystem::path& file : command.results) {
-      files.push_back(file.string());
-    }
+    const std::vector<std::string> files(command.results.begin(), command.results.end());
     DYNCAL_TRY(write_json(command.output, model_json(files, models)));
     fmt::print("\n{} written\n", command.output.string());
   }
@@ -144,15 +126,11 @@ Expected<void> write_files(const ModelOptions& command, const std::vector<Channe
   return {};
 }
 
-std::vector<std::string> model_kind_names() {
-  std::vector<std::string> names{"auto"};
-  for (const analysis::ResponseKind kind : analysis::all_response_kinds) {
-    names.emplace_back(name_of(kind));
+Expected<void> run_model(ModelOptions& command) {
+  if (!command.filter.empty()) {
+    command.filter_settings.iir = command.filter == "iir";
+    command.request.filter = command.filter_settings;
   }
-  return names;
-}
-
-Expected<void> run_model(const ModelOptions& command) {
   DYNCAL_TRY(const auto models, models_of(command));
   for (std::size_t i = 0; i < models.size(); ++i) {
     fmt::print("{}{}", i == 0 ? "" : "\n", model_text(models[i]));

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
-#include <string>
 
 #include <fmt/core.h>
 
@@ -55,52 +54,37 @@ void add_kinds(CLI::App& command, BenchDraft& draft) {
 }
 
 void add_places(CLI::App& command, BenchDraft& draft) {
-  command.add_option("--listen", draft.listen, "address and UDP port that the unit sends to")
-      ->capture_default_str();
-  command.add_option("--sensor-id", draft.sensor_id, "id of the sensor in the unit")
-      ->capture_default_str();
+  add_default(command, "--listen", draft.listen, "address and UDP port that the unit sends to");
+  add_default(command, "--sensor-id", draft.sensor_id, "id of the sensor in the unit");
   command.add_option("--sensor-file", draft.sensor_file, "the sensor's record");
-  command.add_option("--sensor-address", draft.sensor_address, "of a time series sensor")
-      ->capture_default_str();
-  command.add_option("--dso-address", draft.dso_address, "of the oscilloscope that triggers it")
-      ->capture_default_str();
-  command.add_option("--interface", draft.interface, "of a sensor on CAN")->capture_default_str();
+  add_default(command, "--sensor-address", draft.sensor_address, "of a time series sensor");
+  add_default(command, "--dso-address", draft.dso_address, "of the oscilloscope that triggers it");
+  add_default(command, "--interface", draft.interface, "of a sensor on CAN");
   command.add_option("--dbc", draft.dbc, "its DBC file (default: one to adapt is written)");
   command.add_option("--channel", draft.sensor_channel,
                      "of the sensor (default: acceleration_z; sensor of an analogue one)");
-  command.add_option("--sensor-sync", draft.sensor_sync, "channel of sync in the sensor's record")
-      ->capture_default_str();
-  command.add_option("--acs-address", draft.acs_address, "of the analogue system")
-      ->capture_default_str();
+  add_default(command, "--sensor-sync", draft.sensor_sync,
+              "channel of sync in the sensor's record");
+  add_default(command, "--acs-address", draft.acs_address, "of the analogue system");
   command.add_option("--acs-file", draft.acs_file, "the reference's record");
-  command.add_option("--reference", draft.reference, "its channel in the analogue system")
-      ->capture_default_str();
-  command.add_option("--sync", draft.sync, "channel of sync in the analogue system")
-      ->capture_default_str();
-  command.add_option("--generator-address", draft.generator_address, "of the generator")
-      ->capture_default_str();
+  add_default(command, "--reference", draft.reference, "its channel in the analogue system");
+  add_default(command, "--sync", draft.sync, "channel of sync in the analogue system");
+  add_default(command, "--generator-address", draft.generator_address, "of the generator");
 }
 
 void add_excitation(CLI::App& command, BenchDraft& draft) {
   command.add_option("--frequencies", draft.frequencies_hz, "in Hz, decimal text, comma separated")
       ->delimiter(',')
       ->capture_default_str();
-  command.add_option("--level", draft.level_m_s2, "in m/s^2, amplitude")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  command.add_option("--repetitions", draft.repetitions, "of the whole list")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  command.add_option("--duration", draft.duration_s, "evaluated seconds of every step")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  command.add_option("--level-per-volt", draft.level_per_volt, "m/s^2 at the exciter for 1 V")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  command
-      .add_option("--maximum-voltage", draft.maximum_voltage_v, "of the generator, amplitude in V")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  add_default(command, "--level", draft.level_m_s2, "in m/s^2, amplitude", CLI::PositiveNumber);
+  add_default(command, "--repetitions", draft.repetitions, "of the whole list",
+              CLI::Range(1, 1000));
+  add_default(command, "--duration", draft.duration_s, "evaluated seconds of every step",
+              CLI::PositiveNumber);
+  add_default(command, "--level-per-volt", draft.level_per_volt, "m/s^2 at the exciter for 1 V",
+              CLI::PositiveNumber);
+  add_default(command, "--maximum-voltage", draft.maximum_voltage_v,
+              "of the generator, amplitude in V", CLI::PositiveNumber);
 }
 
 void add_new_bench(CLI::App& command, NewBenchOptions& bench) {

@@ -18,29 +18,17 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::int64_t limit_part = 10; // of the run's time
 
-std::chrono::nanoseconds limit_of(const RunOutcome& outcome) {
-  return std::max<std::chrono::nanoseconds>(
-      least_limit,
-      std::chrono::nanoseconds((outcome.ended_utc_ns - outcome.began_utc_ns) / limit_part));
+// Until the timer's own end requests a stop when the time is over.
+std::jthread stop_after(std::chrono::nanoseconds limit, std::stop_source& stop) {
+  return std::jthread([&stop, until = Clock::now() + limit](const std::stop_token& ended) {
+    std::mutex mutex;
+    std::unique_lock lock(mutex);
+    std::condition_variable_any().wait_until(lock, ended, until, [] { return false; });
+    if (!ended.stop_requested()) {
+      stop.request_stop();
+    }
+  });
 }
-
-// Requests a stop when the time is over, unless it has ended before.
-class TimeLimit {
-public:
-  TimeLimit(std::stop_source stop, std::chrono::nanoseconds limit)
-      : timer_(
-            [stop = std::move(stop), until = Clock::now() + limit](const std::stop_token& ended) {
-              std::mutex mutex;
-              std::unique_lock lock(mutex);
-              std::condition_variable_any().wait_until(lock, ended, until, [] { return false; });
-              if (!ended.stop_requested()) {
-                std::stop_source(stop).request_stop();
-              }
-            }) {}
-
-private:
-  std::jthread timer_; // its end ends the wait
-};
 
 Expected<RecordedRunOutcome> evaluate(const RunOutcome& outcome,
                                       const std::filesystem::path& folder,
@@ -77,11 +65,13 @@ OwnRecordingCheck check_own_recording(const RunOutcome& outcome,
                                       const std::stop_token& stop) {
   const auto by_hand = fmt::format("; 'dyncal analyse {}' does it", run_folder.string());
   const auto began = Clock::now();
-  const auto limit = limit_of(outcome);
+  const auto limit = std::max<std::chrono::nanoseconds>(
+      least_limit,
+      std::chrono::nanoseconds((outcome.ended_utc_ns - outcome.began_utc_ns) / limit_part));
   std::stop_source end;
   const std::stop_callback by_user(stop, [&end] { end.request_stop(); });
   const auto again = [&] {
-    const TimeLimit time_limit(end, limit);
+    const std::jthread timer = stop_after(limit, end);
     return evaluate(outcome, run_folder, end.get_token());
   }();
   if (end.stop_requested()) {

@@ -10,16 +10,18 @@
 
 namespace dyncal::inline programs {
 
+std::string step_text(const RunProgress& progress) {
+  return fmt::format("step {} of {}, {} Hz, {}{}", progress.step, progress.steps,
+                     progress.frequency_hz, progress.phase,
+                     progress.attempt > 1 ? fmt::format(", attempt {}", progress.attempt) : "");
+}
+
 std::string describe(const RunProgress& progress) {
   if (progress.step == 0) {
     return fmt::format("{} steps planned, {}, {} results", progress.steps, progress.phase,
                        progress.results);
   }
-  std::string text = fmt::format("step {} of {}, {} Hz, {}", progress.step, progress.steps,
-                                 progress.frequency_hz, progress.phase);
-  if (progress.attempt > 1) {
-    text += fmt::format(", attempt {}", progress.attempt);
-  }
+  std::string text = step_text(progress);
   if (progress.seconds_left) {
     text += fmt::format(", {:.0f} s left", std::ceil(*progress.seconds_left));
   }
@@ -34,17 +36,13 @@ ProgressLine::~ProgressLine() {
 }
 
 void ProgressLine::show(const RunProgress& progress) {
-  if (!progress.request.empty()) {
-    end();
-    fmt::print(stream_, "{}\n", one_line(progress.request));
-    std::fflush(stream_);
-    return;
-  }
-  if (!progress.notice.empty()) {
-    end();
-    fmt::print(stream_, "{}\n", one_line(progress.notice));
-    std::fflush(stream_);
-    return;
+  for (const std::string& line : {progress.request, progress.notice}) {
+    if (!line.empty()) {
+      end();
+      fmt::print(stream_, "{}\n", one_line(line));
+      std::fflush(stream_);
+      return;
+    }
   }
   const std::string text = one_line(describe(progress));
   if (text == last_text_) {

@@ -9,6 +9,8 @@
 
 namespace dyncal::inline programs {
 
+// "step 7 of 51, 40 Hz, settling"
+[[nodiscard]] std::string step_text(const RunProgress& progress);
 // "step 7 of 51, 40 Hz, settling, 38 s left"
 [[nodiscard]] std::string describe(const RunProgress& progress);
 

@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
-#include <string>
 
-#include <fmt/chrono.h>
 #include <fmt/core.h>
 
 #include "services/base/byte_count.hpp"
 #include "services/base/printable_text.hpp"
 #include "services/base/version.hpp"
+#include "services/evaluation/result/members.hpp"
 #include "services/programs/command/command.hpp"
 #include "services/programs/command/work_progress.hpp"
 #include "services/records/mcap/recording_reader.hpp"
@@ -58,11 +57,6 @@ void print_findings(const recording::ScanReport& report, const std::filesystem::
     fmt::print("its recorder did not end it (was it killed?); 'dyncal recording repair' makes a "
                "file with an index\n");
   }
-}
-
-std::string time_text(std::uint64_t utc_ns) {
-  const auto seconds = static_cast<std::time_t>(utc_ns / 1'000'000'000);
-  return fmt::format("{:%Y-%m-%dT%H:%M:%S}Z", fmt::gmtime(seconds));
 }
 
 struct TopicCount {
@@ -143,7 +137,8 @@ Expected<void> run_recording_info(const RecordingOptions& command) {
   DYNCAL_TRY(report);
   fmt::print("{}written by {}\n", beside, one_line(report->library));
   if (report->messages > 0) {
-    fmt::print("from {} to {}, {:.1f} s\n", time_text(contents.first), time_text(contents.last),
+    fmt::print("from {} to {}, {:.1f} s\n", utc_text(static_cast<std::int64_t>(contents.first)),
+               utc_text(static_cast<std::int64_t>(contents.last)),
                static_cast<double>(contents.last - contents.first) * 1e-9);
   }
   for (const auto& [topic, count] : contents.topics) {

@@ -1,8 +1,6 @@
 // `dyncal replay RECORDING`: puts a recording back on DDS
 // (services/records/replay/recording_player.hpp). Belongs to one thread.
 #include <charconv>
-#include <stop_token>
-#include <string>
 
 #include <fmt/core.h>
 
@@ -23,8 +21,7 @@ struct ReplayCommand {
 
 void add_replay(CLI::App& command, ReplayCommand& replay) {
   command.add_option("RECORDING", replay.wish.recording, "recording (.mcap)")->required();
-  command.add_option("--speed", replay.speed, "multiple of real time, or max")
-      ->capture_default_str();
+  add_default(command, "--speed", replay.speed, "multiple of real time, or max");
   command.add_option("--bench", replay.wish.bench,
                      "name of the bench on DDS (default: as it was recorded)");
   command.add_flag("--without-results", replay.without_results,

@@ -22,16 +22,11 @@ void add_store_add(CLI::App& command, StoreAddOptions& add) {
   add_store_place(command, add.store);
 }
 
-std::string addition_text(StoreAddition addition) {
-  switch (addition) {
-  case StoreAddition::added:
-    return "added";
-  case StoreAddition::already_there:
-    return "already there";
-  case StoreAddition::replaced_unfinished:
-    return "in place of the result of the run before it had ended";
-  }
-  return "";
+const char* addition_text(StoreAddition addition) {
+  return addition == StoreAddition::added           ? "added"
+         : addition == StoreAddition::already_there ? "already there"
+                                                    : "in place of the result of the run before it "
+                                                      "had ended";
 }
 
 Expected<int> run_store_add(const StoreAddOptions& command) {

@@ -20,7 +20,6 @@
 #include <filesystem>
 #include <optional>
 #include <set>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -65,10 +64,9 @@ void add_triaxial(CLI::App& command, TriaxialOptions& triaxial) {
           "--motion-channels", triaxial.motion_channels,
           "channels of the reference: x, y, z (default: those whose names end with _x, _y, _z)")
       ->expected(3);
-  command
-      .add_option("--transverse-motion", triaxial.transverse_motion_rel,
-                  "bound of the exciter's transverse motion, relative to that along its axis")
-      ->check(CLI::NonNegativeNumber);
+  add_checked(command, "--transverse-motion", triaxial.transverse_motion_rel,
+              "bound of the exciter's transverse motion, relative to that along its axis",
+              CLI::NonNegativeNumber);
   command.add_flag("--json", triaxial.json, "print JSON");
 }
 

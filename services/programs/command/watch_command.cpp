@@ -12,8 +12,6 @@
 #include <cstdlib>
 #include <map>
 #include <optional>
-#include <stop_token>
-#include <string>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
@@ -38,8 +36,8 @@ struct WatchOptions {
 
 void add_watch(CLI::App& command, WatchOptions& watch) {
   command.add_option("--bench", watch.bench, "only this bench (default: all)");
-  command.add_option("--seconds", watch.seconds, "end after this time (default: until Ctrl-C)")
-      ->check(CLI::PositiveNumber);
+  add_checked(command, "--seconds", watch.seconds, "end after this time (default: until Ctrl-C)",
+              CLI::PositiveNumber);
   command.add_flag("--all", watch.table.all,
                    "also runs that are over, channels that do not respond, benches that are gone, "
                    "and the clock of every host");
@@ -76,37 +74,17 @@ void draw(const network::BusState& laboratory, const WatchOptions& command) {
 }
 
 // What has changed since the last time.
-class Output {
+class ChangedLines {
 public:
-  Output(const WatchOptions& command, bool terminal) : command_(command), terminal_(terminal) {
-    if (terminal_) {
-      fmt::print("\x1b[2J");
+  void print(const network::BusState& laboratory, bool json) {
+    if (shown_number_ == laboratory.number()) {
+      return;
     }
-  }
-  ~Output() {
-    if (terminal_) {
-      fmt::print("\n");
+    shown_number_ = laboratory.number();
+    if (json) {
+      fmt::print("{}\n", json_text(live::laboratory_json(laboratory)));
+      return;
     }
-  }
-  Output(const Output&) = delete;
-  Output& operator=(const Output&) = delete;
-
-  void show(const network::BusState& laboratory) {
-    if (terminal_) {
-      draw(laboratory, command_);
-    } else if (shown_number_ != laboratory.number()) {
-      shown_number_ = laboratory.number();
-      command_.json ? print_json(laboratory) : print_lines(laboratory);
-    }
-    std::fflush(stdout);
-  }
-
-private:
-  static void print_json(const network::BusState& laboratory) {
-    fmt::print("{}\n", json_text(live::laboratory_json(laboratory)));
-  }
-
-  void print_lines(const network::BusState& laboratory) {
     auto lines = laboratory_lines(laboratory);
     for (const auto& [key, line] : lines) {
       const auto before = lines_.find(key);
@@ -117,8 +95,7 @@ private:
     lines_ = std::move(lines);
   }
 
-  const WatchOptions& command_;
-  bool terminal_;
+private:
   std::optional<std::uint64_t> shown_number_;
   std::map<std::string, std::string> lines_;
 };
@@ -126,7 +103,9 @@ private:
 Expected<void> run_watch(const WatchOptions& command, const std::stop_token& stop) {
   DYNCAL_TRY(const auto watched,
              WatchedLaboratory::open(command.network, "dyncal-watch", command.bench, stop));
-  Output output(command, isatty(STDOUT_FILENO) != 0 && !command.json);
+  const bool terminal = isatty(STDOUT_FILENO) != 0 && !command.json;
+  fmt::print("{}", terminal ? "\x1b[2J" : "");
+  ChangedLines changed;
   const auto began = std::chrono::steady_clock::now();
   auto next_output = began;
   const auto over = [&] {
@@ -136,10 +115,13 @@ Expected<void> run_watch(const WatchOptions& command, const std::stop_token& sto
   while (!over()) {
     watched->work(std::chrono::steady_clock::now() + 200ms);
     if (std::chrono::steady_clock::now() >= next_output) {
-      output.show(watched->laboratory());
+      terminal ? draw(watched->laboratory(), command)
+               : changed.print(watched->laboratory(), command.json);
+      std::fflush(stdout);
       next_output = std::chrono::steady_clock::now() + 1s;
     }
   }
+  fmt::print("{}", terminal ? "\n" : "");
   return watched->outcome();
 }
 

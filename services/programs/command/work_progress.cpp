@@ -30,27 +30,27 @@ void take_line_away(int signal) {
   static_cast<void>(raise(signal));
 }
 
-std::string time_text(double seconds) {
+} // namespace
+
+std::string duration_text(double seconds) {
   const auto whole = static_cast<long>(std::ceil(seconds));
   return whole < 120 ? fmt::format("{} s", whole) : fmt::format("{} min", (whole + 59) / 60);
 }
 
-} // namespace
-
 std::string progress_text(const WorkCount::State& state, double passed_s) {
   if (state.total == 0) {
-    return fmt::format("{}: {}", state.what, time_text(passed_s));
+    return fmt::format("{}: {}", state.what, duration_text(passed_s));
   }
   const std::size_t done = std::min(state.done, state.total);
   const std::string text =
       state.unit == "%" ? fmt::format("{}: {} %", state.what, done)
                         : fmt::format("{}: {} of {} {}", state.what, done, state.total, state.unit);
   if (done == 0) {
-    return fmt::format("{}, {}", text, time_text(passed_s));
+    return fmt::format("{}, {}", text, duration_text(passed_s));
   }
   const double each_s = passed_s / static_cast<double>(done);
   return fmt::format("{}, {} left", text,
-                     time_text(each_s * static_cast<double>(state.total - done)));
+                     duration_text(each_s * static_cast<double>(state.total - done)));
 }
 
 WorkProgress::WorkProgress(const std::string& what, std::FILE* stream,

@@ -21,6 +21,9 @@
 
 namespace dyncal::inline programs {
 
+// "119 s", "2 min"
+[[nodiscard]] std::string duration_text(double seconds);
+
 // "evaluating: 12 of 51 steps, 38 s left"; without a total "evaluating: 14 s".
 [[nodiscard]] std::string progress_text(const WorkCount::State& state, double passed_s);
 

@@ -15,6 +15,8 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
+const Command calibrate_command{260, "calibrate", "what it is below"};
+
 class CalibrateTime : public ::testing::Test {
 protected:
   fs::path file(const std::string& name, const std::string& text) const {
@@ -76,9 +78,9 @@ TEST_F(CalibrateTime, SeveralFilesAreOneRecord) {
 }
 
 TEST_F(CalibrateTime, ARecordOfGpsPulsesAloneHasNoDeviation) {
-  const auto json = calibrated(
-      file("gps.csv", "0;184302183\n1;284301456\n2;384300731\n3;484300007\n4;504098362\n"
-                      "5;584299284\n6;639117152\n7;684298561\n"));
+  const auto json =
+      calibrated(file("gps.csv", "0;184302183\n1;284301456\n2;384300731\n3;484300007\n4;504098362\n"
+                                 "5;584299284\n6;639117152\n7;684298561\n"));
   EXPECT_EQ(json["gps"]["extra"], 2);
   EXPECT_EQ(json["gps"]["seconds"], 6);
   EXPECT_FALSE(json.contains("deviation"));
