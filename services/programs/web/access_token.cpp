@@ -97,9 +97,8 @@ void AccessToken::forget_old(bus::Clock::Instant now) {
 
 void AccessToken::count_wrong(const std::string& address, bus::Clock::Instant now) {
   if (!wrong_.contains(address) && wrong_.size() >= max_addresses) {
-    wrong_.erase(std::min_element(wrong_.begin(), wrong_.end(), [](const auto& a, const auto& b) {
-      return a.second.back() < b.second.back();
-    }));
+    wrong_.erase(std::ranges::min_element(
+        wrong_, {}, [](const auto& counted) { return counted.second.back(); }));
   }
   wrong_[address].push_back(now);
 }

@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
-#include "services/base/json_text.hpp"
 #include "services/bench/file/bench_file.hpp"
 #include "services/contract/time_name.hpp"
 #include "services/contract/topics.hpp"
@@ -24,9 +23,9 @@ constexpr const char* target = "conductor";
 
 void answer_action(bool accepted, const std::string& by, const std::string& message,
                    httplib::Response& response) {
-  const Json json{{"answer", accepted ? "accepted" : "refused"}, {"by", by}, {"message", message}};
   response.status = accepted ? 200 : 409;
-  response.set_content(json_text(json), "application/json");
+  answer_json({{"answer", accepted ? "accepted" : "refused"}, {"by", by}, {"message", message}},
+              response);
 }
 
 // A member of what a visitor sent; empty: it is no object, or has no such text.
@@ -53,7 +52,7 @@ std::vector<std::string> bench_files_of(const fs::path& folder) {
       names.push_back(entry.path().filename().string());
     }
   }
-  std::sort(names.begin(), names.end());
+  std::ranges::sort(names);
   return names;
 }
 
@@ -262,13 +261,12 @@ void Actions::list_bench_files(httplib::Response& response) const {
                      {"bench", bench ? Json(bench->bench) : Json(nullptr)},
                      {"problem", bench ? Json(nullptr) : Json(bench.error().message)}});
   }
-  response.set_content(json_text(nlohmann::ordered_json{{"files", std::move(files)}}),
-                       "application/json");
+  answer_json({{"files", std::move(files)}}, response);
 }
 
 void Actions::start_run(const std::string& name, httplib::Response& response) {
   const std::vector<std::string> known = bench_files_of(options_.benches_folder);
-  if (std::find(known.begin(), known.end(), name) == known.end()) {
+  if (std::ranges::find(known, name) == known.end()) {
     answer_action(false, "", "there is no such bench file in the folder of --benches", response);
     return;
   }

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <string>
+
+#include <fmt/core.h>
 
 #include "services/programs/web/laboratory_answers.hpp"
 
@@ -24,22 +27,14 @@ const char* methods_of(std::string_view path) {
     return acting_methods;
   }
   const bool is_read =
-      address ||
-      std::find(read_addresses.begin(), read_addresses.end(), path) != read_addresses.end() ||
-      std::any_of(read_folders.begin(), read_folders.end(),
-                  [&](std::string_view folder) { return path.starts_with(folder); });
+      address || std::ranges::find(read_addresses, path) != read_addresses.end() ||
+      std::ranges::any_of(read_folders, [&](auto folder) { return path.starts_with(folder); });
   return is_read ? reading_methods : nullptr;
 }
 
 bool allows(std::string_view methods, std::string_view method) {
-  while (!methods.empty()) {
-    const auto comma = methods.find(", ");
-    if (methods.substr(0, comma) == method) {
-      return true;
-    }
-    methods.remove_prefix(comma == std::string_view::npos ? methods.size() : comma + 2);
-  }
-  return false;
+  return method.find(',') == std::string_view::npos &&
+         fmt::format(" {},", methods).find(fmt::format(" {},", method)) != std::string::npos;
 }
 
 } // namespace dyncal::inline programs::web

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 
+#include <fmt/core.h>
+
 namespace dyncal::inline programs::web {
 namespace {
 
@@ -36,15 +38,8 @@ bool is_own_host(std::string_view host, const std::vector<std::string>& own_name
 }
 
 bool is_own_origin(std::string_view origin, std::string_view host) {
-  if (origin.empty()) {
-    return true;
-  }
-  for (const std::string_view scheme : {"http://", "https://"}) {
-    if (origin.starts_with(scheme) && origin.substr(scheme.size()) == host) {
-      return true;
-    }
-  }
-  return false;
+  return origin.empty() || origin == fmt::format("http://{}", host) ||
+         origin == fmt::format("https://{}", host);
 }
 
 } // namespace dyncal::inline programs::web

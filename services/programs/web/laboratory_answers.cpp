@@ -6,8 +6,8 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "services/base/json_text.hpp"
 #include "services/programs/web/request_router.hpp"
+#include "services/views/figures/error_bar_names.hpp"
 #include "services/views/report/json_members.hpp"
 
 namespace dyncal::inline programs::web {
@@ -19,29 +19,12 @@ constexpr std::array<std::string_view, 7> parts{"run",      "figures", "budget",
                                                 "spectrum", "fit",     "command"};
 
 // 0: it is no number.
-std::uint32_t number_of(const std::string& text) {
+std::uint32_t number_of(const httplib::Request& request, const char* parameter) {
+  const std::string text = request.get_param_value(parameter);
   std::uint32_t number = 0;
   const char* end = text.data() + text.size();
   const auto parsed = std::from_chars(text.data(), end, number);
   return parsed.ec == std::errc() && parsed.ptr == end ? number : 0;
-}
-
-std::optional<figures::ErrorBars> bars_of(const std::string& name) {
-  if (name == "U") {
-    return figures::ErrorBars::expanded;
-  }
-  if (name == "u") {
-    return figures::ErrorBars::standard;
-  }
-  return name == "none" ? std::optional(figures::ErrorBars::none) : std::nullopt;
-}
-
-void answer_text(const Text& text, const char* otherwise, httplib::Response& response) {
-  if (text) {
-    response.set_content(*text, "application/json");
-  } else {
-    answer_error(404, "not_known", otherwise, response);
-  }
 }
 
 void send_file(const ServedFile& file, const std::string& name, const httplib::Request& request,
@@ -72,6 +55,14 @@ std::optional<BenchAddress> bench_address(std::string_view path) {
     }
   }
   return BenchAddress{std::string(rest), ""};
+}
+
+void answer_text(const Text& text, const std::string& otherwise, httplib::Response& response) {
+  if (text) {
+    response.set_content(*text, "application/json");
+  } else {
+    answer_error(404, "not_known", otherwise, response);
+  }
 }
 
 Text LaboratoryAnswers::results(const std::string& bench, const std::string& run) const {
@@ -116,7 +107,8 @@ bool LaboratoryAnswers::answer(const httplib::Request& request, httplib::Respons
 
 void LaboratoryAnswers::answer_figures(const std::string& bench, const httplib::Request& request,
                                        httplib::Response& response) const {
-  const auto bars = bars_of(request.has_param("bars") ? request.get_param_value("bars") : "U");
+  const auto bars = dyncal::figures::parse_error_bars(
+      request.has_param("bars") ? request.get_param_value("bars") : "U");
   if (!bars) {
     answer_error(400, "malformed", "bars must be U, u or none", response);
     return;
@@ -129,18 +121,10 @@ void LaboratoryAnswers::answer_figures(const std::string& bench, const httplib::
 void LaboratoryAnswers::answer_budget(const std::string& name, const httplib::Request& request,
                                       httplib::Response& response) const {
   const std::string run_name = request.get_param_value("run");
-  const network::Run::ResultKey key{number_of(request.get_param_value("step")),
-                                    number_of(request.get_param_value("repetition")),
+  const network::Run::ResultKey key{number_of(request, "step"), number_of(request, "repetition"),
                                     request.get_param_value("channel")};
   const auto json = cache_.look([&](const network::BusState& laboratory) -> std::optional<Json> {
-    const network::Bench* bench = laboratory.bench(name);
-    if (bench == nullptr) {
-      return std::nullopt;
-    }
-    const auto named = bench->runs.find(run_name);
-    const network::Run* run = run_name.empty()             ? bench->current_run()
-                              : named == bench->runs.end() ? nullptr
-                                                           : &named->second;
+    const network::Run* run = find_run(laboratory.bench(name), run_name);
     if (run == nullptr || !run->results.contains(key)) {
       return std::nullopt;
     }
@@ -152,8 +136,11 @@ void LaboratoryAnswers::answer_budget(const std::string& name, const httplib::Re
                 {"repetition", result.repetition},
                 {"contributions", JsonWriter::of(result.budget)}};
   });
-  answer_text(json ? std::make_shared<const std::string>(json_text(*json)) : nullptr,
-              "no such result was heard of", response);
+  if (json) {
+    answer_json(*json, response);
+  } else {
+    answer_error(404, "not_known", "no such result was heard of", response);
+  }
 }
 
 bool LaboratoryAnswers::answer_file(const httplib::Request& request,

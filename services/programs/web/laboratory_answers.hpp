@@ -21,6 +21,9 @@ struct BenchAddress {
 };
 [[nodiscard]] std::optional<BenchAddress> bench_address(std::string_view path);
 
+// Where there is no text, with 404 and what is said `otherwise`.
+void answer_text(const Text& text, const std::string& otherwise, httplib::Response& response);
+
 class LaboratoryAnswers {
 public:
   // Both outlive the object.

@@ -34,14 +34,14 @@ void tell(const drivers::FileDescriptor& socket, std::string_view text) {
   (void)::send(socket.number(), text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
 }
 
+// Without a reason phrase, which nobody has to read (RFC 9112, 4); the body has a sentence.
 std::string text_of(const HeadRefusal& refusal) {
   httplib::Response response;
   answer_error(refusal.status, to_string(refusal.reason), refusal.message, response);
-  return fmt::format("HTTP/1.1 {} {}\r\nContent-Type: application/json\r\n"
+  return fmt::format("HTTP/1.1 {} \r\nContent-Type: application/json\r\n"
                      "X-Content-Type-Options: nosniff\r\nCache-Control: no-cache\r\n"
                      "Connection: close\r\nContent-Length: {}\r\n\r\n{}",
-                     refusal.status, reason_phrase(refusal.status), response.body.size(),
-                     response.body);
+                     refusal.status, response.body.size(), response.body);
 }
 
 } // namespace
@@ -195,9 +195,7 @@ bool LimitedServer::make_room(Connections& waiting) {
   if (connections_ < max_connections) {
     return true;
   }
-  const auto nearest =
-      std::min_element(waiting.begin(), waiting.end(),
-                       [](const auto& a, const auto& b) { return a.limit < b.limit; });
+  const auto nearest = std::ranges::min_element(waiting, {}, &Connection::limit);
   if (nearest == waiting.end()) {
     return false;
   }

@@ -16,16 +16,21 @@ using namespace std::chrono_literals;
 
 constexpr std::chrono::milliseconds look_again = 50ms;
 
-void address_of(const sockaddr_storage& storage, std::string& ip, int& port) {
+// Of one end of the connection; as it was where that is gone.
+void address_of(socket_t socket, int (*ask)(int, sockaddr*, socklen_t*), std::string& ip,
+                int& port) {
+  sockaddr_storage storage{};
+  socklen_t length = sizeof(storage);
+  if (ask(socket, reinterpret_cast<sockaddr*>(&storage), &length) != 0) {
+    return;
+  }
   std::array<char, INET6_ADDRSTRLEN> text{};
   if (storage.ss_family == AF_INET) {
-    sockaddr_in address{};
-    std::memcpy(&address, &storage, sizeof(address));
+    const auto& address = reinterpret_cast<const sockaddr_in&>(storage);
     inet_ntop(AF_INET, &address.sin_addr, text.data(), text.size());
     port = ntohs(address.sin_port);
   } else if (storage.ss_family == AF_INET6) {
-    sockaddr_in6 address{};
-    std::memcpy(&address, &storage, sizeof(address));
+    const auto& address = reinterpret_cast<const sockaddr_in6&>(storage);
     inet_ntop(AF_INET6, &address.sin6_addr, text.data(), text.size());
     port = ntohs(address.sin6_port);
   }
@@ -73,29 +78,17 @@ ssize_t LimitedStream::write(const char* data, size_t size) {
 }
 
 void LimitedStream::get_remote_ip_and_port(std::string& ip, int& port) const {
-  sockaddr_storage storage{};
-  socklen_t length = sizeof(storage);
-  if (getpeername(socket_, reinterpret_cast<sockaddr*>(&storage), &length) == 0) {
-    address_of(storage, ip, port);
-  }
+  address_of(socket_, getpeername, ip, port);
 }
 
 void LimitedStream::get_local_ip_and_port(std::string& ip, int& port) const {
-  sockaddr_storage storage{};
-  socklen_t length = sizeof(storage);
-  if (getsockname(socket_, reinterpret_cast<sockaddr*>(&storage), &length) == 0) {
-    address_of(storage, ip, port);
-  }
+  address_of(socket_, getsockname, ip, port);
 }
 
 std::string visitor_of(socket_t socket) {
   std::string ip;
   int port = 0;
-  sockaddr_storage storage{};
-  socklen_t length = sizeof(storage);
-  if (getpeername(socket, reinterpret_cast<sockaddr*>(&storage), &length) == 0) {
-    address_of(storage, ip, port);
-  }
+  address_of(socket, getpeername, ip, port);
   return ip;
 }
 

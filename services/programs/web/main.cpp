@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <spdlog/spdlog.h>
 
+#include "services/bus/host_network.hpp"
 #include "services/daemon/program/child_process.hpp"
 #include "services/daemon/program/daemon.hpp"
 #include "services/programs/web/web_service.hpp"
@@ -33,7 +34,7 @@ void add_options(CLI::App& app, WebProgram& program) {
   app.add_option("--listen", program.listen,
                  "where the page is served; other than loopback: in networks that you trust")
       ->capture_default_str();
-  app.add_option("--own-name", program.web.own_names,
+  app.add_option("--own-name", program.web.door.own_names,
                  "name of this computer that browsers may use (repeatable; its host name, "
                  "localhost and addresses are known)");
   app.add_option("--runs", program.web.runs_folder, "folder of all runs, for downloads")
@@ -46,9 +47,9 @@ void add_options(CLI::App& app, WebProgram& program) {
                  "file with the secret that actions need; without one there are no actions");
   app.add_option("--benches", program.web.benches_folder,
                  "folder of bench files that a run may be started with (needs --token-file)");
-  app.add_option("--guide", program.web.guide_folder,
+  app.add_option("--guide", program.web.door.guide_folder,
                  "folder of the guide's pages (default: as it is installed with this program)");
-  app.add_option("--javascript", program.web.javascript_folder,
+  app.add_option("--javascript", program.web.door.javascript_folder,
                  "folder of the JavaScript libraries of this computer")
       ->capture_default_str();
 }
@@ -59,9 +60,10 @@ Expected<void> serve(WebProgram& program, Daemon& daemon) {
     return fail(ErrorCode::bad_argument,
                 "--listen " + program.listen + " is not ADDRESS:PORT, such as 127.0.0.1:8080");
   }
-  program.web.listen = *listen;
-  if (program.web.guide_folder.empty()) {
-    program.web.guide_folder = installed_guide();
+  program.web.door.listen = *listen;
+  program.web.door.own_names.push_back(bus::host_name());
+  if (program.web.door.guide_folder.empty()) {
+    program.web.door.guide_folder = installed_guide();
   }
   DYNCAL_TRY(auto service, web::WebService::create(daemon, program.web));
   return service->serve();

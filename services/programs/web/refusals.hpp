@@ -20,9 +20,14 @@ enum class Refusal {
   too_many_tokens, // wrong ones lately
   not_permitted    // no token is configured
 };
-inline constexpr std::size_t refusal_count = 10;
+inline constexpr std::array refusal_names{
+    "slow",      "too_large",          "malformed",   "foreign_host",    "foreign_origin",
+    "not_found", "too_many_listeners", "wrong_token", "too_many_tokens", "not_permitted"};
+
 // For labels: "foreign_host".
-[[nodiscard]] const char* to_string(Refusal refusal);
+[[nodiscard]] constexpr const char* to_string(Refusal refusal) {
+  return refusal_names.at(static_cast<std::size_t>(refusal));
+}
 
 class Refusals {
 public:
@@ -32,7 +37,7 @@ public:
   }
 
 private:
-  std::array<std::atomic<std::uint64_t>, refusal_count> counts_{};
+  std::array<std::atomic<std::uint64_t>, refusal_names.size()> counts_{};
 };
 
 } // namespace dyncal::inline programs::web

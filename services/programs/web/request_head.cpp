@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <utility>
 #include <vector>
 
 namespace dyncal::inline programs::web {
@@ -251,26 +250,6 @@ std::optional<RequestHead> read_head(std::string_view received) {
     write_text(line, fields, head);
   }
   return head;
-}
-
-const char* reason_phrase(int status) {
-  constexpr std::array<std::pair<int, const char*>, 10> phrases{
-      {{400, "Bad Request"},
-       {408, "Request Timeout"},
-       {411, "Length Required"},
-       {413, "Content Too Large"},
-       {414, "URI Too Long"},
-       {415, "Unsupported Media Type"},
-       {417, "Expectation Failed"},
-       {431, "Request Header Fields Too Large"},
-       {501, "Not Implemented"},
-       {505, "HTTP Version Not Supported"}}};
-  for (const auto& [code, phrase] : phrases) {
-    if (code == status) {
-      return phrase;
-    }
-  }
-  return "Error";
 }
 
 } // namespace dyncal::inline programs::web

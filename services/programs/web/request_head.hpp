@@ -48,7 +48,4 @@ struct RequestHead {
 // and may still be one.
 [[nodiscard]] std::optional<RequestHead> read_head(std::string_view received);
 
-// "Not Implemented"
-[[nodiscard]] const char* reason_phrase(int status);
-
 } // namespace dyncal::inline programs::web

@@ -50,11 +50,14 @@ bool leads_out(const std::string& path) {
 
 } // namespace
 
+void answer_json(const nlohmann::ordered_json& json, httplib::Response& response) {
+  response.set_content(json_text(json), "application/json");
+}
+
 void answer_error(int status, const std::string& code, const std::string& message,
                   httplib::Response& response) {
-  const nlohmann::ordered_json json{{"error", {{"code", code}, {"message", message}}}};
   response.status = status;
-  response.set_content(json_text(json), "application/json");
+  answer_json({{"error", {{"code", code}, {"message", message}}}}, response);
 }
 
 RequestRouter::RequestRouter(DoorOptions options, bus::Clock& clock)

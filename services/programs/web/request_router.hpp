@@ -16,6 +16,7 @@
 #include <vector>
 
 #include <httplib.h>
+#include <nlohmann/json_fwd.hpp>
 
 #include "drivers/link/address.hpp"
 #include "services/base/error.hpp"
@@ -25,7 +26,8 @@
 
 namespace dyncal::inline programs::web {
 
-// Sets status and JSON of an error.
+// With JSON, and with that of an error.
+void answer_json(const nlohmann::ordered_json& json, httplib::Response& response);
 void answer_error(int status, const std::string& code, const std::string& message,
                   httplib::Response& response);
 

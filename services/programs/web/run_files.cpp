@@ -67,16 +67,14 @@ std::vector<RunFile> RunFiles::files_of(const std::string& bench, const std::str
       !fs::is_symlink(folder.parent_path(), unknown)) {
     add_files(folder, "", 1, files);
   }
-  std::sort(files.begin(), files.end(),
-            [](const RunFile& a, const RunFile& b) { return a.name < b.name; });
+  std::ranges::sort(files, {}, &RunFile::name);
   return files;
 }
 
 std::optional<RunFile> RunFiles::find(const std::string& bench, const std::string& run,
                                       const std::string& name) const {
   const std::vector<RunFile> files = files_of(bench, run);
-  const auto found = std::find_if(files.begin(), files.end(),
-                                  [&](const RunFile& file) { return file.name == name; });
+  const auto found = std::ranges::find(files, name, &RunFile::name);
   return found == files.end() ? std::nullopt : std::optional(*found);
 }
 

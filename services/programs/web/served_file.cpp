@@ -85,18 +85,7 @@ std::optional<ByteRange> parse_range(std::string_view text, std::size_t bytes) {
 }
 
 bool names_etag(std::string_view field, std::string_view etag) {
-  constexpr std::string_view weak = "W/";
-  while (!field.empty()) {
-    const auto comma = field.find(',');
-    std::string_view one = field.substr(0, comma);
-    field.remove_prefix(comma == std::string_view::npos ? field.size() : comma + 1);
-    one.remove_prefix(std::min(one.find_first_not_of(' '), one.size()));
-    one = one.substr(0, one.find_last_not_of(' ') + 1);
-    if (one == "*" || one == etag || (one.starts_with(weak) && one.substr(weak.size()) == etag)) {
-      return true;
-    }
-  }
-  return false;
+  return field == "*" || field.find(etag) != std::string_view::npos; // quotes are in no other tag
 }
 
 void answer_with(const ServedFile& file, const std::string& media_type,

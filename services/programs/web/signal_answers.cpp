@@ -25,6 +25,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr const char* no_channel = "there is no such channel, or too many are looked at already";
+
 double number_of(const std::string& text, double low, double high, double otherwise) {
   double number = otherwise;
   const char* end = text.data() + text.size();
@@ -80,10 +82,6 @@ Json trace_json(const Trace& trace) {
           {"gaps", std::move(gaps)}};
 }
 
-Text text_of(const Json& json) {
-  return std::make_shared<const std::string>(json_text(json));
-}
-
 Json fit_json(const std::string& channel, const analysis::Frequency& frequency,
               const SineView& view) {
   return {{"channel", channel},
@@ -128,9 +126,8 @@ std::optional<SignalAnswers::Found> SignalAnswers::find(const Question& question
       return std::nullopt;
     }
     const auto& channels = source->second.description->channels;
-    const auto channel = std::find_if(channels.begin(), channels.end(), [&](const auto& one) {
-      return one.name == question.channel;
-    });
+    const auto channel =
+        std::ranges::find(channels, question.channel, &drivers::ChannelDescription::name);
     if (channel == channels.end()) {
       return std::nullopt;
     }
@@ -144,10 +141,7 @@ std::optional<SignalAnswers::Found> SignalAnswers::find(const Question& question
 }
 
 Text SignalAnswers::signal(const std::string& bench, const httplib::Request& request) {
-  return signal_text(question_of(bench, request));
-}
-
-Text SignalAnswers::signal_text(const Question& question) {
+  const Question question = question_of(bench, request);
   const std::string key = fmt::format("{}\n{}\n{}\n{} {}", question.bench, question.source,
                                       question.channel, question.seconds, question.columns);
   const std::lock_guard lock(mutex_);
@@ -184,7 +178,7 @@ Text SignalAnswers::signal_text(const Question& question) {
   return text;
 }
 
-Text SignalAnswers::spectrum_text(const Question& question, std::string& problem) {
+Expected<Json> SignalAnswers::spectrum(const Question& question) {
   const auto found = find(question);
   std::vector<Sample> samples;
   double rate_hz = 0.0;
@@ -193,8 +187,7 @@ Text SignalAnswers::spectrum_text(const Question& question, std::string& problem
     samples = ring.newest_stretch(static_cast<std::size_t>(rate_hz * question.seconds) + 1);
   };
   if (!found || !tap_.look(found->tapped, look)) {
-    problem = "there is no such channel, or too many are looked at already";
-    return nullptr;
+    return fail(ErrorCode::no_source, no_channel);
   }
   std::vector<double> values;
   values.reserve(samples.size());
@@ -203,23 +196,22 @@ Text SignalAnswers::spectrum_text(const Question& question, std::string& problem
   }
   const auto spectrum = spectrum_of(values, rate_hz);
   if (!spectrum) {
-    problem = spectrum.error().message;
-    return nullptr;
+    return fail(ErrorCode::no_result, spectrum.error().message);
   }
   Json lines = Json::array();
   for (const auto& [hz, amplitude] : spectrum->lines) {
     lines.push_back({shown(hz), shown(amplitude)});
   }
-  return text_of({{"source", question.source},
-                  {"channel", question.channel},
-                  {"unit", found->unit},
-                  {"lines", std::move(lines)},
-                  {"fundamental_hz", json_number(spectrum->fundamental_hz)},
-                  {"amplitude", json_number(spectrum->amplitude)},
-                  {"thd", json_number(spectrum->thd)},
-                  {"noise_floor", json_number(spectrum->noise_floor)},
-                  {"window", spectrum_window},
-                  {"resolution_hz", json_number(spectrum->resolution_hz)}});
+  return Json{{"source", question.source},
+              {"channel", question.channel},
+              {"unit", found->unit},
+              {"lines", std::move(lines)},
+              {"fundamental_hz", json_number(spectrum->fundamental_hz)},
+              {"amplitude", json_number(spectrum->amplitude)},
+              {"thd", json_number(spectrum->thd)},
+              {"noise_floor", json_number(spectrum->noise_floor)},
+              {"window", spectrum_window},
+              {"resolution_hz", json_number(spectrum->resolution_hz)}};
 }
 
 struct SignalAnswers::ExcitedStep {
@@ -291,15 +283,14 @@ Json SignalAnswers::fitted_json(const std::string& bench, const std::string& nam
           {"residual_columns", Json::parse(columns_text(view->residuals))}};
 }
 
-Text SignalAnswers::fit_text(const std::string& bench, std::string& problem) {
+Expected<Json> SignalAnswers::fit(const std::string& bench) {
   const auto step = excited_step(bench);
+  if (!step) {
+    return fail(ErrorCode::no_result, "no step is excited on this bench now");
+  }
   const auto fitted = [&](const std::string& channel) {
     return fitted_json(bench, channel, *step);
   };
-  if (!step) {
-    problem = "no step is excited on this bench now";
-    return nullptr;
-  }
   Json json{{"step", step->step},
             {"attempt", step->attempt},
             {"frequency_text_hz", step->frequency_hz},
@@ -311,29 +302,24 @@ Text SignalAnswers::fit_text(const std::string& bench, std::string& problem) {
     json["step"] = 0;
     json["reference"] = json["sync"] = json["dau_phase"] = nullptr;
   }
-  return text_of(json);
+  return json;
 }
 
 bool SignalAnswers::answer(const httplib::Request& request, httplib::Response& response) {
   const auto address = bench_address(request.path);
-  if (!address) {
+  if (address && address->part == "signal") {
+    answer_text(signal(address->bench, request), no_channel, response);
+    return true;
+  }
+  if (!address || (address->part != "spectrum" && address->part != "fit")) {
     return false;
   }
-  std::string problem = "there is no such channel, or too many are looked at already";
-  Text text;
-  if (address->part == "signal") {
-    text = signal(address->bench, request);
-  } else if (address->part == "spectrum") {
-    text = spectrum_text(question_of(address->bench, request), problem);
-  } else if (address->part == "fit") {
-    text = fit_text(address->bench, problem);
+  const auto json =
+      address->part == "fit" ? fit(address->bench) : spectrum(question_of(address->bench, request));
+  if (json) {
+    answer_json(*json, response);
   } else {
-    return false;
-  }
-  if (text) {
-    response.set_content(*text, "application/json");
-  } else {
-    answer_error(404, "not_known", problem, response);
+    answer_error(404, "not_known", json.error().message, response);
   }
   return true;
 }

@@ -42,9 +42,8 @@ private:
   };
 
   [[nodiscard]] std::optional<Found> find(const Question& question) const;
-  [[nodiscard]] Text signal_text(const Question& question);
-  [[nodiscard]] Text spectrum_text(const Question& question, std::string& problem);
-  [[nodiscard]] Text fit_text(const std::string& bench, std::string& problem);
+  [[nodiscard]] Expected<nlohmann::ordered_json> spectrum(const Question& question);
+  [[nodiscard]] Expected<nlohmann::ordered_json> fit(const std::string& bench);
   struct ExcitedStep;
   [[nodiscard]] std::optional<ExcitedStep> excited_step(const std::string& bench) const;
   [[nodiscard]] nlohmann::ordered_json

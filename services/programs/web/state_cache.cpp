@@ -15,18 +15,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const network::Run* find_run(const network::Bench& bench, const std::string& run) {
-  if (run.empty()) {
-    return bench.current_run();
-  }
-  const auto found = bench.runs.find(run);
-  return found == bench.runs.end() ? nullptr : &found->second;
-}
-
-std::string bars_name(dyncal::figures::ErrorBars bars) {
-  return bars == dyncal::figures::ErrorBars::none ? "none" : symbol_of(bars);
-}
-
 Json milliseconds(std::int64_t utc_ns) {
   return utc_ns == 0 ? Json(nullptr) : Json(static_cast<double>(utc_ns) / 1e6);
 }
@@ -42,6 +30,14 @@ Json runs_json(const network::Bench& bench) {
 }
 
 } // namespace
+
+const network::Run* find_run(const network::Bench* bench, const std::string& run) {
+  if (bench == nullptr || run.empty()) {
+    return bench == nullptr ? nullptr : bench->current_run();
+  }
+  const auto found = bench->runs.find(run);
+  return found == bench->runs.end() ? nullptr : &found->second;
+}
 
 const StateCache::Made* StateCache::find(const TextKey& key) {
   const auto found = texts_.find(key);
@@ -71,9 +67,8 @@ Text StateCache::keep(const TextKey& key, const Json& json, std::uint64_t number
 
 void StateCache::make_room(std::size_t needed) {
   while (!texts_.empty() && (texts_.size() >= max_texts || bytes() + needed > max_bytes)) {
-    texts_.erase(std::min_element(texts_.begin(), texts_.end(), [](const auto& a, const auto& b) {
-      return a.second.asked < b.second.asked;
-    }));
+    texts_.erase(
+        std::ranges::min_element(texts_, {}, [](const auto& held) { return held.second.asked; }));
   }
 }
 
@@ -84,8 +79,7 @@ void StateCache::drop_what_is_not_shown() {
     if (now - made.asked >= forgotten_after) {
       return true;
     }
-    const network::Bench* bench = key.run.empty() ? nullptr : laboratory_.bench(key.bench);
-    return !key.run.empty() && (bench == nullptr || find_run(*bench, key.run) == nullptr);
+    return !key.run.empty() && find_run(laboratory_.bench(key.bench), key.run) == nullptr;
   });
 }
 
@@ -130,7 +124,7 @@ Text StateCache::results(const std::string& name, const std::string& run_name,
                          const AddFiles& add_files) {
   const std::lock_guard lock(mutex_);
   const network::Bench* bench = laboratory_.bench(name);
-  const network::Run* run = bench == nullptr ? nullptr : find_run(*bench, run_name);
+  const network::Run* run = find_run(bench, run_name);
   if (run == nullptr) {
     return nullptr;
   }
@@ -153,12 +147,12 @@ Text StateCache::results(const std::string& name, const std::string& run_name,
 Text StateCache::figures(const std::string& name, const std::string& run_name,
                          const std::string& channel, dyncal::figures::ErrorBars error_bars) {
   const std::lock_guard lock(mutex_);
-  const network::Bench* bench = laboratory_.bench(name);
-  const network::Run* run = bench == nullptr ? nullptr : find_run(*bench, run_name);
+  const network::Run* run = find_run(laboratory_.bench(name), run_name);
   if (run == nullptr) {
     return nullptr;
   }
-  const std::string bars = bars_name(error_bars);
+  const std::string bars =
+      error_bars == dyncal::figures::ErrorBars::none ? "none" : symbol_of(error_bars);
   const TextKey key{"figures " + bars, name, run->name, channel};
   const std::uint64_t number = run->results_number;
   const Made* made = find(key);
@@ -189,8 +183,7 @@ std::uint64_t StateCache::number() const {
 
 std::uint64_t StateCache::results_number(const std::string& name) const {
   const std::lock_guard lock(mutex_);
-  const network::Bench* bench = laboratory_.bench(name);
-  const network::Run* run = bench == nullptr ? nullptr : bench->current_run();
+  const network::Run* run = find_run(laboratory_.bench(name), "");
   return run == nullptr ? 0 : run->results_number; // a new run has another
 }
 

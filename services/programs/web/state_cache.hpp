@@ -28,6 +28,9 @@ namespace dyncal::inline programs::web {
 
 using Text = std::shared_ptr<const std::string>;
 
+// The current one where `run` is empty; null: there is none, or no bench.
+[[nodiscard]] const network::Run* find_run(const network::Bench* bench, const std::string& run);
+
 class StateCache {
 public:
   static constexpr std::chrono::milliseconds text_age{200};

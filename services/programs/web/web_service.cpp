@@ -3,14 +3,12 @@
 #include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
-#include "services/bus/host_network.hpp"
 #include "services/network/bus_readers.hpp"
 #include "services/programs/web/access_token.hpp"
 #include "services/programs/web/actions.hpp"
 #include "services/programs/web/event_stream.hpp"
 #include "services/programs/web/history_answers.hpp"
 #include "services/programs/web/laboratory_answers.hpp"
-#include "services/programs/web/request_router.hpp"
 #include "services/programs/web/run_files.hpp"
 #include "services/programs/web/signal_answers.hpp"
 #include "services/programs/web/state_cache.hpp"
@@ -23,22 +21,13 @@ namespace {
 constexpr const char* all_benches = "*";
 constexpr std::chrono::milliseconds max_wait{100};
 
-DoorOptions router_options(const WebOptions& options) {
-  DoorOptions router{.listen = options.listen,
-                     .own_names = options.own_names,
-                     .javascript_folder = options.javascript_folder,
-                     .guide_folder = options.guide_folder};
-  router.own_names.push_back(bus::host_name());
-  return router;
-}
-
 } // namespace
 
 struct WebService::Parts {
   Parts(Daemon& own, const WebOptions& web, ActionOptions action_options)
       : daemon(own), options(web),
         cache(clock, [this](nlohmann::ordered_json& json) { add_daemon(json); }),
-        files(web.runs_folder), router(router_options(web), clock), answers(cache, files),
+        files(web.runs_folder), router(web.door, clock), answers(cache, files),
         tap(participant, clock), signals(cache, tap, clock),
         events(cache, answers, router,
                [this](const std::string& bench, const httplib::Request& request) {
@@ -54,7 +43,7 @@ struct WebService::Parts {
                       {"samples_missed", std::to_string(tap.missed())},
                       {"visitors", events.listeners()}};
     json["may_act"] = actions.may_act();
-    json["has_guide"] = !options.guide_folder.empty();
+    json["has_guide"] = !options.door.guide_folder.empty();
   }
   static std::string store_of(const WebOptions& web) {
     return web.store.empty() && web.runs_folder.empty() ? ""
@@ -105,9 +94,8 @@ void WebService::Parts::report() {
                      .benches = 0,
                      .left_out = 0,
                      .samples_missed = tap.missed()};
-  for (std::size_t i = 0; i < refusal_count; ++i) {
-    const auto reason = static_cast<Refusal>(i);
-    figures.refused.emplace_back(to_string(reason), router.refusals().of(reason));
+  for (std::size_t i = 0; i < refusal_names.size(); ++i) {
+    figures.refused.emplace_back(refusal_names[i], router.refusals().of(static_cast<Refusal>(i)));
   }
   cache.look([&](const network::BusState& laboratory) {
     const network::LeftOut& out = laboratory.left_out();
@@ -144,13 +132,13 @@ Expected<void> WebService::serve() {
   const std::stop_token stop = parts.daemon.stop();
   parts.add_answers();
   DYNCAL_TRY(parts.router.start());
-  if (!std::filesystem::exists(parts.options.javascript_folder + "/dygraphs/dygraph.min.js")) {
+  if (!std::filesystem::exists(parts.options.door.javascript_folder + "/dygraphs/dygraph.min.js")) {
     spdlog::warn("{}/dygraphs is missing: the page shows no charts (Debian: libjs-dygraphs)",
-                 parts.options.javascript_folder);
+                 parts.options.door.javascript_folder);
   }
-  const std::string address =
-      drivers::Address{parts.options.listen.host, static_cast<std::uint16_t>(parts.router.port())}
-          .text();
+  const std::string address = drivers::Address{parts.options.door.listen.host,
+                                               static_cast<std::uint16_t>(parts.router.port())}
+                                  .text();
   parts.daemon.supervisor().describe("page at http://" + address + "/");
   parts.daemon.supervisor().serving();
   spdlog::info("web ready ({}), page at http://{}/", parts.identity.dds, address);

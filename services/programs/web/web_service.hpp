@@ -8,23 +8,19 @@
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <vector>
 
-#include "drivers/link/address.hpp"
 #include "services/base/error.hpp"
 #include "services/daemon/program/daemon.hpp"
+#include "services/programs/web/request_router.hpp"
 
 namespace dyncal::inline programs::web {
 
 struct WebOptions {
-  drivers::Address listen{"127.0.0.1", 8080}; // port 0: any free one
-  std::vector<std::string> own_names;
+  DoorOptions door;
   std::filesystem::path runs_folder; // empty: no downloads
   std::string store;                 // as store_place() takes it
   std::filesystem::path token_file;  // empty: no actions
   std::filesystem::path benches_folder;
-  std::string guide_folder;
-  std::string javascript_folder = "/usr/share/javascript";
 };
 
 class WebService {
