@@ -93,4 +93,24 @@ double effective_degrees_of_freedom(std::span<const UncertaintyPart> parts) {
   return weighted > 0.0 ? variance * variance / weighted : infinite_degrees_of_freedom;
 }
 
+CombinedUncertainty combine(std::span<const UncertaintyPart> parts) {
+  CombinedUncertainty result;
+  for (const UncertaintyPart& part : parts) {
+    result.u = std::hypot(result.u, part.u);
+  }
+  const double freedom = effective_degrees_of_freedom(parts);
+  if (!(result.u > 0.0) || std::isinf(freedom)) {
+    return result;
+  }
+  double expanded = 0.0;
+  for (const UncertaintyPart& part : parts) {
+    expanded = std::hypot(expanded,
+                          part.u > 0.0 ? coverage_factor(part.degrees_of_freedom) * part.u : 0.0);
+  }
+  result.degrees_of_freedom = freedom;
+  result.k = coverage_factor(freedom);
+  result.k += (expanded / result.u - result.k) / 3.0;
+  return result;
+}
+
 } // namespace dyncal::analysis

@@ -1,6 +1,12 @@
 // From combined standard uncertainty to coverage interval: Student's t, Welch-Satterthwaite (GUM
 // G.4).
 //
+//   U = k u,   nu_eff = u^4 / sum(u_i^4 / nu_i)
+//
+// k(nu_eff) alone covers only 93 % where a part of two degrees of freedom stands beside a known one
+// of 0.2..0.5 of it; expanding the parts one by one and adding squares covers up to 98 %. A third
+// of the way between: 94.1..96.5 % for any known part.
+//
 // Degrees of freedom are positive real numbers; infinity is stated as such. Any thread.
 #pragma once
 
@@ -28,5 +34,16 @@ struct UncertaintyPart {
 
 // nu_eff = u_c^4 / sum(u_i^4 / nu_i); infinite when all are.
 [[nodiscard]] double effective_degrees_of_freedom(std::span<const UncertaintyPart> parts);
+
+struct CombinedUncertainty {
+  double u = 0.0;                                          // standard uncertainty, U / k
+  double degrees_of_freedom = infinite_degrees_of_freedom; // nu_eff
+  double k = 2.0;                                          // at 95.45 %
+
+  [[nodiscard]] double expanded() const { return k * u; } // U
+};
+
+// Of independent parts.
+[[nodiscard]] CombinedUncertainty combine(std::span<const UncertaintyPart> parts);
 
 } // namespace dyncal::analysis

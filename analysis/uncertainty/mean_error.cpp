@@ -62,30 +62,11 @@ double degrees_of_freedom_of(double quotient) {
   return std::exp(below.log_freedom + part * step);
 }
 
-// Of Student's t and a normal part. k(nu_eff) alone (GUM G.4) covers only 93 % with n = 3 and a
-// common part of 0.2..0.5 u_a; expanding the parts one by one and adding squares covers up to 98 %.
-// A third of the way between: 94.1..96.5 % for n = 3 and any common part.
-CombinedUncertainty combine_student(const UncertaintyPart& student, double u_common) {
-  const std::array parts{student, UncertaintyPart{u_common}};
-  CombinedUncertainty result;
-  result.u = std::hypot(student.u, u_common);
-  if (!(result.u > 0.0)) {
-    return result;
-  }
-  result.degrees_of_freedom = effective_degrees_of_freedom(parts);
-  const double by_effective_freedom = coverage_factor(result.degrees_of_freedom);
-  const double by_parts = std::hypot(coverage_factor(student.degrees_of_freedom) * student.u,
-                                     coverage_factor(infinite_degrees_of_freedom) * u_common) /
-                          result.u;
-  result.k = by_effective_freedom + (by_parts - by_effective_freedom) / 3.0;
-  return result;
-}
-
 } // namespace
 
 CombinedUncertainty combine(const MeanError& error, double u_common) {
   if (error.parts.empty()) {
-    return combine_student(error.student, u_common);
+    return combine(std::array{error.student, UncertaintyPart{u_common}});
   }
   if (error.parts.size() == 1) {
     return {std::hypot(std::sqrt(error.parts.front().variance), u_common)};

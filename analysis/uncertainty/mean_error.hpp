@@ -23,14 +23,6 @@ struct MeanError {
   UncertaintyPart student{};
 };
 
-struct CombinedUncertainty {
-  double u = 0.0;                                          // standard uncertainty, U / k
-  double degrees_of_freedom = infinite_degrees_of_freedom; // nu_eff
-  double k = 2.0;                                          // at 95.45 %
-
-  [[nodiscard]] double expanded() const { return k * u; } // U
-};
-
 [[nodiscard]] CombinedUncertainty combine(const MeanError& error, double u_common);
 
 } // namespace dyncal::analysis

@@ -46,5 +46,16 @@ TEST(Coverage, EffectiveDegreesOfFreedomFollowWelchAndSatterthwaite) {
   EXPECT_EQ(effective_degrees_of_freedom(known), infinite_degrees_of_freedom);
 }
 
+TEST(Coverage, PartsAreCombinedWithTheFactorOfTheirDegreesOfFreedom) {
+  const std::array known{UncertaintyPart{3.0}, UncertaintyPart{4.0}};
+  EXPECT_EQ(combine(known).expanded(), 10.0);
+  const std::array one{UncertaintyPart{3.0, 4.0}, UncertaintyPart{}};
+  EXPECT_NEAR(combine(one).k, coverage_factor(4.0), 1e-12);
+  const std::array both{UncertaintyPart{3.0, 9.0}, UncertaintyPart{4.0}};
+  EXPECT_GT(combine(both).k, coverage_factor(625.0 / 9.0));
+  EXPECT_LT(combine(both).expanded(), std::hypot(coverage_factor(9.0) * 3.0, 8.0));
+  EXPECT_EQ(combine({}).u, 0.0);
+}
+
 } // namespace
 } // namespace dyncal::analysis
