@@ -5,6 +5,8 @@
 
 #include "analysis/base/statistics.hpp"
 #include "analysis/step/short_disturbance.hpp"
+#include "analysis/uncertainty/coverage.hpp"
+#include "analysis/uncertainty/frequency_noise.hpp"
 #include "analysis/uncertainty/noise_near_signal.hpp"
 
 namespace dyncal::analysis {
@@ -26,22 +28,49 @@ double periods_of(const RecordedChannel& channel) {
          static_cast<double>(channel.stamps_ns.back() - channel.stamps_ns.front());
 }
 
-void learn_noise(RecordedChannel& channel, std::span<const PhasorBlock> blocks) {
+bool shows_noise(const RecordedChannel& channel) {
+  return channel.result.fit.residual_sd() > hides_steps * channel.samples.resolution;
+}
+
+NoiseNearSignal noise_of(const RecordedChannel& channel, std::span<const PhasorBlock> blocks) {
   const ChannelFit& result = channel.result;
-  if (!(result.fit.residual_sd() > hides_steps * channel.samples.resolution)) {
+  return periods_of(channel) < few_periods
+             ? noise_of_few_periods(result.frequency, result.phase_origin_ns, channel.stamps_ns,
+                                    channel.values(), result.fit)
+             : noise_from_blocks(blocks, result.fit);
+}
+
+void learn_noise(RecordedChannel& channel, std::span<const PhasorBlock> blocks) {
+  if (!shows_noise(channel)) {
     return;
   }
-  const NoiseNearSignal noise =
-      periods_of(channel) < few_periods
-          ? noise_of_few_periods(result.frequency, result.phase_origin_ns, channel.stamps_ns,
-                                 channel.values(), result.fit)
-          : noise_from_blocks(blocks, result.fit);
-  if (!noise.white) {
+  if (const NoiseNearSignal noise = noise_of(channel, blocks); !noise.white) {
     channel.noise_factor = noise.factor;
     channel.noise_degrees_of_freedom = noise.degrees_of_freedom;
     const bool few = noise.degrees_of_freedom < known_noise_freedom;
     const bool bent = periods_of(channel) < known_slope_periods && channel.drift_order > 0;
     channel.noise_unknown = noise.factor > 1.0 && (few || bent);
+  }
+}
+
+// By how much u of the frequency is larger than white noise makes it.
+double frequency_factor(const RecordedChannel& pilot, std::span<const PhasorBlock> blocks) {
+  if (!(pilot.result.u_frequency_hz > 0.0) || !shows_noise(pilot)) {
+    return 1.0;
+  }
+  const NoiseNearSignal noise = noise_of(pilot, blocks);
+  if (periods_of(pilot) < few_periods) {
+    return noise.white ? 1.0 : 0.5 * coverage_factor(noise.degrees_of_freedom) * noise.factor;
+  }
+  const double sd = noise.factor * pilot.result.fit.residual_sd();
+  return noise.factor * factor_of_frequency_noise(blocks, pilot.result.fit, sd * sd);
+}
+
+void widen_frequency(ChannelsOfOneClock& system, std::span<const PhasorBlock> blocks) {
+  const double factor = frequency_factor(system.pilot, blocks);
+  system.pilot.result.u_frequency_hz *= factor;
+  for (RecordedChannel& other : system.others) {
+    other.result.u_frequency_hz *= factor;
   }
 }
 
@@ -94,11 +123,20 @@ BlocksOfClock learn_from_blocks(ChannelsOfOneClock& system) {
   }
   const auto blocks = phasors_in_blocks(pilot.result.frequency, pilot.result.phase_origin_ns,
                                         pilot.stamps_ns, channels);
+  widen_frequency(system, blocks.front());
   BlocksOfClock result{learn(system.pilot, blocks.front()), {}};
   for (std::size_t i = 0; i < system.others.size(); ++i) {
     result.others.push_back(learn(system.others[i], blocks[i + 1]));
   }
   return result;
+}
+
+void learn_frequency_noise(ChannelsOfOneClock& system) {
+  const RecordedChannel& pilot = system.pilot;
+  const FittedValues values[] = {fitted(pilot)};
+  widen_frequency(system, phasors_in_blocks(pilot.result.frequency, pilot.result.phase_origin_ns,
+                                            pilot.stamps_ns, values)
+                              .front());
 }
 
 std::optional<BlockSeries> learn_from_blocks(RecordedChannel& channel) {

@@ -1,8 +1,9 @@
 // What the channels that one clock recorded do along a step, learnt from one more pass over their
-// samples: noise with a memory (noise_near_signal.hpp), knocks (short_disturbance.hpp), and their
-// phasors in blocks, for the ratio of channels (ratio_blocks.hpp).
+// samples: noise with a memory (noise_near_signal.hpp), also for the frequency that the pilot gave
+// them (frequency_noise.hpp), knocks (short_disturbance.hpp), and their phasors in blocks, for the
+// ratio of channels (ratio_blocks.hpp).
 //
-// Changes the channels: their noise, and their knock. Any thread.
+// Changes the channels: their noise, their knock, and u of their frequency. Any thread.
 #pragma once
 
 #include <optional>
@@ -25,6 +26,8 @@ struct BlocksOfClock {
 
 [[nodiscard]] BlocksOfClock learn_from_blocks(ChannelsOfOneClock& system);
 [[nodiscard]] std::optional<BlockSeries> learn_from_blocks(RecordedChannel& channel);
+// Only u of the frequency.
+void learn_frequency_noise(ChannelsOfOneClock& system);
 
 // Empty where one of the two is.
 [[nodiscard]] std::optional<RatioInBlocks> compare(const std::optional<BlockSeries>& numerator,

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "analysis/base/phasor.hpp"
+#include "analysis/method/blocks_of_clock.hpp"
 #include "analysis/method/channels_of_one_clock.hpp"
 #include "analysis/method/trigger_phase.hpp"
 #include "analysis/sine/disturbances.hpp"
@@ -255,9 +256,10 @@ Expected<SeriesStampingResult> evaluate_series_stamping(const SeriesStampingInpu
   if (const auto problem = problem_with(input)) {
     return fail(*problem);
   }
-  DYNCAL_TRY(const auto acs, fit_channels_of_one_clock(input.frequency, input.frequency_search_rel,
-                                                       input.acs_stamps_ns, input.sync_acs,
-                                                       std::span(&input.reference, 1)));
+  DYNCAL_TRY(auto acs, fit_channels_of_one_clock(input.frequency, input.frequency_search_rel,
+                                                 input.acs_stamps_ns, input.sync_acs,
+                                                 std::span(&input.reference, 1)));
+  learn_frequency_noise(acs);
   const RecordedChannel& reference = acs.others.front();
   DYNCAL_TRY(require_excitation(reference));
   const ChannelFit& sync = acs.pilot.result;

@@ -53,8 +53,8 @@ fit_sine(const Frequency& frequency, std::int64_t phase_origin_ns,
          std::span<const std::span<const double>> channels);
 
 struct FrequencyFit {
-  Frequency frequency; // refined, shared by all channels
-  double u_frequency_hz = 0.0;
+  Frequency frequency;         // refined, shared by all channels
+  double u_frequency_hz = 0.0; // for white noise; for any other: uncertainty/frequency_noise.hpp
   std::vector<SineFit>
       channels; // refitted at the final frequency; covariance includes that w was estimated
   int iterations = 0;
