@@ -28,27 +28,40 @@ Budget systematic_rows(double w, const ReferenceResponse& response,
   return budget;
 }
 
+// The pilot is sync, with the reference as the first of the others; without sync the reference.
+Expected<ChannelsOfOneClock> fit_analogue(const AnalogueInput& input) {
+  std::vector<ChannelSamples> others = input.dut;
+  if (input.sync) {
+    others.insert(others.begin(), input.reference);
+  }
+  return fit_channels_of_one_clock(input.frequency, input.frequency_search_rel, input.stamps_ns,
+                                   input.sync.value_or(input.reference), others);
+}
+
 } // namespace
 
 Expected<ComparisonResult> evaluate_analogue(const AnalogueInput& input) {
-  DYNCAL_TRY(auto system, fit_channels_of_one_clock(input.frequency, input.frequency_search_rel,
-                                                    input.stamps_ns, input.reference, input.dut));
+  DYNCAL_TRY(auto system, fit_analogue(input));
   const BlocksOfClock blocks = learn_from_blocks(system);
-  const RecordedChannel& reference = system.pilot;
+  const bool by_sync = input.sync.has_value();
+  const RecordedChannel& reference = by_sync ? system.others.front() : system.pilot;
+  DYNCAL_TRY(require_excitation(reference));
   const double w = reference.result.frequency.angular();
   const std::complex<double> link = std::polar(1.0, w * input.channel_delay_s) /
                                     reference.phasor() * input.reference_response.phasor();
   const Budget noise = noise_of(reference);
   const Budget systematic = systematic_rows(w, input.reference_response, input.systematic);
-  ComparisonResult result{reference.result, {}, {}};
+  ComparisonResult result{
+      reference.result, by_sync ? std::optional(system.pilot.result) : std::nullopt, {}, {}};
   add_knock(reference, result.findings);
   const StampBeat beat = stamp_beat(input.frequency, input.stamps_ns);
-  for (std::size_t i = 0; i < system.others.size(); ++i) {
+  const std::optional<BlockSeries>& denominator = by_sync ? blocks.others.front() : blocks.pilot;
+  for (std::size_t i = by_sync ? 1 : 0; i < system.others.size(); ++i) {
     const RecordedChannel& dut = system.others[i];
     Budget budget;
     add_sensor_rows(budget, dut, 0.0);
     budget.append(noise);
-    const auto ratio = compare(blocks.others[i], blocks.pilot, {});
+    const auto ratio = compare(blocks.others[i], denominator, {});
     add_ratio_rows(budget, ratio, budget.u_magnitude_rel(), budget.u_phase_rad());
     add_beat_rows(budget, "the", w, beat,
                   reach_on_ratio(dut.result.fit.phase_rad(), reference.result.fit.phase_rad()));
@@ -66,7 +79,7 @@ Expected<ComparisonResult> evaluate_absolute_time(const AbsoluteTimeInput& input
                                                  input.reference_stamps_ns, input.reference, {}));
   const BlocksOfClock blocks = learn_from_blocks(acs);
   const RecordedChannel& reference = acs.pilot;
-  ComparisonResult result{reference.result, {}, {}};
+  ComparisonResult result{reference.result, std::nullopt, {}, {}};
   add_knock(reference, result.findings);
   const double w = reference.result.frequency.angular();
   const Budget noise = noise_of(reference);

@@ -13,6 +13,9 @@
 //   absolute time  two clocks on one time scale (GPS) stamp reference and sensor, without sync:
 //                  evaluate_absolute_time
 //
+// The frequency is refined on the reference; in the analogue case on sync, where it is recorded on
+// the same clock: it has the least noise, and the ratio hardly depends on it.
+//
 // In absolute time the frequency is refined on the reference and taken over, for both clocks run at
 // the same rate; what is left of the clocks' offset goes into the phase in full, w u(offset) (150
 // ns: 9.4 mrad at 10 kHz). Both records are evaluated about one instant, the middle of the
@@ -22,6 +25,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -47,6 +51,7 @@ struct AnalogueInput {
   double frequency_search_rel = 1e-3;
   std::span<const std::int64_t> stamps_ns{};
   ChannelSamples reference{};
+  std::optional<ChannelSamples> sync{};
   std::vector<ChannelSamples> dut{};
   double channel_delay_s = 0.0; // tau_ch
   ReferenceResponse reference_response{};
@@ -67,6 +72,7 @@ struct AbsoluteTimeInput {
 
 struct ComparisonResult {
   ChannelFit reference;
+  std::optional<ChannelFit> sync;
   std::vector<TransferPoint> points; // in the order of `dut`
   StepFindings findings{};
 };

@@ -51,8 +51,11 @@ std::complex<double> quotient(std::span<const double> drawn, std::size_t phasors
 
 Expected<TransferCheck> check_transfer(const TransferPoint& point, std::span<const ChannelFit> link,
                                        const MonteCarloSettings& settings) {
-  if (link.size() != 1 && link.size() != 3) {
-    return fail(ErrorCode::invalid_argument, "a reference is needed, and either no sync or two");
+  if (link.empty() || link.size() > 3) {
+    return fail(ErrorCode::invalid_argument, "a reference is needed, and at most two syncs");
+  }
+  if (link.size() == 2) { // this sync gives the frequency alone
+    link = link.first(1);
   }
   DrawnChain chain;
   chain.add_fit(point.dut);

@@ -10,18 +10,30 @@
 namespace dyncal::inline evaluation {
 namespace {
 
-// The reference, then the channels under calibration.
+bool has_sync(const AnalogueRoles& roles) {
+  return roles.excitation != roles.reference;
+}
+
+// Of the selected channels.
+std::size_t first_dut(const StepTask& task) {
+  return has_sync(std::get<AnalogueRoles>(task.recipe->roles)) ? 2 : 1;
+}
+
+// The reference, sync where it is named, then the channels under calibration.
 SelectedChannels select_channels(const Recipe& recipe, SourceInterval source) {
   const auto& roles = std::get<AnalogueRoles>(recipe.roles);
   std::vector<ChannelName> names{roles.reference};
+  if (has_sync(roles)) {
+    names.push_back(roles.excitation);
+  }
   names.insert(names.end(), roles.dut.begin(), roles.dut.end());
   return {std::move(source), std::move(names), recipe.mains_hz};
 }
 
 void leave_settling_out(StepTask& task, SelectedChannels& channels) {
-  const StepSettling settling =
-      find_settling_of_step(task.step(), task.recipe->frequency_search_rel,
-                            {channels.samples(), 0, {0}}, sensor_columns(channels));
+  const StepSettling settling = find_settling_of_step(
+      task.step(), task.recipe->frequency_search_rel, {channels.samples(), 0, {0}},
+      sensor_columns(channels, first_dut(task)));
   if (settling.flag) {
     task.flags.push_back(*settling.flag);
   }
@@ -36,7 +48,10 @@ analysis::AnalogueInput input_of(const StepTask& task, const SelectedChannels& c
   input.frequency_search_rel = recipe.frequency_search_rel;
   input.stamps_ns = channels.stamps_ns();
   input.reference = channels.channel(0);
-  input.dut = channels.channels_from(1);
+  if (first_dut(task) > 1) {
+    input.sync = channels.channel(1);
+  }
+  input.dut = channels.channels_from(first_dut(task));
   input.reference_response = reference;
   input.channel_delay_s = -recipe.reference_delay_s;
   input.systematic.reference_magnitude_rel = recipe.systematic.reference_magnitude_rel;
@@ -57,18 +72,24 @@ std::vector<StepResult> evaluate(StepTask task, SourceInterval acs) {
           return analysis::evaluate_analogue(input_of(task, channels, reference));
         })
         .map([](const analysis::ComparisonResult& result) {
-          return EvaluatedStep{{result.reference}, result.points, result.findings};
+          EvaluatedStep step{{result.reference}, result.points, result.findings};
+          if (result.sync) {
+            step.common_fits.push_back(*result.sync);
+          }
+          return step;
         });
   });
-  return make_results(task,
-                      {.dut = roles.dut,
-                       .reference_unit = channels.unit(0),
-                       .units = units_of(channels, channels, 1),
-                       .samples = {channels.summary()},
-                       .data_sha256 = digest_of({&channels}),
-                       .common = {{&channels, 0}},
-                       .first_dut = {&channels, 1}},
-                      evaluated);
+  StepInput input{.dut = roles.dut,
+                  .reference_unit = channels.unit(0),
+                  .units = units_of(channels, channels, first_dut(task)),
+                  .samples = {channels.summary()},
+                  .data_sha256 = digest_of({&channels}),
+                  .common = {{&channels, 0}},
+                  .first_dut = {&channels, first_dut(task)}};
+  if (has_sync(roles)) {
+    input.common.push_back({&channels, 1});
+  }
+  return make_results(task, input, evaluated);
 }
 
 } // namespace

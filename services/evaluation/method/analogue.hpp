@@ -1,5 +1,6 @@
 // Sensor and reference are channels of one system: the analogue method, paper eqs. (1) and (2)
-// (analysis/method/analogue_comparison.hpp).
+// (analysis/method/analogue_comparison.hpp). Sync beside them, where it is named, shows where the
+// steps are and gives the frequency.
 //
 // A step that cannot be evaluated gives results that are not valid and name the reason. The same
 // samples give the same bits.

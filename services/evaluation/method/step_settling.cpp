@@ -69,9 +69,9 @@ TimeInterval without_settling(TimeInterval interval, double settling_s, double d
   return interval;
 }
 
-SettlingColumns sensor_columns(const SelectedChannels& sensor) {
+SettlingColumns sensor_columns(const SelectedChannels& sensor, std::size_t first) {
   SettlingColumns columns{sensor.samples(), 0, {}};
-  for (std::size_t column = 1; column < sensor.size(); ++column) {
+  for (std::size_t column = first; column < sensor.size(); ++column) {
     columns.settling.push_back(column);
   }
   return columns;

@@ -40,7 +40,7 @@ struct StepSettling {
 [[nodiscard]] TimeInterval without_settling(TimeInterval interval, double settling_s,
                                             double duration_s);
 
-// All columns but the first, which is sync.
-[[nodiscard]] SettlingColumns sensor_columns(const SelectedChannels& sensor);
+// All columns from `first` on; sync is the first of all.
+[[nodiscard]] SettlingColumns sensor_columns(const SelectedChannels& sensor, std::size_t first = 1);
 
 } // namespace dyncal::inline evaluation

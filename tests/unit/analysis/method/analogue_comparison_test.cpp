@@ -91,6 +91,38 @@ TEST(AnalogueComparison, TakesOutAKnownDelayBetweenTheChannels) {
   EXPECT_NEAR(result->points[0].u_phase_rad, 2.0 * pi * frequency_hz * 1e-8, 1e-9);
 }
 
+// The frequency is then that of the quieter sync; the ratio hardly depends on it.
+TEST(AnalogueComparison, TakesTheFrequencyFromSync) {
+  double frequency_gain = 0.0;
+  constexpr int runs = 100;
+  for (unsigned run = 0; run < runs; ++run) {
+    const Record reference = record(10.0, 0.0, 1e-1, 0.0, 2000.0, 0.0, 3 * run + 1);
+    const Record sync = record(1.0, 3e-4, 1e-3, 0.0, 2000.0, 0.0, 3 * run + 2);
+    const Record dut = record(10.0 * magnitude, delay_s, 1e-1, 0.0, 2000.0, 0.0, 3 * run + 3);
+    AnalogueInput input{.frequency = *Frequency::parse("159.2")};
+    input.stamps_ns = reference.stamps_ns;
+    input.reference = {"reference", reference.values};
+    input.dut = {{"dut", dut.values}};
+    const auto without = evaluate_analogue(input);
+    input.sync = ChannelSamples{"sync", sync.values};
+    const auto with = evaluate_analogue(input);
+    ASSERT_TRUE(without && with);
+    EXPECT_FALSE(without->sync);
+    ASSERT_TRUE(with->sync);
+    EXPECT_EQ(with->sync->channel, "sync");
+    EXPECT_EQ(with->reference.frequency.hz(), with->sync->frequency.hz());
+    ASSERT_EQ(with->points.size(), 1U);
+    const TransferPoint &one = with->points[0], &other = without->points[0];
+    EXPECT_EQ(one.channel, "dut");
+    EXPECT_NEAR(one.magnitude, other.magnitude, 0.1 * other.u_magnitude);
+    EXPECT_NEAR(one.phase_rad, other.phase_rad, 0.1 * other.u_phase_rad);
+    EXPECT_NEAR(one.u_phase_rad / other.u_phase_rad, 1.0, 0.05);
+    EXPECT_NEAR(with->sync->frequency.hz(), frequency_hz, 5.0 * with->sync->u_frequency_hz);
+    frequency_gain += without->reference.u_frequency_hz / with->reference.u_frequency_hz / runs;
+  }
+  EXPECT_NEAR(frequency_gain, 10.0, 2.0);
+}
+
 TEST(AbsoluteTime, LinksTwoClocksOfOneTimeScaleWithoutSync) {
   const Record reference = record(10.0, 0.0, 1e-3, 0.0, 5000.0, 0.0, 1);
   const Record dut = record(10.0 * magnitude, delay_s, 1e-3, 0.0, 1003.049, 0.137, 2);

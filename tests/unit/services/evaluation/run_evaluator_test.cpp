@@ -257,6 +257,34 @@ TEST(RunEvaluator, ComparesChannelsOfOneSystemByTheAnalogueMethod) {
   EXPECT_TRUE(output.clock_reports.empty());
 }
 
+TEST(RunEvaluator, TakesTheFrequencyFromSyncInTheAnalogueMethod) {
+  const tests::SyntheticRun run{.is_in_acs = true};
+  wire::Measurement measurement = analogue(run.measurement());
+  measurement.dut() = {"acs/sensor"};
+  measurement.monte_carlo_trials(20'000);
+  const EvaluationOutput without = evaluate(run, measurement);
+  measurement.sync_acs("acs/sync");
+  const EvaluationOutput with = evaluate(run, measurement);
+  ASSERT_EQ(with.results.size(), 2U);
+  ASSERT_EQ(without.results.size(), 2U);
+  for (std::size_t i = 0; i < with.results.size(); ++i) {
+    const StepResult &one = with.results[i], &other = without.results[i];
+    ASSERT_TRUE(one.valid && other.valid) << one.problem;
+    EXPECT_NEAR(one.magnitude, run.magnitude, 4.0 * one.u_magnitude);
+    EXPECT_NEAR(one.magnitude, other.magnitude, 0.1 * other.u_magnitude);
+    EXPECT_NEAR(one.phase_rad, other.phase_rad, 0.1 * other.u_phase_rad);
+    ASSERT_EQ(other.fits.size(), 2U);
+    ASSERT_EQ(one.fits.size(), 3U);
+    EXPECT_EQ(one.fits[0].channel, "acs/reference");
+    EXPECT_EQ(one.fits[1].channel, "acs/sync");
+    EXPECT_EQ(one.fits[2].channel, "acs/sensor");
+    EXPECT_EQ(one.fits[0].frequency.hz(), one.fits[1].frequency.hz());
+    EXPECT_NE(one.fits[0].frequency.hz(), other.fits[0].frequency.hz());
+    EXPECT_TRUE(one.flags.empty()) << one.flags.front().sentence;
+    EXPECT_TRUE(one.monte_carlo);
+  }
+}
+
 TEST(RunEvaluator, LeavesOutWhatTheDataShowToBeSettling) {
   tests::SyntheticRun run;
   run.settling_time_constant_s = 0.05;

@@ -76,9 +76,12 @@ wire::Measurement SyntheticRun::measurement() const {
 }
 
 wire::SourceDescription SyntheticRun::acs_description() const {
-  return description(
-      "acs", wire::SOURCE_ACS,
-      {channel("reference", R"(\metre\second\tothe{-2})"), channel("sync", R"(\volt)")});
+  std::vector channels{channel("reference", R"(\metre\second\tothe{-2})"),
+                       channel("sync", R"(\volt)")};
+  if (is_in_acs) {
+    channels.push_back(channel("sensor", R"(\metre\second\tothe{-2})"));
+  }
+  return description("acs", wire::SOURCE_ACS, channels);
 }
 
 wire::SourceDescription SyntheticRun::dau_description() const {
@@ -130,12 +133,15 @@ std::vector<wire::SampleBlock> SyntheticRun::acs_blocks() const {
   std::vector<wire::SampleBlock> blocks;
   for (std::uint64_t first = 0; first < total; first += samples) {
     const std::size_t count = std::min<std::size_t>(samples, total - first);
-    wire::SampleBlock block = block_head("acs", blocks.size(), first, count, 2);
+    wire::SampleBlock block = block_head("acs", blocks.size(), first, count, is_in_acs ? 3 : 2);
     block.interval_numerator_ns(100'000);
     for (std::size_t i = 0; i < count; ++i) {
       const double t = static_cast<double>(first + i) / acs_rate_hz;
       block.values()[i] = signal(t, 1.0, 0.0) + 10.0 * normal(random);
       block.values()[count + i] = signal(t, 0.1, 0.0) + normal(random);
+      if (is_in_acs) {
+        block.values()[2 * count + i] = signal(t, magnitude, delay_s) + 10.0 * normal(random);
+      }
     }
     blocks.push_back(block);
   }

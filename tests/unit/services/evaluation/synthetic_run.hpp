@@ -27,6 +27,7 @@ struct SyntheticRun {
   bool range_is_stated = true;           // in its description
   double sensor_hum = 0.0;               // at 50 Hz, all the time
   std::size_t lost_block = 0;            // number of a DAU block that does not arrive; 0: none
+  bool is_in_acs = false;                // the ACS records the sensor as well, as acs/sensor
 
   [[nodiscard]] wire::Measurement measurement() const;
   [[nodiscard]] wire::SourceDescription acs_description() const;
