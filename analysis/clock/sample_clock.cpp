@@ -184,8 +184,9 @@ double mean_interval_s(const IntervalSums& sums, const PeriodCount& periods) {
 }
 
 // REQUIRES: mean and core of `result` are there.
-double u_mean_interval_s(const SampleClockStatistics& result, const PeriodCount& periods,
-                         double u_stamp_s) {
+void add_uncertainty(SampleClockStatistics& result, const PeriodCount& periods, double u_stamp_s,
+                     std::uint64_t core_intervals) {
+  constexpr double share_of_neighbours = 2.0 / 3.0;
   const auto count = static_cast<double>(std::max(periods.periods(), result.intervals));
   const double made_s = seconds(periods.u_ends_ns());
   const double spread_s = result.maximum_s - result.minimum_s;
@@ -195,10 +196,17 @@ double u_mean_interval_s(const SampleClockStatistics& result, const PeriodCount&
                                                     : std::numeric_limits<double>::quiet_NaN();
   const double ends_s = u_stamp_s > 0.0 ? std::max(std::sqrt(2.0) * u_stamp_s, made_s) : scatter_s;
   const auto stretches = static_cast<double>(std::max<std::uint64_t>(1, periods.stretches()));
-  return ends_s * std::sqrt(stretches) / count;
+  result.u_mean_interval_s = ends_s * std::sqrt(stretches) / count;
+  if (!(u_stamp_s > 0.0) && !(made_s > 0.0) && result.core_sd_s > 0.0) {
+    const double freedom = share_of_neighbours * (static_cast<double>(core_intervals) - 1.0);
+    result.degrees_of_freedom_mean_interval = freedom;
+    result.k_mean_interval = coverage_factor(freedom);
+  }
 }
 
-void describe_events(SampleClockStatistics& result, IntervalVerdict verdict, IntervalSums core) {
+// The number of intervals without events.
+std::uint64_t describe_events(SampleClockStatistics& result, IntervalVerdict verdict,
+                              IntervalSums core) {
   core = sums_without(core, verdict.unusual_lengths_ns);
   if (core.count > 1) {
     result.core_mean_s = seconds(core.mean_ns());
@@ -210,6 +218,7 @@ void describe_events(SampleClockStatistics& result, IntervalVerdict verdict, Int
   result.pair_period_samples = verdict.pair_period_samples;
   result.pair_period_s = verdict.pair_period_s;
   result.pair_regularity = verdict.pair_regularity;
+  return core.count;
 }
 
 } // namespace
@@ -248,10 +257,10 @@ std::optional<SampleClockStatistics> SampleClock::statistics() const {
     }
   }
   result.histogram = histogram.bins;
-  describe_events(result, std::move(verdict), all);
+  const std::uint64_t core_intervals = describe_events(result, std::move(verdict), all);
   result.left_out_jumps = periods.left_out_jumps();
   result.largest_jump_s = result.left_out_jumps > 0 ? seconds(periods.largest_jump_ns()) : 0.0;
-  result.u_mean_interval_s = u_mean_interval_s(result, periods, state.settings.stamp_uncertainty_s);
+  add_uncertainty(result, periods, state.settings.stamp_uncertainty_s, core_intervals);
 
   result.over_time = state.overview.buckets(*state.first_stamp_ns);
   result.close_up_ns = state.close_up.lengths_ns();
@@ -269,6 +278,24 @@ std::optional<SampleClockStatistics> SampleClock::statistics() const {
   }
   result.lost = state.lost + periods.unnumbered();
   result.untrusted = state.untrusted;
+  return result;
+}
+
+CombinedUncertainty SampleClockStatistics::of_mean_rate() const {
+  CombinedUncertainty result = of_mean_interval();
+  result.u *= mean_rate_hz / mean_interval_s;
+  return result;
+}
+
+double SampleClockStatistics::rate_deviation_rel() const {
+  return nominal_rate_hz > 0.0 ? mean_rate_hz / nominal_rate_hz - 1.0
+                               : std::numeric_limits<double>::quiet_NaN();
+}
+
+CombinedUncertainty SampleClockStatistics::of_rate_deviation() const {
+  CombinedUncertainty result = of_mean_rate();
+  result.u =
+      nominal_rate_hz > 0.0 ? result.u / nominal_rate_hz : std::numeric_limits<double>::quiet_NaN();
   return result;
 }
 

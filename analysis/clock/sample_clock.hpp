@@ -31,6 +31,7 @@
 #include "analysis/clock/interval_histogram.hpp"
 #include "analysis/clock/interval_overview.hpp"
 #include "analysis/clock/temperature_relation.hpp"
+#include "analysis/uncertainty/coverage.hpp"
 
 namespace dyncal::analysis {
 
@@ -53,8 +54,11 @@ struct SampleClockStatistics {
   // In the clock of the stamps, of n periods: sqrt(2) u(stamp) / n; where that is not stated, what
   // ticks and read-outs make of it (PeriodCount::u_ends_ns), else the scatter of the intervals
   // without events over n, which is at least as much when stamps scatter by chance, else their
-  // spread. NaN when intervals do not scatter: nothing is known.
+  // spread. NaN when intervals do not scatter: nothing is known. Of scatter, neighbours have a
+  // stamp in common: n intervals have 2/3 (n - 1) degrees of freedom.
   double u_mean_interval_s = 0.0;
+  double degrees_of_freedom_mean_interval = infinite_degrees_of_freedom;
+  double k_mean_interval = 2.0; // at 95.45 %
   // Jumps of the clock, or pauses too long to count, that the mean leaves out; the largest of them.
   std::uint64_t left_out_jumps = 0;
   double largest_jump_s = 0.0;
@@ -94,6 +98,15 @@ struct SampleClockStatistics {
   std::vector<AllanPoint> allan;
   std::uint64_t lost = 0;      // samples missing from the numbering, or by the stamps alone
   std::uint64_t untrusted = 0; // samples whose stamp was flagged
+
+  [[nodiscard]] CombinedUncertainty of_mean_interval() const {
+    return {u_mean_interval_s, degrees_of_freedom_mean_interval, k_mean_interval};
+  }
+  // Of the mean rate, which is as uncertain as the mean interval.
+  [[nodiscard]] CombinedUncertainty of_mean_rate() const;
+  // Mean rate over nominal rate, less 1; NaN where no rate is nominal.
+  [[nodiscard]] double rate_deviation_rel() const;
+  [[nodiscard]] CombinedUncertainty of_rate_deviation() const;
 };
 
 class SampleClock {

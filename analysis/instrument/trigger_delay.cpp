@@ -138,8 +138,10 @@ Expected<TriggerDelay> mean_trigger_delay(std::span<const ShotDelay> shots, doub
   result.shots = shots.size();
   result.delay_s = output.mean;
   result.scatter_s = output.scatter;
-  result.u_delay_s = std::hypot(output.scatter / std::sqrt(static_cast<double>(shots.size())),
-                                interval_s / std::sqrt(12.0));
+  const double n = static_cast<double>(shots.size());
+  const std::array parts{UncertaintyPart{output.scatter / std::sqrt(n), n - 1.0},
+                         UncertaintyPart{interval_s / std::sqrt(12.0)}};
+  result.of_delay = combine(parts);
   result.from_zero_crossing_s = whole.mean;
   result.scatter_from_zero_crossing_s = whole.scatter;
   const auto [least, most] = std::minmax_element(

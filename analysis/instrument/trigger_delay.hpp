@@ -13,8 +13,9 @@
 // second time. How large it is the sine approximation shows: sync passes C at u_0 = -beta / w, and
 // u_out - u_0 scatters by the trigger's noise where tau does not.
 //
-// u(tau): standard deviation of the mean over shots, and the time resolution of one trace as a
-// rectangle, interval / sqrt(12), which does not average out when trigger and sampling are locked.
+// u(tau): standard deviation of the mean over n shots, of n - 1 degrees of freedom, and the time
+// resolution of one trace as a rectangle, interval / sqrt(12), which does not average out when
+// trigger and sampling are locked; U = k u by both.
 //
 // Fails: too_few_samples, no_excitation (no rising edge, or more than one), as sine_fit.hpp does.
 // Any thread.
@@ -26,6 +27,7 @@
 
 #include "analysis/base/error.hpp"
 #include "analysis/base/frequency.hpp"
+#include "analysis/uncertainty/coverage.hpp"
 
 namespace dyncal::analysis {
 
@@ -57,7 +59,7 @@ struct HistogramOfDelays {
 
 struct TriggerDelay {
   double delay_s = 0.0;
-  double u_delay_s = 0.0;
+  CombinedUncertainty of_delay{};
   double scatter_s = 0.0; // standard deviation of one shot
   double from_zero_crossing_s = 0.0;
   double scatter_from_zero_crossing_s = 0.0;

@@ -1,7 +1,10 @@
 // Do two results agree? The normalised error of ISO/IEC 17043 and ISO 13528:
 //
-//   E_n   = (x - y) / sqrt(U_x^2 + U_y^2 - 2 cov)    |E_n| <= 1 at k = 2: they agree
+//   E_n   = (x - y) / sqrt(U_x^2 + U_y^2 - 2 cov)    |E_n| <= 1: they agree
 //   chi^2 = d' V^-1 d                                of a complex result, 2 degrees of freedom
+//
+// u is U / 2 of each, U at 95.45 % with the k of its own degrees of freedom: of few repetitions
+// twice the standard uncertainty would not cover.
 //
 // What both have in common (the same reference, the same method) is given as a covariance of the
 // standard uncertainties and must not make the difference look more uncertain than it is. d is
@@ -15,15 +18,15 @@
 
 namespace dyncal::analysis {
 
-// Standard uncertainties; U = 2 u.
+// u is U / 2.
 [[nodiscard]] Expected<double> normalised_error(double x, double u_x, double y, double u_y,
                                                 double covariance = 0.0);
 
 struct ComparedResult {
   double magnitude = 0.0;
-  double u_magnitude = 0.0;
+  double u_magnitude = 0.0; // U / 2
   double phase_rad = 0.0;
-  double u_phase_rad = 0.0;
+  double u_phase_rad = 0.0; // U / 2
 };
 
 struct SharedUncertainty { // standard uncertainties of what both results have in common

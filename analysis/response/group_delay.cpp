@@ -1,6 +1,7 @@
 #include "analysis/response/group_delay.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -199,6 +200,58 @@ std::vector<double> place_on_line(std::span<const PhasePoint> points,
   return result;
 }
 
+struct KnownVariance {
+  double variance = 0.0;
+  double degrees_of_freedom = infinite_degrees_of_freedom;
+};
+
+struct LineScatter { // by what differs from point to point, k = 1
+  KnownVariance delay, intercept;
+};
+
+// Shares of the points in the variance of a linear estimate, whose sum is `variance` for U / 2.
+class Shares {
+public:
+  void add(double square, const KnownTo& known) {
+    const double share = square * std::pow(2.0 / known.k, 2);
+    half_expanded_ += square;
+    shares_ += share;
+    over_roots_ += share / std::sqrt(known.degrees_of_freedom);
+  }
+  [[nodiscard]] KnownVariance of(double variance) const {
+    return {variance * (shares_ / half_expanded_),
+            over_roots_ > 0.0 ? std::pow(shares_ / over_roots_, 2) : infinite_degrees_of_freedom};
+  }
+
+private:
+  double half_expanded_ = 0.0, shares_ = 0.0, over_roots_ = 0.0;
+};
+
+LineScatter scatter_of_line(const std::vector<PhasePoint>& points, const DelayLine& line) {
+  const double mean_w = line.covariance / line.variance_delay;
+  double weights = 0.0;
+  for (const PhasePoint& point : points) {
+    weights += 1.0 / (point.u_phase_rad * point.u_phase_rad);
+  }
+  Shares delay, intercept;
+  for (const PhasePoint& point : points) {
+    const double from_mean = 2.0 * pi * point.frequency_hz - mean_w;
+    const double of_intercept = 1.0 / weights - mean_w * from_mean * line.variance_delay;
+    delay.add(std::pow(from_mean / point.u_phase_rad, 2), point.known);
+    intercept.add(std::pow(of_intercept / point.u_phase_rad, 2), point.known);
+  }
+  return {delay.of(line.variance_delay), intercept.of(line.variance_intercept)};
+}
+
+CombinedUncertainty combined(const KnownVariance& scatter, double common, const KnownTo& known) {
+  const double u_common = 2.0 / known.k * common;
+  const std::array parts{UncertaintyPart{std::sqrt(scatter.variance), scatter.degrees_of_freedom},
+                         UncertaintyPart{u_common, known.degrees_of_freedom}};
+  CombinedUncertainty result = combine(parts);
+  result.u = std::sqrt(scatter.variance + u_common * u_common);
+  return result;
+}
+
 } // namespace
 
 Expected<GroupDelay> evaluate_group_delay(std::span<const PhasePoint> points,
@@ -228,9 +281,13 @@ Expected<GroupDelay> evaluate_group_delay(std::span<const PhasePoint> points,
           ? ratio
           : 1.0;
   result.is_constant = std::sqrt(birge) <= most_birge;
-  result.u_delay_s = std::sqrt(birge * line.variance_delay + common.delay_s * common.delay_s);
-  result.u_intercept_rad =
-      std::sqrt(birge * line.variance_intercept + common.phase_rad * common.phase_rad);
+  LineScatter scatter = scatter_of_line(counted, line);
+  if (birge > 1.0) {
+    scatter = {{birge * line.variance_delay, result.degrees_of_freedom},
+               {birge * line.variance_intercept, result.degrees_of_freedom}};
+  }
+  result.of_delay = combined(scatter.delay, common.delay_s, common.delay_known);
+  result.of_intercept = combined(scatter.intercept, common.phase_rad, KnownTo{});
   result.cov_delay_intercept = birge * line.covariance;
   result.unwrapped_rad = place_on_line(points, choice.branch.unwrapped_rad, line,
                                        result.intercept_rad - line.intercept_rad);

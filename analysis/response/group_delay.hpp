@@ -16,8 +16,14 @@
 // whose u is above 0.5 rad follow the line and do not count. psi_0 is reduced to
 // (-pi, pi]; polarity is inverted when it is nearer to pi than to 0: unwrapping never absorbs that.
 //
-// When the residuals are larger than u allows once in a thousand (chi-squared), u(tau) and u(psi_0)
-// grow by the Birge ratio: the phase is then not a straight line, and above 3 u not `is_constant`.
+// U = k u at 95.45 % from u (k = 1) and degrees of freedom of every phase and of what all share: u
+// of the phases is known from the same scatter at all frequencies, so of their part
+// nu = (sum v_i)^2 / (sum v_i / sqrt(nu_i))^2, v_i its share of the variance; the common part is
+// independent of it (coverage.hpp).
+//
+// When the residuals are larger than u allows once in a thousand (chi-squared), that part grows by
+// the Birge ratio, of n - 2 degrees of freedom: the phase is then not a straight line, and above
+// 3 u not `is_constant`.
 //
 // Fails: invalid_argument (frequencies not rising, u not positive), too_few_samples (fewer than two
 // points that count), not_converged (cannot be unwrapped; the message says where). Any thread.
@@ -27,26 +33,35 @@
 #include <vector>
 
 #include "analysis/base/error.hpp"
+#include "analysis/uncertainty/coverage.hpp"
 
 namespace dyncal::analysis {
+
+// How well an uncertainty U / 2 is known: u (k = 1) is 2 / k of it.
+struct KnownTo {
+  double k = 2.0;
+  double degrees_of_freedom = infinite_degrees_of_freedom;
+};
 
 struct PhasePoint {
   double frequency_hz = 0.0;
   double phase_rad = 0.0;   // modulo 2 pi
-  double u_phase_rad = 0.0; // independent from point to point
+  double u_phase_rad = 0.0; // U / 2, independent from point to point
+  KnownTo known{};
 };
 
 struct CommonPhaseUncertainty { // shared by all points
-  double delay_s = 0.0;
+  double delay_s = 0.0;         // U / 2
   double phase_rad = 0.0;
+  KnownTo delay_known{};
 };
 
 struct GroupDelay {
   double delay_s = 0.0;
-  double u_delay_s = 0.0;
+  CombinedUncertainty of_delay{};
   double intercept_rad = 0.0; // psi_0
-  double u_intercept_rad = 0.0;
-  double cov_delay_intercept = 0.0; // s rad
+  CombinedUncertainty of_intercept{};
+  double cov_delay_intercept = 0.0; // s rad, as of U / 2
   bool polarity_inverted = false;
   bool is_constant = true;            // a straight line describes the phase
   std::vector<double> alternatives_s; // delays that a sensor may have and that fit as well
@@ -54,6 +69,10 @@ struct GroupDelay {
   double degrees_of_freedom = 0.0;
   std::vector<double> unwrapped_rad;    // of all points
   std::vector<double> phase_covariance; // V, row by row
+
+  // U / 2, so that the factor 2 covers.
+  [[nodiscard]] double u_delay_s() const { return 0.5 * of_delay.expanded(); }
+  [[nodiscard]] double u_intercept_rad() const { return 0.5 * of_intercept.expanded(); }
 };
 
 [[nodiscard]] Expected<GroupDelay> evaluate_group_delay(std::span<const PhasePoint> points,

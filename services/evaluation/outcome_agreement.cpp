@@ -105,8 +105,8 @@ std::string delay_difference(const TransferFunction& published, const TransferFu
   }
   const auto& a = *published.group_delay;
   const auto& b = *again.group_delay;
-  return number_difference("group delay", a.delay_s, b.delay_s, a.delay_s - b.delay_s, a.u_delay_s,
-                           b.u_delay_s, true);
+  return number_difference("group delay", a.delay_s, b.delay_s, a.delay_s - b.delay_s,
+                           a.u_delay_s(), b.u_delay_s(), true);
 }
 
 } // namespace

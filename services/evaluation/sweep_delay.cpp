@@ -50,7 +50,7 @@ bool scatter_more_than_noise(const analysis::RepeatedQuantity& delays) {
 
 } // namespace
 
-double u_delay_of_sweeps(std::span<const SweepPhase> phases) {
+analysis::CombinedUncertainty u_delay_of_sweeps(std::span<const SweepPhase> phases) {
   PhasesOfSweeps sweeps;
   for (const SweepPhase& phase : phases) {
     if (phase.u_phase_rad > 0.0) {
@@ -63,15 +63,17 @@ double u_delay_of_sweeps(std::span<const SweepPhase> phases) {
   }
   const analysis::RepeatedQuantity delays = delays_of(sweeps);
   if (delays.u.size() < 2 || !scatter_more_than_noise(delays)) {
-    return 0.0;
+    return {};
   }
   const auto mean = analysis::errors_of_means(std::span(&delays, 1));
-  const double half = 0.5 * analysis::combine(mean.front(), 0.0).expanded();
+  analysis::CombinedUncertainty result = analysis::combine(mean.front(), 0.0);
+  const double half = 0.5 * result.expanded();
   double noise = 0.0; // of the mean, squared
   for (const double u : delays.u) {
     noise += u * u / std::pow(static_cast<double>(delays.u.size()), 2);
   }
-  return std::sqrt(std::max(0.0, half * half - noise));
+  result.u = 2.0 / result.k * std::sqrt(std::max(0.0, half * half - noise));
+  return result;
 }
 
 } // namespace dyncal::inline evaluation

@@ -5,13 +5,15 @@
 //   psi_rf - mean over r = c_r - 2 pi f d_r + e_rf      e_rf ~ N(0, u_rf^2) known
 //
 // d_r is fitted for each sweep r, beside a phase c_r of its own. Where the scatter of d_r is more
-// than noise makes once in twenty times, the result is the standard uncertainty (U / 2, from as
-// many sweeps as there are: uncertainty/random_effects.hpp) of the mean of d_r, less what e_rf adds
-// to it, which the regression of the group delay has already; else 0. Plain function, any thread.
+// than noise makes once in twenty times, the result is the uncertainty (from as many sweeps as
+// there are: uncertainty/random_effects.hpp) of the mean of d_r, less what e_rf adds to it, which
+// the regression of the group delay has already; else 0. Plain function, any thread.
 #pragma once
 
 #include <cstdint>
 #include <span>
+
+#include "analysis/uncertainty/coverage.hpp"
 
 namespace dyncal::inline evaluation {
 
@@ -23,6 +25,6 @@ struct SweepPhase { // of one repetition at one frequency
 };
 
 // In seconds.
-[[nodiscard]] double u_delay_of_sweeps(std::span<const SweepPhase> phases);
+[[nodiscard]] analysis::CombinedUncertainty u_delay_of_sweeps(std::span<const SweepPhase> phases);
 
 } // namespace dyncal::inline evaluation

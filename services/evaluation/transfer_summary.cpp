@@ -1,6 +1,7 @@
 #include "services/evaluation/transfer_summary.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <iterator>
@@ -118,6 +119,43 @@ std::vector<SweepPhase> phases_of_sweeps(const std::vector<FrequencyPoint>& poin
   return phases;
 }
 
+// Of U / 2, from a part with its degrees of freedom and one that is known.
+analysis::KnownTo known_to(double half_expanded, const analysis::UncertaintyPart& part,
+                           double known) {
+  const std::array parts{part, analysis::UncertaintyPart{known}};
+  const double u = std::hypot(part.u, known);
+  return u > 0.0 ? analysis::KnownTo{2.0 * half_expanded / u,
+                                     analysis::effective_degrees_of_freedom(parts)}
+                 : analysis::KnownTo{};
+}
+
+void add_delay_of_sweeps(const analysis::CombinedUncertainty& sweeps,
+                         analysis::CommonPhaseUncertainty& common) {
+  const double known_s = common.delay_s;
+  common.delay_s = std::hypot(known_s, 0.5 * sweeps.expanded());
+  common.delay_known = known_to(common.delay_s, {sweeps.u, sweeps.degrees_of_freedom}, known_s);
+}
+
+// What differs from frequency to frequency, k = 1: of a mean that was repeated by its scatter, of a
+// single step by the rows of its budget that are drawn anew.
+analysis::UncertaintyPart independent_phase(const analysis::RepetitionMean& mean,
+                                            const std::vector<analysis::Contribution>& budget) {
+  analysis::UncertaintyPart part{mean.u_independent_phase_rad};
+  if (mean.repetitions > 1) {
+    const analysis::CombinedUncertainty& scatter = mean.independent_phase;
+    const bool is_weak = part.u != 0.5 * scatter.expanded(); // as repetitions.hpp has it
+    return is_weak ? part : analysis::UncertaintyPart{scatter.u, scatter.degrees_of_freedom};
+  }
+  std::vector<analysis::UncertaintyPart> rows;
+  for (const analysis::Contribution& row : budget) {
+    if (row.repeats == analysis::Repeats::anew) {
+      rows.push_back({row.u_phase_rad, row.degrees_of_freedom});
+    }
+  }
+  part.degrees_of_freedom = analysis::effective_degrees_of_freedom(rows);
+  return part;
+}
+
 } // namespace
 
 void TransferSummary::add(const StepResult& result) {
@@ -134,13 +172,15 @@ void TransferSummary::add_group_delay(const std::vector<const StepResult*>& resu
   std::transform(chosen.begin(), chosen.end(), std::back_inserter(budgets),
                  [&](std::size_t i) { return budget_of(function.points[i], results); });
   SharedPhaseUncertainty shared = shared_phase_uncertainty(budgets);
-  shared.common.delay_s = std::hypot(
-      shared.common.delay_s, u_delay_of_sweeps(phases_of_sweeps(function.points, chosen, results)));
+  add_delay_of_sweeps(u_delay_of_sweeps(phases_of_sweeps(function.points, chosen, results)),
+                      shared.common);
   std::vector<analysis::PhasePoint> phases;
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     const FrequencyPoint& point = function.points[chosen[i]];
-    phases.push_back({point.frequency_hz, point.mean.phase_rad,
-                      std::hypot(point.mean.u_independent_phase_rad, shared.beyond_rad[i])});
+    const double u = std::hypot(point.mean.u_independent_phase_rad, shared.beyond_rad[i]);
+    phases.push_back(
+        {point.frequency_hz, point.mean.phase_rad, u,
+         known_to(u, independent_phase(point.mean, budgets[i].budget), shared.beyond_rad[i])});
   }
   auto delay = analysis::evaluate_group_delay(phases, shared.common);
   if (!delay) {
@@ -157,7 +197,7 @@ void TransferSummary::add_group_delay(const std::vector<const StepResult*>& resu
   if (is_opposite && !opposite_repetitions(function.points)) {
     function.flags.push_back(make_flag(ResultFlag::polarity_inverted));
   }
-  if (delay->delay_s < -before_excitation * delay->u_delay_s) {
+  if (delay->delay_s < -before_excitation * delay->u_delay_s()) {
     function.flags.push_back(make_flag(ResultFlag::answers_before_excitation));
   }
   for (std::size_t i = 0; i < chosen.size(); ++i) {

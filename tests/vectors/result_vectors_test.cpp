@@ -176,8 +176,8 @@ TEST(ResultVectors, GroupDelayOfWrappedPhases) {
   const Json& answer = vector["answer"];
   EXPECT_NEAR(delay->delay_s, number(answer["delay_s"]), 1e-16);
   EXPECT_NEAR(delay->intercept_rad, number(answer["intercept_rad"]), 1e-12);
-  EXPECT_NEAR(delay->u_delay_s / number(answer["u_delay_s"]), 1.0, 1e-9);
-  EXPECT_NEAR(delay->u_intercept_rad / number(answer["u_intercept_rad"]), 1.0, 1e-9);
+  EXPECT_NEAR(delay->u_delay_s() / number(answer["u_delay_s"]), 1.0, 1e-9);
+  EXPECT_NEAR(delay->u_intercept_rad() / number(answer["u_intercept_rad"]), 1.0, 1e-9);
   EXPECT_NEAR(delay->chi_squared / number(answer["chi_squared"]), 1.0, 1e-7);
   for (std::size_t i = 0; i < points.size(); ++i) {
     EXPECT_EQ(

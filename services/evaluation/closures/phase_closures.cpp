@@ -74,10 +74,10 @@ Closure at_zero(const ChannelRun& run, const analysis::GroupDelay& delay, bool i
     return not_possible(kind, "", "the phases are not on a line that could be followed to 0 Hz");
   }
   const double off = from_expected(run.recipe.dut_phase, delay.intercept_rad);
-  const double limit = limit_by_chance(1) * delay.u_intercept_rad;
-  return judged(kind, "", off, delay.u_intercept_rad, limit, "rad",
+  const double limit = limit_by_chance(1) * delay.u_intercept_rad();
+  return judged(kind, "", off, delay.u_intercept_rad(), limit, "rad",
                 fmt::format("towards 0 Hz the phase tends to {:.4g} degrees (u {:.2g}){}",
-                            degrees_of(delay.intercept_rad), degrees_of(delay.u_intercept_rad),
+                            degrees_of(delay.intercept_rad), degrees_of(delay.u_intercept_rad()),
                             std::abs(off) > limit
                                 ? fmt::format(", where {} is expected: look at polarities, "
                                               "couplings and high-pass filters, and at the "

@@ -2,8 +2,9 @@
 // paper eq. (6), taken together.
 //
 // Mean weighted by their uncertainties; where they scatter by more than these say, its uncertainty
-// is what the scatter says (Birge). The clock of the ACS, in which all of them were measured, is
-// common to them. Any thread.
+// is what the scatter says (Birge), with n - 1 degrees of freedom from where chance does so once in
+// twenty times on. The clock of the ACS, in which all of them were measured, is common to them. Any
+// thread.
 #pragma once
 
 #include <span>

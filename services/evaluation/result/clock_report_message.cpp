@@ -75,6 +75,8 @@ void message_members(auto& visit, Either<analysis::SampleClockStatistics> auto& 
   visit(clock.temperature_slope_s_per_degc, report.temperature_slope_s_per_degc());
   visit(clock.allan, report.allan());
   visit(clock.lost, report.lost());
+  visit(clock.degrees_of_freedom_mean_interval, report.nu_eff_mean_interval());
+  visit(clock.k_mean_interval, report.k_mean_interval());
 }
 
 wire::SampleClockReport to_message(const Recipe& recipe, const ClockReport& report) {
@@ -99,6 +101,10 @@ ClockReport from_message(const wire::SampleClockReport& message) {
   MessageReader reader;
   message_members(reader, report.clock, message);
   report.clock.quantile_50_s = report.clock.median_s;
+  if (report.clock.k_mean_interval == 0.0) { // of an older writer
+    report.clock.k_mean_interval = 2.0;
+    report.clock.degrees_of_freedom_mean_interval = analysis::infinite_degrees_of_freedom;
+  }
   message_flags(reader, report.flags, message);
   if (message.last_session() != 0) {
     report.last_block = BlockPosition{message.last_session(), message.last_block()};

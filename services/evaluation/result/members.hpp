@@ -101,16 +101,22 @@ void members(auto& visit, Either<Closure> auto& one) {
 
 void members(auto& visit, Either<analysis::GroupDelay> auto& one) {
   visit("value_s", one.delay_s);
-  visit("u_s", one.u_delay_s);
+  visit("u_s", one.of_delay.u);
   visit("intercept_rad", one.intercept_rad);
   visit.derived("intercept_deg", degrees_of(one.intercept_rad));
-  visit("u_intercept_rad", one.u_intercept_rad);
-  visit.derived("u_intercept_deg", degrees_of(one.u_intercept_rad));
+  visit("u_intercept_rad", one.of_intercept.u);
+  visit.derived("u_intercept_deg", degrees_of(one.of_intercept.u));
   visit("cov_delay_intercept_rad_s", one.cov_delay_intercept);
   visit("phase_covariance_rad2", one.phase_covariance);
   visit("chi_squared", one.chi_squared);
   visit("degrees_of_freedom", one.degrees_of_freedom);
   visit("polarity_inverted", one.polarity_inverted);
+  visit("k", one.of_delay.k);
+  visit.infinite("nu_eff", one.of_delay.degrees_of_freedom);
+  visit.derived("U_s", one.of_delay.expanded());
+  visit("k_intercept", one.of_intercept.k);
+  visit.infinite("nu_eff_intercept", one.of_intercept.degrees_of_freedom);
+  visit.derived("U_intercept_rad", one.of_intercept.expanded());
 }
 
 void members(auto& visit, Either<analysis::IntervalEvent> auto& one) {
@@ -152,6 +158,12 @@ void members(auto& visit, Either<ClockReport> auto& one) {
   visit("temperature_slope_s_per_degc", clock.temperature_slope_s_per_degc);
   visit("lost", clock.lost);
   visit.flags(one.flags);
+  visit("k", clock.k_mean_interval);
+  visit.infinite("nu_eff", clock.degrees_of_freedom_mean_interval);
+  visit.derived("U_mean_interval_s", clock.of_mean_interval().expanded());
+  visit.derived("rate_deviation_rel", clock.rate_deviation_rel());
+  visit.derived("u_rate_deviation_rel", clock.of_rate_deviation().u);
+  visit.derived("U_rate_deviation_rel", clock.of_rate_deviation().expanded());
 }
 
 void members(auto& visit, Either<drivers::ChannelDescription> auto& one) {

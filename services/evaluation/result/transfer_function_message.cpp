@@ -58,9 +58,13 @@ void message_members(auto& visit, Either<TransferFunction> auto& function, auto&
   visit(function.points, message.points());
   if (auto* delay = visit.present(function.group_delay, message.group_delay_valid())) {
     visit(delay->delay_s, message.group_delay_s());
-    visit(delay->u_delay_s, message.u_group_delay_s());
+    visit(delay->of_delay.u, message.combined_u_group_delay_s());
+    visit(delay->of_delay.degrees_of_freedom, message.nu_eff_group_delay());
+    visit(delay->of_delay.k, message.k_group_delay());
     visit(delay->intercept_rad, message.intercept_rad());
-    visit(delay->u_intercept_rad, message.u_intercept_rad());
+    visit(delay->of_intercept.u, message.combined_u_intercept_rad());
+    visit(delay->of_intercept.degrees_of_freedom, message.nu_eff_intercept());
+    visit(delay->of_intercept.k, message.k_intercept());
     visit(delay->cov_delay_intercept, message.cov_delay_intercept_rad_s());
     visit(delay->phase_covariance, message.phase_covariance_rad2());
     visit(delay->polarity_inverted, message.polarity_inverted());
@@ -72,6 +76,17 @@ void message_members(auto& visit, Either<TransferFunction> auto& function, auto&
   visit(function.lost, message.lost());
 }
 
+namespace {
+
+// As a writer of an older contract has it: U / 2 alone.
+void take_half_expanded(double half_expanded, analysis::CombinedUncertainty& uncertainty) {
+  if (uncertainty.k == 0.0) {
+    uncertainty = {.u = half_expanded};
+  }
+}
+
+} // namespace
+
 wire::TransferFunction to_message(const Recipe& recipe, const TransferFunction& function) {
   wire::TransferFunction message;
   MessageWriter writer;
@@ -82,6 +97,10 @@ wire::TransferFunction to_message(const Recipe& recipe, const TransferFunction& 
   for (const Closure& closure : function.closures) {
     message_members(writer, closure, message.closures().emplace_back());
     message.closures().back().kind(std::string(to_string(closure.kind)));
+  }
+  if (function.group_delay) {
+    message.u_group_delay_s(function.group_delay->u_delay_s());
+    message.u_intercept_rad(function.group_delay->u_intercept_rad());
   }
   message.bench(recipe.bench);
   message.run(recipe.run);
@@ -95,6 +114,10 @@ TransferFunction from_message(const wire::TransferFunction& message) {
   TransferFunction function;
   MessageReader reader;
   message_members(reader, function, message);
+  if (function.group_delay) {
+    take_half_expanded(message.u_group_delay_s(), function.group_delay->of_delay);
+    take_half_expanded(message.u_intercept_rad(), function.group_delay->of_intercept);
+  }
   for (std::size_t i = 0; i < function.points.size(); ++i) {
     analysis::RepetitionMean& mean = function.points[i].mean;
     mean.h = std::polar(mean.magnitude, mean.phase_rad);

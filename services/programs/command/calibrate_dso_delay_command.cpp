@@ -27,6 +27,8 @@
 #include "services/base/printable_text.hpp"
 #include "services/programs/command/command.hpp"
 #include "services/run/output_guard.hpp"
+#include "services/views/report/expanded_uncertainty.hpp"
+#include "services/views/report/json_number.hpp"
 
 namespace dyncal::inline programs {
 namespace {
@@ -205,8 +207,9 @@ void print(const CalibrateDsoDelayOptions& command, const Delays& delays) {
   fmt::print("{}\nby {} at {} Hz, {} shots ({} failed)\n", one_line(delays.instrument), command.by,
              command.frequency_hz, delay.shots, delays.failures);
   fmt::print(
-      "delay of the trigger output   {:10.3f} ns   u {:.3f} ns   scatter of one shot {:.3f} ns\n",
-      1e9 * delay.delay_s, 1e9 * delay.u_delay_s, 1e9 * delay.scatter_s);
+      "delay of the trigger output   {:10.3f} ns   u {:.3f} ns{}   scatter of one shot {:.3f} ns\n",
+      1e9 * delay.delay_s, 1e9 * delay.of_delay.u, notable_k_text(delay.of_delay.k),
+      1e9 * delay.scatter_s);
   if (command.by == "sine") {
     fmt::print("from the zero crossing        {:10.3f} ns   scatter of one shot {:.3f} ns (trigger "
                "noise included)\n",
@@ -233,7 +236,10 @@ Expected<void> write(const CalibrateDsoDelayOptions& command, const Delays& dela
       {"shots", delay.shots},
       {"failed_shots", delays.failures},
       {"value_s", delay.delay_s},
-      {"u_s", delay.u_delay_s},
+      {"u_s", delay.of_delay.u},
+      {"k", delay.of_delay.k},
+      {"nu_eff", json_number(delay.of_delay.degrees_of_freedom)},
+      {"U_s", delay.of_delay.expanded()},
       {"scatter_s", delay.scatter_s},
       {"from_zero_crossing_s", delay.from_zero_crossing_s},
       {"scatter_from_zero_crossing_s", delay.scatter_from_zero_crossing_s},

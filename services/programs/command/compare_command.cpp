@@ -2,8 +2,8 @@
 // phase at every frequency that both have.
 //
 // Compares the transfer functions (means over repetitions) of two result files of dyncal; |E_n| <=
-// 1 at k = 2 means that they agree. What both have in common, such as the reference, can be taken
-// out of the uncertainties of the difference by its relative standard uncertainty
+// 1, each U at its own k, means that they agree. What both have in common, such as the reference,
+// can be taken out of the uncertainties of the difference by its relative standard uncertainty
 // (--common-magnitude, --common-phase); without that E_n is too kind to two results that share a
 // reference. Prints a table, or JSON. Exit status 1 and one line when a file is not a result or the
 // two have nothing in common. Belongs to one thread.
@@ -161,7 +161,7 @@ void print_table(const std::vector<ComparedPoint>& points) {
                phase_difference_rad(point), point.comparison.en_phase,
                agrees(point) ? "" : "  disagree");
   }
-  fmt::print("\n{} of {} points agree (|E_n| <= 1 in magnitude and phase, k = 2)\n",
+  fmt::print("\n{} of {} points agree (|E_n| <= 1 in magnitude and phase, each U at its own k)\n",
              std::count_if(points.begin(), points.end(), agrees), points.size());
 }
 

@@ -140,7 +140,8 @@ void print_line(const HistoryLine& line, const History& history) {
 }
 
 void print_tables(const History& history) {
-  fmt::print("{}: {} calibrations, deviations from the first, E_n against the one before (k = 2)\n",
+  fmt::print("{}: {} calibrations, deviations from the first, E_n against the one before, each U "
+             "at its own k\n",
              one_line(history.sensor), history.calibrations.size());
   std::size_t compared = 0;
   std::size_t agreeing = 0;

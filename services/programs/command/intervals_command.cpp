@@ -9,9 +9,11 @@
 
 #include "analysis/clock/sample_clock.hpp"
 #include "services/base/json_text.hpp"
+#include "services/base/rounding.hpp"
 #include "services/programs/command/command.hpp"
 #include "services/programs/command/work_progress.hpp"
 #include "services/records/replay/series_file.hpp"
+#include "services/views/report/expanded_uncertainty.hpp"
 #include "services/views/report/json_members.hpp"
 
 namespace dyncal::inline programs {
@@ -80,14 +82,27 @@ void print_json(const analysis::SampleClockStatistics& clock) {
   fmt::print("{}\n", json_text(json, 1));
 }
 
-std::string u_text(double u_mean_interval_s) {
-  return std::isfinite(u_mean_interval_s) ? fmt::format("u = {:.2g} us", u_mean_interval_s * 1e6)
-                                          : "u not known";
+std::string u_text(const analysis::CombinedUncertainty& of_interval) {
+  return std::isfinite(of_interval.u)
+             ? fmt::format("u = {:.2g} us{}", of_interval.u * 1e6, notable_k_text(of_interval.k))
+             : "u not known";
+}
+
+std::string deviation_text(const analysis::SampleClockStatistics& clock) {
+  if (!(clock.nominal_rate_hz > 0.0)) {
+    return "";
+  }
+  const RoundedValue ppm =
+      round_by_uncertainty(1e6 * clock.rate_deviation_rel(), 1e6 * clock.of_rate_deviation().u);
+  return std::isfinite(clock.u_mean_interval_s)
+             ? fmt::format(", {} ppm of nominal, u = {} ppm", ppm.value, ppm.u)
+             : fmt::format(", {} ppm of nominal", ppm.value);
 }
 
 void print_table(const analysis::SampleClockStatistics& clock) {
-  fmt::print("{} intervals, mean {:.6f} us, {}, rate {:.6f} Hz\n", clock.intervals,
-             clock.mean_interval_s * 1e6, u_text(clock.u_mean_interval_s), clock.mean_rate_hz);
+  fmt::print("{} intervals, mean {:.6f} us, {}, rate {:.6f} Hz{}\n", clock.intervals,
+             clock.mean_interval_s * 1e6, u_text(clock.of_mean_interval()), clock.mean_rate_hz,
+             deviation_text(clock));
   fmt::print("sd {:.2f} ns, robust sd {:.2f} ns, smallest {:.3f} us, median {:.3f} us, largest "
              "{:.3f} us, spread {:.0f} ns\n",
              clock.sd_s * 1e9, clock.mad_sd_s * 1e9, clock.minimum_s * 1e6, clock.median_s * 1e6,

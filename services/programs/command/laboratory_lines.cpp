@@ -7,6 +7,7 @@
 #include "services/base/rounding.hpp"
 #include "services/evaluation/result/result_flag.hpp"
 #include "services/programs/command/harmless_text.hpp"
+#include "services/views/report/expanded_uncertainty.hpp"
 
 namespace dyncal::inline programs {
 namespace {
@@ -62,17 +63,19 @@ std::string function_line(const std::string& place, const TransferFunction& func
     return fmt::format("{}: no group delay: {}{}", head, function.group_delay_problem, flags);
   }
   const RoundedValue ms = round_by_uncertainty(function.group_delay->delay_s * 1e3,
-                                               function.group_delay->u_delay_s * 1e3);
-  return fmt::format("{}: group delay {} ms (u {}){}", head, ms.value, ms.u, flags);
+                                               function.group_delay->of_delay.u * 1e3);
+  return fmt::format("{}: group delay {} ms (u {}{}){}", head, ms.value, ms.u,
+                     notable_k_text(function.group_delay->of_delay.k), flags);
 }
 
 std::string clock_line(const std::string& place, const ClockReport& report, Lines& lines) {
   const double rate_hz = report.clock.mean_rate_hz;
-  const double u_hz = report.clock.u_mean_interval_s * rate_hz * rate_hz;
+  const double u_hz = report.clock.of_mean_rate().u;
   const RoundedValue hz = round_by_uncertainty(rate_hz, u_hz);
-  return fmt::format("{}: sample clock of {}: {} Hz (u {}), {} lost{}", place, report.source,
-                     hz.value, std::isnan(u_hz) ? "not known" : hz.u, report.clock.lost,
-                     flags_text(report.flags, lines));
+  return fmt::format(
+      "{}: sample clock of {}: {} Hz (u {}), {} lost{}", place, report.source, hz.value,
+      std::isnan(u_hz) ? "not known" : hz.u + notable_k_text(report.clock.k_mean_interval),
+      report.clock.lost, flags_text(report.flags, lines));
 }
 
 void add_run(const network::Bench& bench, const network::Run& run, Lines& lines) {

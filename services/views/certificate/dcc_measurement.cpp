@@ -194,14 +194,11 @@ void add_said(XmlElement list, std::string_view type, std::string_view name,
 
 std::string clock_text(const ClockReport& report) {
   const double rate_hz = report.clock.mean_rate_hz;
-  const double interval_s = report.clock.mean_interval_s;
   const double u_interval_s = report.clock.u_mean_interval_s;
   const std::string head = fmt::format("Source '{}': ", report.source);
-  if (std::isfinite(u_interval_s) && u_interval_s > 0.0 && interval_s > 0.0) {
-    const RoundedValue rounded =
-        round_by_uncertainty(rate_hz, 2.0 * rate_hz * u_interval_s / interval_s);
-    return fmt::format("{}mean sample rate {} Hz, U = {} Hz (k = 2).", head, rounded.value,
-                       rounded.u);
+  if (std::isfinite(u_interval_s) && u_interval_s > 0.0 && report.clock.mean_interval_s > 0.0) {
+    return fmt::format("{}mean sample rate {}.", head,
+                       stated_text(rate_hz, report.clock.of_mean_rate(), "Hz"));
   }
   return fmt::format("{}mean sample rate {:.6g} Hz, for information: nothing is known of the "
                      "uncertainty of the clock that it was compared with.",

@@ -134,11 +134,11 @@ std::string delay_sentence(const StoredResult& result, const std::string& channe
   if (delay == nullptr) {
     return "";
   }
-  const RoundedValue rounded =
-      round_by_uncertainty(1e6 * delay->delay_s, 1e6 * 2.0 * delay->u_delay_s);
+  analysis::CombinedUncertainty of_delay_us = delay->of_delay;
+  of_delay_us.u *= 1e6;
   return element("p", fmt::format("Group delay over all frequencies (from the slope of the phase): "
-                                  "{} us, U = {} us (k = 2).",
-                                  rounded.value, rounded.u));
+                                  "{}.",
+                                  stated_text(1e6 * delay->delay_s, of_delay_us, "us")));
 }
 
 // The first valid result of every frequency: its budget stands for the others.

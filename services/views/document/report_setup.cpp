@@ -79,16 +79,17 @@ std::string microseconds(double seconds, int decimals) {
 std::string clock_facts(const analysis::SampleClockStatistics& clock) {
   const double u_interval_s = clock.u_mean_interval_s;
   DefinitionTable table;
-  table.add("Mean sample rate",
-            std::isfinite(u_interval_s) && u_interval_s > 0.0 && clock.mean_interval_s > 0.0
-                ? [&] {
-                    const RoundedValue rounded = round_by_uncertainty(
-                        clock.mean_rate_hz,
-                        2.0 * clock.mean_rate_hz * u_interval_s / clock.mean_interval_s);
-                    return fmt::format("{} Hz, U = {} Hz (k = 2)", rounded.value, rounded.u);
-                  }()
-                : fmt::format("{:.6g} Hz (nothing is known of its uncertainty)",
-                              clock.mean_rate_hz));
+  table.add(
+      "Mean sample rate",
+      std::isfinite(u_interval_s) && u_interval_s > 0.0 && clock.mean_interval_s > 0.0
+          ? stated_text(clock.mean_rate_hz, clock.of_mean_rate(), "Hz")
+          : fmt::format("{:.6g} Hz (nothing is known of its uncertainty)", clock.mean_rate_hz));
+  if (clock.nominal_rate_hz > 0.0 && std::isfinite(u_interval_s) && u_interval_s > 0.0) {
+    analysis::CombinedUncertainty of_deviation_ppm = clock.of_rate_deviation();
+    of_deviation_ppm.u *= 1e6;
+    table.add("Deviation from the nominal rate",
+              stated_text(1e6 * clock.rate_deviation_rel(), of_deviation_ppm, "ppm"));
+  }
   table.add("Sample intervals", std::to_string(clock.intervals));
   table.add("Median, smallest, largest",
             fmt::format("{}, {}, {}", microseconds(clock.median_s, 3),

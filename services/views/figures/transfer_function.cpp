@@ -135,8 +135,11 @@ std::string csv_of(const TransferFunctionData& data) {
                                  unit));
   if (data.group_delay) {
     csv += csv_comment(fmt::format(
-        "group delay {} s, u {} s, intercept {} rad", csv_number(data.group_delay->delay_s),
-        csv_number(data.group_delay->u_delay_s), csv_number(data.group_delay->intercept_rad)));
+        "group delay {} s, u {} s, intercept {} rad, U of the delay {} s, k {}, nu_eff {}",
+        csv_number(data.group_delay->delay_s), csv_number(data.group_delay->of_delay.u),
+        csv_number(data.group_delay->intercept_rad),
+        csv_number(data.group_delay->of_delay.expanded()), csv_number(data.group_delay->of_delay.k),
+        csv_number(data.group_delay->of_delay.degrees_of_freedom)));
   }
   if (!data.subtitle.empty()) {
     csv += csv_comment(data.subtitle);

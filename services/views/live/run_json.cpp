@@ -62,8 +62,10 @@ Json channels_json(const StoredResult& result) {
     channels.push_back(JsonWriter::of(channel));
     channels.back()["advice"] = advice_on_repetitions(result.values_of(channel.channel));
     if (const analysis::GroupDelay* delay = result.group_delay_of(channel.channel)) {
+      analysis::CombinedUncertainty of_delay_ms = delay->of_delay;
+      of_delay_ms.u *= 1e3;
       channels.back()["text"] = {
-          {"group_delay_ms", rounded_json(1e3 * delay->delay_s, 1e3 * delay->u_delay_s)}};
+          {"group_delay_ms", rounded_json(1e3 * delay->delay_s, of_delay_ms)}};
     }
   }
   return channels;
@@ -73,9 +75,10 @@ Json clocks_json(const StoredResult& result) {
   Json clocks = Json::array();
   for (const ClockReport& report : result.clocks) {
     clocks.push_back(JsonWriter::of(report));
+    analysis::CombinedUncertainty of_interval_us = report.clock.of_mean_interval();
+    of_interval_us.u *= 1e6;
     clocks.back()["text"] = {
-        {"mean_interval_us",
-         rounded_json(1e6 * report.clock.mean_interval_s, 1e6 * report.clock.u_mean_interval_s)}};
+        {"mean_interval_us", rounded_json(1e6 * report.clock.mean_interval_s, of_interval_us)}};
   }
   return clocks;
 }

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <vector>
 
+#include <fmt/core.h>
+
 #include "analysis/uncertainty/coverage.hpp"
 
 namespace dyncal::inline views {
@@ -47,6 +49,10 @@ ExpandedUncertainty magnitude_uncertainty(const analysis::RepetitionMean& mean) 
 
 ExpandedUncertainty phase_uncertainty(const analysis::RepetitionMean& mean) {
   return of_mean(mean.u_phase_rad, mean.phase);
+}
+
+std::string notable_k_text(double k) {
+  return k > notable_k ? fmt::format(", k = {:.2f}", k) : "";
 }
 
 std::string advice_on_repetitions(double largest_k) {

@@ -21,10 +21,16 @@ struct ExpandedUncertainty {
   double expanded = 0.0; // U
 };
 
+// Above it, a table of standard uncertainties names k.
+inline constexpr double notable_k = 2.05;
+
 [[nodiscard]] ExpandedUncertainty magnitude_uncertainty(const StepResult& result);
 [[nodiscard]] ExpandedUncertainty phase_uncertainty(const StepResult& result);
 [[nodiscard]] ExpandedUncertainty magnitude_uncertainty(const analysis::RepetitionMean& mean);
 [[nodiscard]] ExpandedUncertainty phase_uncertainty(const analysis::RepetitionMean& mean);
+
+// ", k = 2.87" behind a standard uncertainty, where 2 u would not cover; else nothing.
+[[nodiscard]] std::string notable_k_text(double k);
 
 // Of means whose largest coverage factor is `largest_k`: one sentence on what makes it large, and
 // what to do; empty where it is not. The same words in table, page, report and certificate.

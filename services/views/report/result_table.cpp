@@ -54,7 +54,6 @@ Row point_row(const FrequencyPoint& point, const std::vector<Flag>& flags) {
 
 // u is that of k = 1: from few repetitions, U needs more than 2 u.
 std::string coverage_line(const TransferFunction& function) {
-  constexpr double notable_k = 2.05;
   double max_magnitude = 0.0;
   double max_phase = 0.0;
   for (const FrequencyPoint& point : function.points) {
@@ -73,10 +72,11 @@ std::string coverage_line(const TransferFunction& function) {
 std::string group_delay_line(const TransferFunction& function) {
   if (function.group_delay) {
     const analysis::GroupDelay& delay = *function.group_delay;
-    const RoundedValue ms = round_by_uncertainty(delay.delay_s * 1e3, delay.u_delay_s * 1e3);
-    const RoundedValue intercept = round_by_uncertainty(delay.intercept_rad, delay.u_intercept_rad);
-    return fmt::format("  group delay {} ms, u = {} ms; intercept {} rad, u = {} rad\n", ms.value,
-                       ms.u, intercept.value, intercept.u);
+    const RoundedValue ms = round_by_uncertainty(delay.delay_s * 1e3, delay.of_delay.u * 1e3);
+    const RoundedValue intercept = round_by_uncertainty(delay.intercept_rad, delay.of_intercept.u);
+    return fmt::format("  group delay {} ms, u = {} ms{}; intercept {} rad, u = {} rad{}\n",
+                       ms.value, ms.u, notable_k_text(delay.of_delay.k), intercept.value,
+                       intercept.u, notable_k_text(delay.of_intercept.k));
   }
   return function.group_delay_problem.empty()
              ? ""
@@ -134,12 +134,11 @@ std::string series_clock_line(const RunOutcome& outcome, const ClockReport& repo
     }
   }
   const analysis::SampleClockStatistics& clock = report.clock;
-  const double u_rate_hz = clock.u_mean_interval_s * clock.mean_rate_hz * clock.mean_rate_hz;
-  const RoundedValue rate = round_by_uncertainty(clock.mean_rate_hz, u_rate_hz);
+  const RoundedValue rate = round_by_uncertainty(clock.mean_rate_hz, clock.of_mean_rate().u);
   return fmt::format(
-      "\nSample rate of {}: {} Hz, u = {} Hz, nominal {:g} Hz; its series start {}\n",
-      one_line(report.source), rate.value, rate.u, clock.nominal_rate_hz,
-      one_line(fmt::format("{}", fmt::join(starts, " or "))));
+      "\nSample rate of {}: {} Hz, u = {} Hz{}, nominal {:g} Hz; its series start {}\n",
+      one_line(report.source), rate.value, rate.u, notable_k_text(clock.k_mean_interval),
+      clock.nominal_rate_hz, one_line(fmt::format("{}", fmt::join(starts, " or "))));
 }
 
 std::string clock_line(const ClockReport& report) {
@@ -151,7 +150,8 @@ std::string clock_line(const ClockReport& report) {
                      "{:.0f} ns, {} intervals, {} events, {} samples lost{}{}\n",
                      one_line(report.source),
                      clock.u_mean_interval_s > 0.0
-                         ? fmt::format("{} us, u = {}", mean.value, mean.u)
+                         ? fmt::format("{} us, u = {}{}", mean.value, mean.u,
+                                       notable_k_text(clock.k_mean_interval))
                          : fmt::format("{:.5f}", clock.mean_interval_s * 1e6),
                      clock.sd_s * 1e9, (clock.maximum_s - clock.minimum_s) * 1e9, clock.intervals,
                      clock.event_count, clock.lost, flags.empty() ? "" : "; ",

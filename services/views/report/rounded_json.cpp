@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include <fmt/core.h>
+
 #include "services/base/rounding.hpp"
 
 namespace dyncal::inline views {
@@ -18,6 +20,15 @@ Json texts(const RoundedValue& rounded, double value, double u) {
 
 nlohmann::ordered_json rounded_json(double value, double u) {
   return texts(round_by_uncertainty(value, u), value, u);
+}
+
+nlohmann::ordered_json rounded_json(double value, const analysis::CombinedUncertainty& of_value) {
+  const RoundedValue rounded = round_by_uncertainty(value, of_value.expanded());
+  Json json = texts(rounded, value, of_value.u);
+  json["u"] = std::isfinite(of_value.u) ? Json(rounded_uncertainty(of_value.u)) : Json(nullptr);
+  json["U"] = std::isfinite(of_value.u) ? Json(rounded.u) : Json(nullptr);
+  json["k"] = fmt::format("{:.2f}", of_value.k);
+  return json;
 }
 
 nlohmann::ordered_json rounded_json(double magnitude, double u_magnitude, double phase_rad,

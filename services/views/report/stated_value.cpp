@@ -53,6 +53,13 @@ StatedValue stated_phase_deg(const StoredValue& value) {
   return stated(rounded_phase(value).degrees, value.of_phase);
 }
 
+std::string stated_text(double value, const analysis::CombinedUncertainty& of_value,
+                        const std::string& unit) {
+  const RoundedValue rounded = round_by_uncertainty(value, of_value.expanded());
+  return fmt::format("{} {}, U = {} {} (k = {:.2f})", rounded.value, unit, rounded.u, unit,
+                     of_value.k);
+}
+
 bool can_be_stated(const StoredValue& value) {
   return is_usable(value.magnitude, value.of_magnitude) &&
          is_usable(value.phase_rad, value.of_phase) && value.coverage_probability > 0.0 &&

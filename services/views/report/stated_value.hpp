@@ -24,6 +24,9 @@ struct StatedValue {
 [[nodiscard]] StatedValue stated_magnitude(const StoredValue& value);
 [[nodiscard]] StatedValue stated_phase_rad(const StoredValue& value);
 [[nodiscard]] StatedValue stated_phase_deg(const StoredValue& value);
+// A derived number, as a group delay or a rate: "8.100 ms, U = 0.012 ms (k = 2.00)".
+[[nodiscard]] std::string stated_text(double value, const analysis::CombinedUncertainty& of_value,
+                                      const std::string& unit);
 // Value and U are finite, and U and k are above 0: without these there is nothing to state.
 [[nodiscard]] bool can_be_stated(const StoredValue& value);
 

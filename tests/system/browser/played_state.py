@@ -111,7 +111,8 @@ def transfer(points):
 def channel():
     return {"channel": CHANNEL, "unit": "\\one", "responds": True, "lost": 12, "flags": [],
             "flag_names": [], "advice": "Repeat more often.",
-            "text": {"group_delay_ms": {"value": "1.7003", "u": "0.0012"}}}
+            "text": {"group_delay_ms": {"value": "1.7003", "u": "0.0012", "U": "0.0024",
+                                        "k": "2.00"}}}
 
 
 def clock_report():
@@ -127,7 +128,8 @@ def clock_report():
             "mean_rate_hz": 999.99688, "nominal_rate_hz": 1000.0, "tick_s": 1.67e-8,
             "event_count": 3, "lost": 12, "flags": [], "flag_names": [], "histogram": histogram,
             "over_time": course,
-            "text": {"mean_interval_us": {"value": "1000.00312", "u": "0.00021"}}}
+            "text": {"mean_interval_us": {"value": "1000.00312", "u": "0.00021",
+                                          "U": "0.00042", "k": "2.00"}}}
 
 
 def sources(last_message_ms):

@@ -125,7 +125,7 @@ class Views(PageCase):
                                                 "U_phase_rad")])
         self.assertEqual(page.value(text_of("[data-field=advice]")), "Repeat more often.")
         self.assertEqual(page.value(text_of("[data-field=group_delay]")),
-                         "Group delay 1.7003 ms (u 0.0012 ms)")
+                         "Group delay 1.7003 ms (U 0.0024 ms, k 2.00)")
         self.assertIn("check its network", page.value(text_of("[data-panel=flags]")))
         self.assertEqual(page.value(texts_of("[data-panel=files] li a")),
                          ["result.json", "transfer_function.svg"])

@@ -26,7 +26,7 @@ export class ClockPanel {
     }
     const u_s = report.u_mean_interval_s;
     const mean = rounded_text(report.text?.mean_interval_us);
-    const u_text = is_number(u_s) ? `u ${mean.u} µs` : "u not known";
+    const u_text = is_number(u_s) ? `U ${mean.U} µs, k ${mean.k}` : "u not known";
     set_name(this.text, `${report.source}: mean interval ${mean.value} µs (${u_text}), ` +
       `rate ${with_unit(report.mean_rate_hz, "Hz", 7)}` +
       `${report.nominal_rate_hz > 0 ? ` of ${with_unit(report.nominal_rate_hz, "Hz")} nominal` : ""}` +

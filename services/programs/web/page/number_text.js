@@ -22,7 +22,10 @@ function exponential(value, digits) {
  * @returns {{value: string, u: string}}
  */
 export function rounded_text(text) {
-  return { value: text?.value ?? UNKNOWN, u: text?.u ?? UNKNOWN };
+  return {
+    value: text?.value ?? UNKNOWN, u: text?.u ?? UNKNOWN, U: text?.U ?? UNKNOWN,
+    k: text?.k ?? UNKNOWN,
+  };
 }
 
 /** So many significant digits, without trailing zeros. */

@@ -184,8 +184,8 @@ export class RunView {
         ? `No group delay: ${transfer.group_delay_problem}` : "");
       return;
     }
-    const { value, u } = rounded_text(transfer.text.group_delay_ms);
-    set_text(this.delay, `Group delay ${value} ms (u ${u} ms)`);
+    const { value, U, k } = rounded_text(transfer.text.group_delay_ms);
+    set_text(this.delay, `Group delay ${value} ms (U ${U} ms, k ${k})`);
   }
 
   show_budget_of_step(step) {

@@ -314,5 +314,62 @@ TEST(SampleClock, ASingleNormalClockHasOneMode) {
                   .modes_s.empty()); // without the tick a mode cannot be told from the comb
 }
 
+struct DrawnStamps {
+  int samples = 0;
+  double jitter_ns = 0.0;
+  double stated_s = 0.0; // uncertainty of a stamp
+  double tick_ns = 1.0;
+};
+
+class MeanInterval : public testing::TestWithParam<DrawnStamps> {};
+
+// 500 draws: chance moves 95.45 % by two and a half standard deviations of 0.9 %.
+TEST_P(MeanInterval, IsCoveredByItsExpandedUncertainty) {
+  constexpr int draws = 500;
+  const DrawnStamps& drawn = GetParam();
+  std::mt19937_64 random(9);
+  std::normal_distribution<double> normal(0.0, drawn.jitter_ns);
+  std::uniform_real_distribution<double> part(0.0, 1.0);
+  int covered = 0;
+  double squares = 0.0, expanded = 0.0;
+  for (int i = 0; i < draws; ++i) {
+    const double interval_ns = 1e6 + 1e3 * part(random);
+    const double begin_ns = 1e6 * part(random);
+    std::vector<std::int64_t> stamps;
+    for (int k = 0; k < drawn.samples; ++k) {
+      const double at_ns =
+          begin_ns + k * interval_ns + (drawn.jitter_ns > 0.0 ? normal(random) : 0.0);
+      stamps.push_back(std::llround(std::floor(at_ns / drawn.tick_ns) * drawn.tick_ns));
+    }
+    const SampleClockStatistics s =
+        statistics_of(stamps, {.nominal_rate_hz = 1000.0, .stamp_uncertainty_s = drawn.stated_s});
+    const double error_s = s.mean_interval_s - 1e-9 * interval_ns;
+    covered += std::abs(error_s) <= s.of_mean_interval().expanded() ? 1 : 0;
+    squares += error_s * error_s / draws;
+    expanded += s.of_mean_interval().expanded() / draws;
+    EXPECT_NEAR(s.rate_deviation_rel(), s.mean_rate_hz / 1000.0 - 1.0, 1e-15);
+    EXPECT_NEAR(s.of_rate_deviation().expanded() / s.of_mean_interval().expanded(),
+                s.mean_rate_hz / s.mean_interval_s / 1000.0, 1e-6);
+  }
+  EXPECT_GE(covered, 0.93 * draws);
+  EXPECT_LE(covered, 0.98 * draws);
+  EXPECT_GT(expanded / (2.0 * std::sqrt(squares)), 0.9);
+  EXPECT_LT(expanded / (2.0 * std::sqrt(squares)), 1.3);
+}
+
+INSTANTIATE_TEST_SUITE_P(StatedAndFound, MeanInterval,
+                         testing::Values(DrawnStamps{200, 500.0, 500e-9}, DrawnStamps{200, 500.0},
+                                         DrawnStamps{1000, 5000.0}, DrawnStamps{14, 500.0}));
+
+TEST(SampleClock, FewIntervalsAreKnownWithTheirDegreesOfFreedom) {
+  const SampleClockStatistics s = statistics_of(stamps_of({1000, 1010, 990, 1005}));
+  EXPECT_DOUBLE_EQ(s.degrees_of_freedom_mean_interval, 2.0);
+  EXPECT_NEAR(s.k_mean_interval, 4.526, 1e-3);
+  EXPECT_TRUE(std::isnan(s.rate_deviation_rel()));
+  const SampleClockStatistics stated =
+      statistics_of(stamps_of({1000, 1010, 990, 1005}), {.stamp_uncertainty_s = 1e-9});
+  EXPECT_EQ(stated.k_mean_interval, 2.0);
+}
+
 } // namespace
 } // namespace dyncal::analysis

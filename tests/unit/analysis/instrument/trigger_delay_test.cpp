@@ -94,7 +94,9 @@ TEST(TriggerDelay, TheMeanOverShotsHasScatterResolutionAndHistogram) {
   ASSERT_TRUE(mean.has_value());
   EXPECT_NEAR(mean->delay_s, 236e-9, 1e-18);
   EXPECT_NEAR(mean->scatter_s, std::sqrt(2.0 / 3.0) * 1e-9, 1e-18);
-  EXPECT_NEAR(mean->u_delay_s, std::hypot(mean->scatter_s / 2.0, 1e-9 / std::sqrt(12.0)), 1e-18);
+  EXPECT_NEAR(mean->of_delay.u, std::hypot(mean->scatter_s / 2.0, 1e-9 / std::sqrt(12.0)), 1e-18);
+  EXPECT_NEAR(mean->of_delay.degrees_of_freedom, 3.0 * std::pow(1.5, 2), 1e-6);
+  EXPECT_GT(mean->of_delay.k, 2.0);
   EXPECT_NEAR(mean->from_zero_crossing_s, 200e-9, 1e-18);
   EXPECT_EQ(
       std::accumulate(mean->histogram.counts.begin(), mean->histogram.counts.end(), std::size_t{0}),

@@ -50,7 +50,7 @@ TEST(SweepDelay, HoldsTheMeanOfDelaysThatSweepsHave) {
       int covered = 0;
       for (int i = 0; i < draws; ++i) {
         const Sweeps sweeps = draw(count, 1e-5, 0.0, random);
-        covered += std::abs(sweeps.mean_delay_s) <= 2.0 * u_delay_of_sweeps(sweeps.phases);
+        covered += std::abs(sweeps.mean_delay_s) <= u_delay_of_sweeps(sweeps.phases).expanded();
       }
       EXPECT_NEAR(static_cast<double>(covered) / draws, 0.9545, 0.032) << count << ", " << seed;
     }
@@ -64,7 +64,7 @@ TEST(SweepDelay, IsNothingWhereOnlyNoiseOrAPhaseScatters) {
     for (const double phase_rad : {0.0, 1e-2}) {
       int some = 0;
       for (int i = 0; i < draws; ++i) {
-        some += u_delay_of_sweeps(draw(count, 0.0, phase_rad, random).phases) > 0.0 ? 1 : 0;
+        some += u_delay_of_sweeps(draw(count, 0.0, phase_rad, random).phases).u > 0.0 ? 1 : 0;
       }
       EXPECT_LT(some, 0.08 * draws) << count << " sweeps, " << phase_rad; // 0.05 and 4 sigma
     }
@@ -73,10 +73,10 @@ TEST(SweepDelay, IsNothingWhereOnlyNoiseOrAPhaseScatters) {
 
 TEST(SweepDelay, OneSweepOrOneFrequencyTellsNothing) {
   std::mt19937_64 random(6);
-  EXPECT_EQ(u_delay_of_sweeps({}), 0.0);
-  EXPECT_EQ(u_delay_of_sweeps(draw(1, 1e-3, 0.0, random).phases), 0.0);
+  EXPECT_EQ(u_delay_of_sweeps({}).u, 0.0);
+  EXPECT_EQ(u_delay_of_sweeps(draw(1, 1e-3, 0.0, random).phases).u, 0.0);
   const std::vector<SweepPhase> one{{1, 80.0, 0.1, 1e-4}, {2, 80.0, -0.1, 1e-4}};
-  EXPECT_EQ(u_delay_of_sweeps(one), 0.0);
+  EXPECT_EQ(u_delay_of_sweeps(one).u, 0.0);
 }
 
 } // namespace

@@ -43,10 +43,14 @@ TEST(TransferSummary, TakesADelayThatASweepSharesIntoTheGroupDelay) {
   const analysis::GroupDelay same = group_delay_of({0.0, 0.0, 0.0});
   const analysis::GroupDelay late = group_delay_of({-30e-6, 10e-6, 20e-6});
   EXPECT_NEAR(late.delay_s, 2e-3, 1e-8);
-  EXPECT_LT(same.u_delay_s, 0.5e-6);
+  EXPECT_LT(same.u_delay_s(), 0.5e-6);
   // Student's factor of two degrees of freedom over 2: 26.5 us / sqrt(3) x 2.26.
-  EXPECT_GT(late.u_delay_s, 30e-6);
-  EXPECT_LT(late.u_delay_s, 50e-6);
+  EXPECT_GT(late.u_delay_s(), 30e-6);
+  EXPECT_LT(late.u_delay_s(), 50e-6);
+  EXPECT_LT(late.of_delay.degrees_of_freedom, 6.0);
+  EXPECT_GE(late.of_delay.k, analysis::coverage_factor(late.of_delay.degrees_of_freedom));
+  EXPECT_LT(late.of_delay.k, analysis::coverage_factor(2.0));
+  EXPECT_GT(same.of_delay.degrees_of_freedom, 6.0);
 }
 
 } // namespace

@@ -230,7 +230,7 @@ TEST(TriggerDelayOfTheModel, IsFoundWithinANanosecondByTheRectangle) {
   Excitation excitation{ExciterModel{}};
   const auto mean = analysis::mean_trigger_delay(delays(scope, excitation, 1000.0, true, 50), 1e-9);
   ASSERT_TRUE(mean.has_value());
-  EXPECT_LE(mean->u_delay_s, 1e-9);
+  EXPECT_LE(mean->of_delay.u, 1e-9);
   EXPECT_LT(std::abs(mean->delay_s - scope.output_delay_s()), 1e-9) << mean->delay_s;
 }
 
@@ -240,7 +240,7 @@ TEST(TriggerDelayOfTheModel, IsFoundWithinANanosecondByTheSine) {
   const auto shots = delays(scope, excitation, 5000.0, false, 10);
   const auto mean = analysis::mean_trigger_delay(shots, scope.setting.interval_s());
   ASSERT_TRUE(mean.has_value());
-  EXPECT_LE(mean->u_delay_s, 1e-9);
+  EXPECT_LE(mean->of_delay.u, 1e-9);
   EXPECT_LT(std::abs(mean->delay_s - scope.output_delay_s()), 1e-9) << mean->delay_s;
   EXPECT_GT(mean->scatter_from_zero_crossing_s,
             50.0 * mean->scatter_s); // noise of the trigger is in the one, not in the other

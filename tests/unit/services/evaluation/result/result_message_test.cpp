@@ -107,6 +107,8 @@ TEST(TransferFunctionMessage, CarriesPointsAndGroupDelay) {
   function.points = {point};
   function.group_delay.emplace();
   function.group_delay->delay_s = 8e-3;
+  function.group_delay->of_delay = {1e-6, 4.0, 2.87};
+  function.group_delay->of_intercept = {1e-3, 9.0, 2.32};
   function.group_delay->phase_covariance = {1e-6};
   const wire::TransferFunction message = to_message({}, function);
   const TransferFunction read = from_message(message);
@@ -114,9 +116,26 @@ TEST(TransferFunctionMessage, CarriesPointsAndGroupDelay) {
   EXPECT_EQ(read.method, EvaluationMethod::absolute_time);
   EXPECT_EQ(read.points.at(0).mean.repetitions, 3U);
   EXPECT_DOUBLE_EQ(read.group_delay.value().delay_s, 8e-3);
+  EXPECT_EQ(read.group_delay->of_delay.u, 1e-6);
+  EXPECT_EQ(read.group_delay->of_delay.degrees_of_freedom, 4.0);
+  EXPECT_EQ(read.group_delay->of_intercept.k, 2.32);
+  EXPECT_DOUBLE_EQ(message.u_group_delay_s(), 1.435e-6);
   function.group_delay.reset();
   function.group_delay_problem = "one frequency";
   EXPECT_FALSE(from_message(to_message({}, function)).group_delay);
+}
+
+// Writers of before had half of U alone.
+TEST(TransferFunctionMessage, OfAnOlderWriterHasTheFactorTwo) {
+  wire::TransferFunction message;
+  message.group_delay_valid(true);
+  message.u_group_delay_s(3e-6);
+  message.u_intercept_rad(2e-3);
+  const analysis::GroupDelay delay = from_message(message).group_delay.value();
+  EXPECT_EQ(delay.of_delay.u, 3e-6);
+  EXPECT_EQ(delay.of_delay.k, 2.0);
+  EXPECT_EQ(delay.of_delay.degrees_of_freedom, analysis::infinite_degrees_of_freedom);
+  EXPECT_EQ(delay.u_intercept_rad(), 2e-3);
 }
 
 TEST(ClockReportMessage, CarriesNumbersListsAndFlags) {
@@ -129,6 +148,9 @@ TEST(ClockReportMessage, CarriesNumbersListsAndFlags) {
   report.clock.over_temperature = {{25.0, 996953.7, 12.0, 4}};
   report.clock.allan = {{1.0, 1e-6}};
   report.clock.lost = 5;
+  report.clock.u_mean_interval_s = 1e-9;
+  report.clock.degrees_of_freedom_mean_interval = 6.0;
+  report.clock.k_mean_interval = 2.52;
   report.flags = {make_flag(ResultFlag::clock_uncertainty_unknown),
                   make_flag(ResultFlag::samples_lost)};
   const wire::SampleClockReport message = to_message({}, report);
@@ -138,6 +160,8 @@ TEST(ClockReportMessage, CarriesNumbersListsAndFlags) {
   EXPECT_EQ(read.clock.histogram.at(0).count, 12U);
   EXPECT_DOUBLE_EQ(read.clock.quantile_50_s, 1e-3);
   EXPECT_EQ(read.clock.lost, 5U);
+  EXPECT_DOUBLE_EQ(read.clock.of_mean_interval().expanded(), 2.52e-9);
+  EXPECT_EQ(read.clock.degrees_of_freedom_mean_interval, 6.0);
   EXPECT_EQ(read.flags, report.flags);
 }
 
@@ -149,6 +173,7 @@ TEST(ClockReportMessage, OfAnOlderWriterIsFlaggedByItsUncertainty) {
             std::vector{make_flag(ResultFlag::clock_uncertainty_unknown)});
   message.u_mean_interval_s(1e-9);
   EXPECT_TRUE(from_message(message).flags.empty());
+  EXPECT_EQ(from_message(message).clock.of_mean_interval().expanded(), 2e-9);
 }
 
 } // namespace

@@ -42,7 +42,7 @@ TransferFunctionData low_pass(std::size_t frequencies) {
 analysis::GroupDelay line_of(double value_s, double intercept_rad) {
   analysis::GroupDelay line;
   line.delay_s = value_s;
-  line.u_delay_s = 1e-6;
+  line.of_delay.u = 1e-6;
   line.intercept_rad = intercept_rad;
   return line;
 }

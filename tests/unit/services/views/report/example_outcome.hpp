@@ -24,9 +24,9 @@ inline evaluation::TransferFunction example_function(const std::string& channel,
   }
   function.group_delay.emplace();
   function.group_delay->delay_s = 8.1e-3;
-  function.group_delay->u_delay_s = 1e-6;
+  function.group_delay->of_delay = {1e-6, 9.0, 2.32};
   function.group_delay->intercept_rad = -3.14159;
-  function.group_delay->u_intercept_rad = 0.00087;
+  function.group_delay->of_intercept.u = 0.00087;
   function.group_delay->phase_covariance = {4e-6, 0.0, 0.0, 4e-6};
   return function;
 }

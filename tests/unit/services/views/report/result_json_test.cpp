@@ -75,6 +75,30 @@ TEST(ResultJson, HasCorrectionsAndTheExcitationThatWasMeasured) {
   EXPECT_TRUE(json["steps"][1]["fits"].empty()); // it has no result
 }
 
+TEST(ResultJson, DerivedNumbersHaveTheirCoverage) {
+  RunOutcome outcome = example_outcome();
+  auto& clock = outcome.clock_reports.at(0).clock;
+  clock.mean_interval_s = 1e-3;
+  clock.mean_rate_hz = 1000.0;
+  clock.nominal_rate_hz = 1001.0;
+  clock.u_mean_interval_s = 1e-9;
+  clock.degrees_of_freedom_mean_interval = 6.0;
+  clock.k_mean_interval = 2.52;
+  const auto json = result_json(outcome);
+  const auto& delay = json["group_delay"][0];
+  EXPECT_DOUBLE_EQ(delay["u_s"], 1e-6);
+  EXPECT_DOUBLE_EQ(delay["nu_eff"], 9.0);
+  EXPECT_DOUBLE_EQ(delay["k"], 2.32);
+  EXPECT_DOUBLE_EQ(delay["U_s"], 2.32e-6);
+  EXPECT_DOUBLE_EQ(delay["U_intercept_rad"], 2.0 * 0.00087);
+  EXPECT_TRUE(delay["nu_eff_intercept"].is_null());
+  const auto& report = json["sample_clock"][0];
+  EXPECT_DOUBLE_EQ(report["U_mean_interval_s"], 2.52e-9);
+  EXPECT_DOUBLE_EQ(report["nu_eff"], 6.0);
+  EXPECT_DOUBLE_EQ(report["rate_deviation_rel"], 1000.0 / 1001.0 - 1.0);
+  EXPECT_NEAR(report["U_rate_deviation_rel"], 2.52e-6, 1e-8);
+}
+
 TEST(ResultJson, EventsHaveTheirPlace) {
   const auto clock = result_json(example_outcome())["sample_clock"][0];
   EXPECT_EQ(clock["event_count"], 1);
