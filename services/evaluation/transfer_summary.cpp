@@ -13,6 +13,8 @@
 #include "analysis/base/phasor.hpp"
 #include "services/evaluation/closures/channel_run.hpp"
 #include "services/evaluation/method/unstated_uncertainty.hpp"
+#include "services/evaluation/result/delay_points.hpp"
+#include "services/evaluation/result/point_identity.hpp"
 #include "services/evaluation/shared_phase_uncertainty.hpp"
 #include "services/evaluation/sweep_delay.hpp"
 
@@ -24,14 +26,14 @@ constexpr double opposite_from_rad = 0.75 * std::numbers::pi;
 constexpr double before_excitation = 3.0; // standard uncertainties of a group delay below 0
 
 std::vector<FrequencyPoint> mean_points(const std::vector<const StepResult*>& results) {
-  std::map<std::pair<double, double>, std::vector<const StepResult*>> by_frequency_and_level;
+  std::map<PointIdentity, std::vector<const StepResult*>> by_point;
   for (const StepResult* result : results) {
-    by_frequency_and_level[{result->frequency_hz, result->level_m_s2}].push_back(result);
+    by_point[mean_identity_of(*result)].push_back(result);
   }
   // All at once: how much runs scatter shows at all frequencies together.
   std::vector<analysis::RepeatedFrequency> repeated;
-  for (const auto& [key, of_point] : by_frequency_and_level) {
-    repeated.push_back({key.first, {}});
+  for (const auto& [point, of_point] : by_point) {
+    repeated.push_back({point.frequency_hz, {}});
     std::transform(of_point.begin(), of_point.end(),
                    std::back_inserter(repeated.back().repetitions),
                    [](const StepResult* result) { return repetition_of(*result); });
@@ -39,7 +41,7 @@ std::vector<FrequencyPoint> mean_points(const std::vector<const StepResult*>& re
   const auto means = analysis::means_of_repetitions(repeated);
   std::vector<FrequencyPoint> points;
   auto mean = means.begin();
-  for (const auto& [key, of_point] : by_frequency_and_level) {
+  for (const auto& [point, of_point] : by_point) {
     if (*mean) {
       const StepResult& first = *of_point.front();
       points.push_back({first.frequency_text_hz, first.frequency_hz, first.level_m_s2, **mean,
@@ -50,16 +52,19 @@ std::vector<FrequencyPoint> mean_points(const std::vector<const StepResult*>& re
   return points;
 }
 
-// Several levels at one frequency are points of their own; the line through the phases takes the
-// first of them.
-std::vector<std::size_t> first_of_each_frequency(const std::vector<FrequencyPoint>& points) {
-  std::vector<std::size_t> chosen;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (i == 0 || points[i].frequency_hz > points[i - 1].frequency_hz) {
-      chosen.push_back(i);
+// Those of other levels at a frequency stand in the turn of the one on the line.
+void place_phases(const std::vector<std::size_t>& chosen, const std::vector<double>& unwrapped_rad,
+                  std::vector<FrequencyPoint>& points) {
+  std::size_t i = 0;
+  for (FrequencyPoint& point : points) {
+    while (points[chosen[i]].frequency_hz < point.frequency_hz) {
+      ++i;
     }
+    point.unwrapped_phase_rad =
+        &point == &points[chosen[i]]
+            ? unwrapped_rad[i]
+            : unwrapped_rad[i] + analysis::wrap_phase(point.mean.phase_rad - unwrapped_rad[i]);
   }
-  return chosen;
 }
 
 // Delays of the same phases at frequencies that are multiples of a spacing.
@@ -167,7 +172,7 @@ void TransferSummary::add(const StepResult& result) {
 
 void TransferSummary::add_group_delay(const std::vector<const StepResult*>& results,
                                       TransferFunction& function) const {
-  const std::vector<std::size_t> chosen = first_of_each_frequency(function.points);
+  const std::vector<std::size_t> chosen = delay_points(function.points);
   std::vector<BudgetAtFrequency> budgets;
   std::transform(chosen.begin(), chosen.end(), std::back_inserter(budgets),
                  [&](std::size_t i) { return budget_of(function.points[i], results); });
@@ -200,9 +205,7 @@ void TransferSummary::add_group_delay(const std::vector<const StepResult*>& resu
   if (delay->delay_s < -before_excitation * delay->u_delay_s()) {
     function.flags.push_back(make_flag(ResultFlag::answers_before_excitation));
   }
-  for (std::size_t i = 0; i < chosen.size(); ++i) {
-    function.points[chosen[i]].unwrapped_phase_rad = delay->unwrapped_rad[i];
-  }
+  place_phases(chosen, delay->unwrapped_rad, function.points);
   function.group_delay = std::move(*delay);
 }
 
@@ -216,6 +219,7 @@ TransferFunction TransferSummary::function_of(const std::string& channel) const 
     if (result.valid) {
       valid.push_back(&result);
       function.unit = result.unit;
+      function.excited_axis = result.excited_axis;
       function.lost += result.lost;
     }
   }

@@ -21,6 +21,7 @@ std::vector<RecipeStep> plan_steps(const BenchFile& file) {
                      .frequency_text_hz = text,
                      .frequency = frequency,
                      .level_m_s2 = excitation.levels_m_s2[i],
+                     .excited_axis = excitation.axis,
                      .settling_s = planned_settling_s(file, frequency.hz(), repetition),
                      .duration_s = excitation.duration_s});
   };

@@ -36,6 +36,7 @@ struct NetworkSettings {
 struct ExcitationSettings {
   std::vector<std::string> frequencies_hz; // decimal text, checked to be a positive number
   std::vector<double> levels_m_s2;         // one per frequency
+  std::string axis;                        // excited: "x", ...; empty: not stated
   int repetitions = 1;
   bool repeat_first = false; // the first step once more at the end
   int attempts = 3; // excitations of a step, until its result is as good as another can make it

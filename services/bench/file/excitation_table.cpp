@@ -1,6 +1,7 @@
 #include "services/bench/file/excitation_table.hpp"
 
 #include <algorithm>
+#include <cctype>
 
 #include <fmt/core.h>
 
@@ -11,6 +12,7 @@ namespace {
 
 constexpr int max_attempts = 10;
 constexpr int max_repetitions = 1000;
+constexpr std::size_t max_axis_bytes = 16;
 constexpr double max_step_s = 86'400.0; // settling or duration of one step: a day
 // What one message of the plan carries, and more than anybody waits for.
 constexpr std::size_t max_steps = 10'000;
@@ -34,6 +36,18 @@ void spread_levels(TomlTable& table, ExcitationSettings& excitation) {
     if (excitation.levels_m_s2[i] <= 0.0) {
       table.refuse_entry("level", i, "must be positive, in m/s^2");
     }
+  }
+}
+
+void read_axis(TomlTable& table, ExcitationSettings& excitation) {
+  excitation.axis = table.text("axis");
+  const bool is_name = std::all_of(excitation.axis.begin(), excitation.axis.end(), [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '+' || c == '-' || c == '_';
+  });
+  if (table.has("axis") &&
+      (!is_name || excitation.axis.empty() || excitation.axis.size() > max_axis_bytes)) {
+    table.refuse("axis", "must be \"x\", \"y\", \"z\" or another name of 1 to 16 letters, digits, "
+                         "+, - and _");
   }
 }
 
@@ -91,6 +105,7 @@ ExcitationSettings read_excitation(TomlTable table) {
   if (excitation.level_deviation_rel && *excitation.level_deviation_rel <= 0.0) {
     table.refuse("level_deviation_rel", "must be positive: 0.1 flags steps that are off by 10 %");
   }
+  read_axis(table, excitation);
   excitation.repetitions = table.whole_number("repetitions", 1, 1);
   check_number_of_steps(table, excitation);
   excitation.repeat_first = table.yes_no("repeat_first", excitation.repeat_first);

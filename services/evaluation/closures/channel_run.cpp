@@ -5,8 +5,11 @@
 #include <map>
 #include <utility>
 
+#include <fmt/core.h>
+
 #include "analysis/base/chi_squared_limit.hpp"
 #include "analysis/uncertainty/coverage.hpp"
+#include "services/evaluation/result/point_identity.hpp"
 
 namespace dyncal::inline evaluation {
 namespace {
@@ -37,6 +40,12 @@ bool ChannelRun::moves() const {
   return 2 * static_cast<std::size_t>(moving) > results.size();
 }
 
+std::string ChannelRun::place_of(const StepResult& result) const {
+  return have_several_levels(recipe.steps)
+             ? fmt::format("{} Hz, {} m/s^2", result.frequency_text_hz, result.level_m_s2)
+             : result.frequency_text_hz + " Hz";
+}
+
 std::string source_of(const std::string& channel) {
   return parse_channel_name(channel).value_or(ChannelName{}).source;
 }
@@ -56,9 +65,9 @@ analysis::Repetition repetition_of(const StepResult& result) {
 }
 
 std::vector<PointRepetitions> points_of(const ChannelRun& run) {
-  std::map<std::pair<double, double>, PointRepetitions> points;
+  std::map<PointIdentity, PointRepetitions> points;
   for (const StepResult* result : run.results) {
-    PointRepetitions& point = points[{result->frequency_hz, result->level_m_s2}];
+    PointRepetitions& point = points[mean_identity_of(*result)];
     point.results.push_back(result);
     point.values.push_back(repetition_of(*result));
   }

@@ -37,6 +37,8 @@ struct ChannelRun {
 
   // At most of the frequencies the channel follows the excitation: its value is ten times its u.
   [[nodiscard]] bool moves() const;
+  // "80 Hz"; in a run of several levels "80 Hz, 2 m/s^2".
+  [[nodiscard]] std::string place_of(const StepResult& result) const;
 };
 
 // "dau" of "dau/x".

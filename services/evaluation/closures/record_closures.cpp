@@ -29,7 +29,7 @@ Closure level(const ChannelRun& run) {
     const double measured_m_s2 = result->fits.front().fit.amplitude();
     const double off = measured_m_s2 / result->level_m_s2 - 1.0;
     if (!worst || std::abs(off) > std::abs(worst->value)) {
-      worst = judged(ClosureKind::level, result->frequency_text_hz + " Hz", off, 0.0,
+      worst = judged(ClosureKind::level, run.place_of(*result), off, 0.0,
                      run.recipe.level_deviation_rel, "1",
                      fmt::format("at {} Hz (repetition {}) the level is off most: {:.4g} m/s^2 in "
                                  "place of {:.4g} m/s^2",

@@ -11,6 +11,7 @@
 #include "analysis/base/statistics.hpp"
 #include "services/evaluation/closures/mountings.hpp"
 #include "services/evaluation/result/members.hpp"
+#include "services/evaluation/result/point_identity.hpp"
 
 namespace dyncal::inline evaluation {
 namespace {
@@ -122,13 +123,13 @@ Usual usual(const std::vector<Compared>& all, bool mountings_known) {
               prior_freedom + efficiency_of_median * static_cast<double>(all.size())};
 }
 
-std::string what_is_off(const Compared& one) {
+std::string what_is_off(const ChannelRun& run, const Compared& one) {
   const std::complex<double> d =
       log_ratio(one.point->values[one.repetition], one.point->values[one.middle]);
   const StepResult& result = *one.point->results[one.repetition];
-  return fmt::format("at {} Hz repetition {} has {:.4g} times the magnitude of repetition {} and "
+  return fmt::format("at {} repetition {} has {:.4g} times the magnitude of repetition {} and "
                      "is turned by {:.3g} degrees against it",
-                     result.frequency_text_hz, result.repetition, std::exp(d.real()),
+                     run.place_of(result), result.repetition, std::exp(d.real()),
                      one.point->results[one.middle]->repetition, degrees_of(d.imag()));
 }
 
@@ -185,9 +186,9 @@ void add_agreement(const ChannelRun& run, const Mountings& mountings,
     return;
   }
   result.closures.push_back(
-      judged(ClosureKind::repetitions, worst->point->results.front()->frequency_text_hz + " Hz",
-             largest, 1.0, limit, "1",
-             fmt::format("{}{}", what_is_off(*worst),
+      judged(ClosureKind::repetitions, run.place_of(*worst->point->results.front()), largest, 1.0,
+             limit, "1",
+             fmt::format("{}{}", what_is_off(run, *worst),
                          largest > limit
                              ? fmt::format(", {:.3g} times what repetitions usually differ by: "
                                            "look at how the sensor was mounted, at cables "
@@ -223,8 +224,7 @@ Closure scatter(const ChannelRun& run, const std::vector<PointRepetitions>& poin
   for (const PointRepetitions& point : points) {
     const auto mean = std::find_if(
         run.function.points.begin(), run.function.points.end(), [&](const FrequencyPoint& one) {
-          return one.frequency_hz == point.results.front()->frequency_hz &&
-                 one.level_m_s2 == point.results.front()->level_m_s2;
+          return identity_of(run.function, one) == mean_identity_of(*point.results.front());
         });
     if (mean == run.function.points.end() || point.values.size() < 2) {
       continue;
@@ -280,8 +280,7 @@ Closure first_again(const ChannelRun& run, const Mountings& mountings,
   const double value = by_phase ? d.imag() : d.real();
   const double limit = chance_limit * u + s.beyond;
   return judged(
-      ClosureKind::first_repeated, first.frequency_text_hz + " Hz", value, u, limit,
-      by_phase ? "rad" : "1",
+      ClosureKind::first_repeated, run.place_of(first), value, u, limit, by_phase ? "rad" : "1",
       fmt::format("from the first step to the last, {} Hz both, the {} changed by {:.3g}{}",
                   first.frequency_text_hz, by_phase ? "phase in rad" : "magnitude's part", value,
                   std::abs(value) > limit ? ": the sensor, its mounting or the reference drifts"

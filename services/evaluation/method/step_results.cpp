@@ -100,6 +100,7 @@ StepResult result_head(const RecipeStep& step, const ChannelName& channel) {
   result.frequency_text_hz = step.frequency_text_hz;
   result.frequency_hz = step.frequency.hz();
   result.level_m_s2 = step.level_m_s2;
+  result.excited_axis = step.excited_axis;
   return result;
 }
 

@@ -33,6 +33,7 @@ struct RecipeStep {
   std::string frequency_text_hz;
   analysis::Frequency frequency;
   double level_m_s2 = 0.0;
+  std::string excited_axis{}; // "x", "y", "z" or another name; empty: not stated
   double settling_s = 0.0;
   double duration_s = 0.0;
 };

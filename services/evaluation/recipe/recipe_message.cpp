@@ -141,6 +141,7 @@ Expected<void> read_steps(const wire::Measurement& measurement, Recipe& recipe) 
         reader,
         recipe.steps.emplace_back(RecipeStep{.frequency_text_hz = {}, .frequency = *frequency}),
         planned);
+    recipe.steps.back().excited_axis = measurement.excited_axis();
   }
   return {};
 }
@@ -188,6 +189,7 @@ wire::Measurement to_message(const Recipe& recipe) {
   MessageWriter writer;
   message_members(writer, recipe, measurement);
   writer(recipe.steps, measurement.steps());
+  measurement.excited_axis(recipe.steps.empty() ? "" : recipe.steps.front().excited_axis);
   measurement.method(to_wire(roles.method));
   measurement.reference(roles.reference.text());
   measurement.sync_acs(text_of(roles.sync_acs));

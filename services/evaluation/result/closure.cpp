@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include <fmt/core.h>
+
 namespace dyncal::inline evaluation {
 namespace {
 
@@ -53,6 +55,10 @@ std::string_view to_string(Verdict verdict) {
     break;
   }
   return "not_possible";
+}
+
+std::string closure_line(const std::string& channel, const Closure& closure) {
+  return fmt::format("{}: {}: {}", channel, title_of(closure.kind), closure.sentence);
 }
 
 bool is_open(const Closure& closure) {

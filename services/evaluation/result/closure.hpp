@@ -52,6 +52,9 @@ struct Closure {
 [[nodiscard]] std::string_view title_of(ClosureKind kind);
 [[nodiscard]] std::string_view to_string(Verdict verdict);
 
+// "dau/x: phase towards 0 Hz: ...", in one line for people.
+[[nodiscard]] std::string closure_line(const std::string& channel, const Closure& closure);
+
 [[nodiscard]] bool is_open(const Closure& closure);
 
 } // namespace dyncal::inline evaluation

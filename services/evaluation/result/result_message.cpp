@@ -78,6 +78,7 @@ void message_members(auto& visit, Either<StepResult> auto& result, auto& message
   visit(result.frequency_text_hz, message.frequency_text_hz());
   visit(result.frequency_hz, message.frequency_hz());
   visit(result.level_m_s2, message.level_m_s2());
+  visit(result.excited_axis, message.excited_axis());
   visit(result.valid, message.valid());
   visit(result.problem, message.problem());
   visit(result.magnitude, message.magnitude());

@@ -57,7 +57,8 @@ struct StepResult {
   std::uint32_t attempt = 1; // the excitation of the step that it is of
   std::string frequency_text_hz;
   double frequency_hz = 0.0;
-  double level_m_s2 = 0.0;
+  double level_m_s2 = 0.0;  // as planned
+  std::string excited_axis; // empty: not stated
   bool valid = false;
   std::string problem;
   double magnitude = nan_value;

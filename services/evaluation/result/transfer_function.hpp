@@ -18,7 +18,7 @@ namespace dyncal::inline evaluation {
 struct FrequencyPoint {
   std::string frequency_text_hz;
   double frequency_hz = 0.0;
-  double level_m_s2 = 0.0;
+  double level_m_s2 = 0.0; // as planned
   analysis::RepetitionMean mean;
   double unwrapped_phase_rad = 0.0;
 };
@@ -26,8 +26,10 @@ struct FrequencyPoint {
 struct TransferFunction {
   std::string channel; // "source/channel"
   EvaluationMethod method = EvaluationMethod::sample_timestamping;
-  std::string unit; // D-SI, output per input
+  std::string unit;         // D-SI, output per input
+  std::string excited_axis; // empty: not stated
   std::vector<FrequencyPoint> points;
+  // Through one point a frequency (delay_points.hpp).
   std::optional<analysis::GroupDelay> group_delay;
   std::string group_delay_problem; // why there is none
   std::vector<Closure> closures;   // in the order of ClosureKind; at the end of a run

@@ -55,6 +55,7 @@ void message_members(auto& visit, Either<Closure> auto& closure, auto& message) 
 void message_members(auto& visit, Either<TransferFunction> auto& function, auto& message) {
   visit(function.channel, message.channel());
   visit(function.unit, message.unit());
+  visit(function.excited_axis, message.excited_axis());
   visit(function.points, message.points());
   if (auto* delay = visit.present(function.group_delay, message.group_delay_valid())) {
     visit(delay->delay_s, message.group_delay_s());

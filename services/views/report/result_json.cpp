@@ -43,6 +43,7 @@ StoredValue stored_value(const RunOutcome& outcome, const TransferFunction& func
           .frequency_text_hz = point.frequency_text_hz,
           .frequency_hz = point.frequency_hz,
           .level_m_s2 = point.level_m_s2,
+          .excited_axis = function.excited_axis,
           .magnitude = point.mean.magnitude,
           .of_magnitude = magnitude_uncertainty(point.mean),
           .phase_rad = point.mean.phase_rad,

@@ -56,6 +56,7 @@ void members(auto& visit, Either<StoredValue> auto& one) {
   visit("frequency_text_hz", one.frequency_text_hz);
   visit("frequency_hz", one.frequency_hz);
   visit("level_m_s2", one.level_m_s2);
+  visit.unless_empty("excited_axis", one.excited_axis);
   visit("magnitude", one.magnitude);
   visit("u_magnitude", one.of_magnitude.u);
   visit("phase_rad", one.phase_rad);
@@ -89,6 +90,7 @@ void members(auto& visit, Either<StoredPoint> auto& one) {
   visit("frequency_text_hz", one.frequency_text_hz);
   visit("frequency_hz", one.frequency_hz);
   visit("level_m_s2", one.level_m_s2);
+  visit.unless_empty("excited_axis", one.excited_axis);
   visit("repetition", one.repetition);
   visit("valid", one.valid);
   visit("magnitude", one.magnitude);

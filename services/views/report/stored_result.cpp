@@ -158,8 +158,7 @@ std::vector<std::string> StoredResult::open_closures(const std::vector<std::stri
   for (const std::string& channel : names) {
     for (const Closure& closure : closures_of(channel)) {
       if (is_open(closure)) {
-        open.push_back(
-            fmt::format("{}: {}: {}", channel, title_of(closure.kind), closure.sentence));
+        open.push_back(closure_line(channel, closure));
       }
     }
   }

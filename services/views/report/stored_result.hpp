@@ -32,7 +32,8 @@ struct StoredValue { // a mean over repetitions
   std::string unit;
   std::string frequency_text_hz;
   double frequency_hz = 0.0;
-  double level_m_s2 = 0.0; // as planned
+  double level_m_s2 = 0.0;    // as planned
+  std::string excited_axis{}; // empty: not stated
   double magnitude = 0.0;
   ExpandedUncertainty of_magnitude;
   double phase_rad = 0.0;       // within (-pi, pi]

@@ -53,5 +53,48 @@ TEST(TransferSummary, TakesADelayThatASweepSharesIntoTheGroupDelay) {
   EXPECT_GT(same.of_delay.degrees_of_freedom, 6.0);
 }
 
+// One sweep at 10 m/s^2, and at 80 Hz other levels, at which the sensor is 1 % off a level and
+// late.
+TEST(TransferSummary, KeepsLevelsAtAFrequencyApart) {
+  const Recipe recipe;
+  TransferSummary summary(recipe);
+  std::uint32_t step = 0;
+  const auto add = [&](double hz, double level_m_s2, double phase_rad) {
+    StepResult result;
+    result.channel = "dau/acceleration_z";
+    result.step = ++step;
+    result.repetition = 1;
+    result.valid = true;
+    result.frequency_hz = hz;
+    result.level_m_s2 = level_m_s2;
+    result.excited_axis = "z";
+    result.magnitude = 1.0 + 0.01 * level_m_s2;
+    result.phase_rad = std::remainder(phase_rad, 2.0 * std::numbers::pi);
+    result.budget = {{.kind = analysis::ContributionKind::fit_noise,
+                      .u_magnitude_rel = 1e-4,
+                      .u_phase_rad = 1e-4}};
+    summary.add(result);
+  };
+  const auto line = [](double hz) { return -2.0 * std::numbers::pi * hz * 8e-3; };
+  for (const double hz : {20.0, 40.0, 63.0, 80.0, 125.0}) {
+    add(hz, 10.0, line(hz));
+  }
+  for (const double level : {2.0, 4.0, 8.0, 15.0}) {
+    add(80.0, level, line(80.0) - 0.1 * level);
+  }
+  const TransferFunction function = summary.transfer_functions().at(0);
+  EXPECT_EQ(function.excited_axis, "z");
+  ASSERT_EQ(function.points.size(), 9U);
+  ASSERT_TRUE(function.group_delay) << function.group_delay_problem;
+  EXPECT_NEAR(function.group_delay->delay_s, 8e-3, 1e-7);
+  for (const FrequencyPoint& point : function.points) {
+    EXPECT_EQ(point.mean.repetitions, 1U);
+    EXPECT_NEAR(point.mean.magnitude, 1.0 + 0.01 * point.level_m_s2, 1e-12);
+    const double later = point.level_m_s2 == 10.0 ? 0.0 : 0.1 * point.level_m_s2;
+    EXPECT_NEAR(point.unwrapped_phase_rad, line(point.frequency_hz) - later, 1e-9)
+        << point.level_m_s2;
+  }
+}
+
 } // namespace
 } // namespace dyncal::inline evaluation

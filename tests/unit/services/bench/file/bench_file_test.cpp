@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -211,6 +212,22 @@ TEST(BenchFile, RefusesFrequenciesThatAreNotPositiveNumbers) {
   EXPECT_THAT(problem_of(replaced(complete, "\"12.5\"", "12.5")), HasSubstr("list of texts"));
   EXPECT_THAT(problem_of(replaced(complete, "level = 10.0", "level = [1.0, 2.0, 3.0]")),
               HasSubstr("lists 3 levels for 2 frequencies"));
+}
+
+TEST(BenchFile, NamesTheExcitedAxisIfItIsStated) {
+  EXPECT_EQ(parse_bench_file(complete, "bench.toml")->excitation.axis, "");
+  for (const char* axis : {"x", "-z", "radial_2"}) {
+    const auto file = parse_bench_file(
+        replaced(complete, "level = 10.0", fmt::format("level = 10.0\naxis = \"{}\"", axis)),
+        "bench.toml");
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_EQ(file->excitation.axis, axis);
+  }
+  for (const char* axis : {"", "x, y", "seventeen_letters"}) {
+    EXPECT_THAT(problem_of(replaced(complete, "level = 10.0",
+                                    fmt::format("level = 10.0\naxis = \"{}\"", axis))),
+                HasSubstr("key 'excitation.axis' must be"));
+  }
 }
 
 TEST(BenchFile, RefusesASourceFileThatDoesNotExist) {

@@ -31,6 +31,7 @@ TEST(RecipeMessage, GivesBackTheMessageThatItWasReadFrom) {
   measurement.level_deviation_rel(0.05);
   measurement.clock_tolerance_rel(5e-5);
   measurement.dut_phase("delay-from-180");
+  measurement.excited_axis("z");
   measurement.mains_hz({16.7, 50.0});
   measurement.frequency_search_rel(2e-3);
   wire::ReferenceContribution drift;
@@ -50,6 +51,7 @@ TEST(RecipeMessage, GivesBackTheMessageThatItWasReadFrom) {
   const auto recipe = parse_recipe(measurement);
   ASSERT_TRUE(recipe) << recipe.error().message;
   EXPECT_TRUE(to_message(*recipe) == measurement);
+  EXPECT_EQ(recipe->steps.back().excited_axis, "z");
 }
 
 TEST(RecipeMessage, RefusesAMethodOfALaterVersion) {

@@ -19,6 +19,7 @@ StepResult example_result() {
   result.frequency_text_hz = "12.5";
   result.frequency_hz = 12.5;
   result.level_m_s2 = 10.0;
+  result.excited_axis = "z";
   result.valid = true;
   result.magnitude = 0.95;
   result.u_magnitude = 1e-4;
@@ -74,6 +75,7 @@ TEST(ResultMessage, CarriesWhatReadersNeedOfAResult) {
   EXPECT_EQ(read.flags.at(0).sentence, "dau: samples lost");
   EXPECT_EQ(read.series.value().start, "with the trigger");
   EXPECT_TRUE(read.provisional);
+  EXPECT_EQ(read.excited_axis, "z");
   ASSERT_EQ(read.signals.size(), 1U);
   EXPECT_EQ(read.signals[0].channel, "acs/sync");
   EXPECT_EQ(read.signals[0].thd, 1e-3);
@@ -97,6 +99,7 @@ TEST(TransferFunctionMessage, CarriesPointsAndGroupDelay) {
   TransferFunction function;
   function.channel = "dau/acceleration_z";
   function.method = EvaluationMethod::absolute_time;
+  function.excited_axis = "z";
   FrequencyPoint point;
   point.frequency_text_hz = "10";
   point.frequency_hz = 10.0;
@@ -114,6 +117,7 @@ TEST(TransferFunctionMessage, CarriesPointsAndGroupDelay) {
   const TransferFunction read = from_message(message);
   EXPECT_TRUE(to_message({}, read) == message);
   EXPECT_EQ(read.method, EvaluationMethod::absolute_time);
+  EXPECT_EQ(read.excited_axis, "z");
   EXPECT_EQ(read.points.at(0).mean.repetitions, 3U);
   EXPECT_DOUBLE_EQ(read.group_delay.value().delay_s, 8e-3);
   EXPECT_EQ(read.group_delay->of_delay.u, 1e-6);
