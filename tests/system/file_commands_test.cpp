@@ -42,9 +42,9 @@ protected:
   std::filesystem::path folder = fresh_folder(
       std::string("file-") + testing::UnitTest::GetInstance()->current_test_info()->name());
 
-  nlohmann::json json_of(std::vector<std::string> arguments) {
+  nlohmann::json json_of(std::vector<std::string> arguments, int status = 0) {
     ProgramRun run("dyncal", arguments, folder);
-    EXPECT_EQ(run.wait(patience), 0) << run.errors();
+    EXPECT_EQ(run.wait(patience), status) << run.errors();
     return nlohmann::json::parse(run.output(), nullptr, false);
   }
   std::string error_of(std::vector<std::string> arguments) {
@@ -168,14 +168,14 @@ std::filesystem::path result_file(const std::filesystem::path& path, double magn
 TEST_F(FileCommands, CompareGivesTheNormalisedErrorOfTwoResults) {
   const auto a = result_file(folder / "a.json", 1.01, 3.14);
   const auto b = result_file(folder / "b.json", 1.0, -3.14);
-  const auto json = json_of({"compare", a, b, "--json"});
+  const auto json = json_of({"compare", a, b, "--json"}, 3); // they disagree
   const auto& point = json["points"][0];
   EXPECT_NEAR(point["en_magnitude"], 0.01 / (2.0 * 0.003 * std::sqrt(2.0)), 1e-12);
   EXPECT_NEAR(point["phase_difference_rad"], 6.28 - 2.0 * std::numbers::pi, 1e-12);
   EXPECT_NEAR(point["en_phase"], (6.28 - 2.0 * std::numbers::pi) / (2.0 * 0.004 * std::sqrt(2.0)),
               1e-12);
   EXPECT_FALSE(point["agrees"]);
-  const auto shared = json_of({"compare", a, b, "--common-magnitude", "0.002", "--json"});
+  const auto shared = json_of({"compare", a, b, "--common-magnitude", "0.002", "--json"}, 3);
   EXPECT_NEAR(shared["points"][0]["en_magnitude"],
               0.01 / (2.0 * std::sqrt(2.0 * 9e-6 - 2.0 * 4e-6 * 1.01)), 1e-12);
 }

@@ -7,8 +7,9 @@
 // column; transverse motion is then assumed to be zero, and its bound (--transverse-motion) goes
 // into the uncertainty. With a triaxial reference the transverse motion is known: --motion-x, -y,
 // -z name a result each (method analogue) of the other two axes of the reference against the
-// excited one, from the same records; they need all three directions. Frequencies are those that
-// all files have. A channel is found by the end of its name (_x, _y, _z) or named with --channels,
+// excited one, from the same records; they need all three directions. Points are those of a
+// frequency and level that all files have; a file that states another excited axis than its option
+// is refused. A channel is found by the end of its name (_x, _y, _z) or named with --channels,
 // --motion-channels.
 //
 // Prints a table, or JSON. Exit status not 0 and one line when a file is not a result, a channel is
@@ -90,6 +91,7 @@ struct Measured {
 
 struct ResponsePoint {
   double frequency_hz = 0.0;
+  double level_m_s2 = 0.0;
   std::array<std::optional<analysis::Axes>, 3> columns; // by direction
   std::array<std::array<double, 3>, 3> u{};             // [direction][axis], of each real component
   std::array<std::optional<analysis::TransverseSensitivity>, 3> transverse;
@@ -131,10 +133,32 @@ Expected<Names> channels_of(const std::vector<std::string>& named,
   std::set<std::string> others;
   for (const Direction& direction : directions) {
     for (const auto& [place, point] : direction.*points) {
-      (point.unit == R"(\one)" ? like_the_reference : others).insert(place.first);
+      (point.unit == R"(\one)" ? like_the_reference : others).insert(place.channel);
     }
   }
   return find_channels(like_the_reference.empty() ? others : like_the_reference, option);
+}
+
+// Without the excited axis, which is that of the direction; a file that states another is refused.
+Expected<ResultPoints> read_points(const std::filesystem::path& path, char along,
+                                   ByteCount& bytes) {
+  DYNCAL_TRY(const auto result, read_values(path, bytes));
+  ResultPoints points;
+  for (const auto& [place, point] : means_of(result)) {
+    const bool is_other =
+        place.axis.size() == 1 && place.axis.front() != along &&
+        std::find(axis_names.begin(), axis_names.end(), place.axis.front()) != axis_names.end();
+    if (is_other) {
+      return fail(ErrorCode::bad_file,
+                  fmt::format("{} was excited along {} (excitation.axis of its bench file), but is "
+                              "given for {}",
+                              path.string(), place.axis, along));
+    }
+    PointIdentity named = place;
+    named.axis.clear();
+    points.emplace(std::move(named), point);
+  }
+  return points;
 }
 
 Expected<Measured> read(const TriaxialOptions& command, const SharedWorkCount& count) {
@@ -151,10 +175,10 @@ Expected<Measured> read(const TriaxialOptions& command, const SharedWorkCount& c
     if (command.results[axis].empty()) {
       continue;
     }
-    DYNCAL_TRY(auto sensor, read_result_file(command.results[axis], bytes));
+    DYNCAL_TRY(auto sensor, read_points(command.results[axis], axis_names[axis], bytes));
     measured.directions.push_back({axis, std::move(sensor), {}});
     if (motion_known) {
-      DYNCAL_TRY(auto motion, read_result_file(command.motions[axis], bytes));
+      DYNCAL_TRY(auto motion, read_points(command.motions[axis], axis_names[axis], bytes));
       measured.directions.back().motion = std::move(motion);
     }
   }
@@ -182,7 +206,7 @@ struct AxesAndUncertainty {
 // Nothing when a channel has no value there. The excited axis of a reference is the unit of its
 // motion.
 std::optional<AxesAndUncertainty> axes_at(const ResultPoints& points, const Names& channels,
-                                          double frequency_hz,
+                                          PointIdentity place,
                                           std::optional<std::size_t> unit_axis) {
   AxesAndUncertainty axes;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -190,7 +214,8 @@ std::optional<AxesAndUncertainty> axes_at(const ResultPoints& points, const Name
       axes.values[i] = 1.0;
       continue;
     }
-    const auto found = points.find({channels[i], frequency_hz});
+    place.channel = channels[i];
+    const auto found = points.find(place);
     if (found == points.end()) {
       return std::nullopt;
     }
@@ -201,12 +226,16 @@ std::optional<AxesAndUncertainty> axes_at(const ResultPoints& points, const Name
   return axes;
 }
 
-// Nothing when not all directions have the frequency.
-Expected<std::optional<ResponsePoint>> response_at(const Measured& measured, double frequency_hz) {
-  ResponsePoint point{.frequency_hz = frequency_hz, .columns = {}, .transverse = {}};
+// Nothing when not all directions have the frequency at this level.
+Expected<std::optional<ResponsePoint>> response_at(const Measured& measured,
+                                                   const PointIdentity& place) {
+  ResponsePoint point{.frequency_hz = place.frequency_hz,
+                      .level_m_s2 = place.level_m_s2,
+                      .columns = {},
+                      .transverse = {}};
   std::vector<analysis::TriaxialExcitation> excitations;
   for (const Direction& direction : measured.directions) {
-    const auto sensor = axes_at(direction.sensor, measured.channels, frequency_hz, std::nullopt);
+    const auto sensor = axes_at(direction.sensor, measured.channels, place, std::nullopt);
     if (!sensor) {
       return std::optional<ResponsePoint>();
     }
@@ -214,7 +243,7 @@ Expected<std::optional<ResponsePoint>> response_at(const Measured& measured, dou
     point.u[direction.axis] = sensor->u;
     if (measured.triaxial_reference()) {
       const auto motion =
-          axes_at(direction.motion, measured.motion_channels, frequency_hz, direction.axis);
+          axes_at(direction.motion, measured.motion_channels, place, direction.axis);
       if (!motion) {
         return std::optional<ResponsePoint>();
       }
@@ -227,7 +256,7 @@ Expected<std::optional<ResponsePoint>> response_at(const Measured& measured, dou
   const auto response = analysis::evaluate_triaxial(excitations);
   if (!response) {
     return fail(ErrorCode::no_result,
-                fmt::format("{} Hz: {}", frequency_hz, response.error().message));
+                fmt::format("{}: {}", place_text(place), response.error().message));
   }
   for (std::size_t j = 0; j < 3; ++j) {
     for (std::size_t i = 0; i < 3; ++i) {
@@ -266,10 +295,10 @@ Expected<std::vector<ResponsePoint>> evaluate(const TriaxialOptions& command,
   count.begin("evaluating", "values", measured.directions.front().sensor.size());
   for (const auto& [place, unused] : measured.directions.front().sensor) {
     count.add_done();
-    if (place.first != measured.channels[0]) {
+    if (place.channel != measured.channels[0]) {
       continue;
     }
-    DYNCAL_TRY(auto point, response_at(measured, place.second));
+    DYNCAL_TRY(auto point, response_at(measured, place));
     if (!point) {
       continue;
     }
@@ -280,7 +309,8 @@ Expected<std::vector<ResponsePoint>> evaluate(const TriaxialOptions& command,
   if (points.empty()) {
     return fail(
         ErrorCode::bad_file,
-        fmt::format("the files have no frequency in common at which {}, {} and {} have values",
+        fmt::format("the files have no frequency and level in common at which {}, {} and {} "
+                    "have values",
                     measured.channels[0], measured.channels[1], measured.channels[2]));
   }
   return points;
@@ -300,7 +330,9 @@ void print_json(const Measured& measured, const std::vector<ResponsePoint>& poin
             {"triaxial_reference", measured.triaxial_reference()},
             {"points", Json::array()}};
   for (const ResponsePoint& point : points) {
-    Json one{{"frequency_hz", point.frequency_hz}, {"excitations", Json::array()}};
+    Json one{{"frequency_hz", point.frequency_hz},
+             {"level_m_s2", point.level_m_s2},
+             {"excitations", Json::array()}};
     for (std::size_t j = 0; j < 3; ++j) {
       if (!point.columns[j]) {
         continue;
@@ -328,8 +360,13 @@ void print_json(const Measured& measured, const std::vector<ResponsePoint>& poin
 
 void print_table(const TriaxialOptions& command, const Measured& measured,
                  const std::vector<ResponsePoint>& points) {
-  fmt::print("{:>12} {:>6} {:>12} {:>12} {:>12} {:>12} {:>12}   {}\n", "f / Hz", "along", "|H_x|",
-             "|H_y|", "|H_z|", "transverse", "u", "largest of the ratios to the excited axis");
+  const bool with_level = have_several_levels(points);
+  const auto level_column = [&](const std::string& text) {
+    return with_level ? fmt::format(" {:>16}", text) : std::string();
+  };
+  fmt::print("{:>12}{} {:>6} {:>12} {:>12} {:>12} {:>12} {:>12}   {}\n", "f / Hz",
+             level_column("level / (m/s^2)"), "along", "|H_x|", "|H_y|", "|H_z|", "transverse", "u",
+             "largest of the ratios to the excited axis");
   for (const ResponsePoint& point : points) {
     for (std::size_t j = 0; j < 3; ++j) {
       if (!point.columns[j]) {
@@ -339,8 +376,9 @@ void print_table(const TriaxialOptions& command, const Measured& measured,
       const analysis::TransverseSensitivity& transverse = *point.transverse[j];
       const std::size_t largest =
           transverse.ratio[(j + 1) % 3] > transverse.ratio[(j + 2) % 3] ? (j + 1) % 3 : (j + 2) % 3;
-      fmt::print("{:>12g} {:>6} {:>12.6f} {:>12.6f} {:>12.6f} {:>11.3f}% {:>11.3f}%   {}\n",
-                 point.frequency_hz, axis_names[j], std::abs(h[0]), std::abs(h[1]), std::abs(h[2]),
+      fmt::print("{:>12g}{} {:>6} {:>12.6f} {:>12.6f} {:>12.6f} {:>11.3f}% {:>11.3f}%   {}\n",
+                 point.frequency_hz, level_column(fmt::format("{}", point.level_m_s2)),
+                 axis_names[j], std::abs(h[0]), std::abs(h[1]), std::abs(h[2]),
                  100.0 * transverse.largest, 100.0 * transverse.u_ratio[largest],
                  axis_names[largest]);
     }

@@ -2,22 +2,54 @@
 
 #include <cmath>
 
-#include "services/views/report/stored_result.hpp"
-
 namespace dyncal::inline views {
+namespace {
+
+double known_level(double level_m_s2) {
+  return std::isnan(level_m_s2) ? 0.0 : level_m_s2;
+}
+
+bool has_value(double magnitude, double phase_rad) {
+  return !std::isnan(magnitude) && !std::isnan(phase_rad);
+}
+
+} // namespace
+
+PointIdentity identity_of(const StoredValue& value) {
+  return {.channel = value.channel,
+          .frequency_hz = value.frequency_hz,
+          .level_m_s2 = known_level(value.level_m_s2),
+          .axis = value.excited_axis};
+}
 
 analysis::ComparedResult comparable(const StoredValue& value) {
   return {value.magnitude, 0.5 * value.of_magnitude.expanded, value.phase_rad,
           0.5 * value.of_phase.expanded};
 }
 
-Expected<ResultPoints> read_result_file(const std::filesystem::path& path, ByteCount& bytes) {
-  DYNCAL_TRY(const auto result, read_values(path, bytes));
+ResultPoints means_of(const StoredResult& result) {
   ResultPoints points;
   for (const StoredValue& value : result.values) {
-    if (!std::isnan(value.magnitude) && !std::isnan(value.phase_rad)) {
-      points[{value.channel, value.frequency_hz}] = {value.unit, comparable(value)};
+    if (has_value(value.magnitude, value.phase_rad)) {
+      points.emplace(identity_of(value), ResultPoint{value.unit, comparable(value)});
     }
+  }
+  return points;
+}
+
+ResultPoints repetitions_of(const StoredResult& result) {
+  ResultPoints points;
+  for (const StoredPoint& one : result.points) {
+    if (!one.valid || !has_value(one.magnitude, one.phase_rad)) {
+      continue;
+    }
+    PointIdentity identity = identity_of(one);
+    identity.level_m_s2 = known_level(identity.level_m_s2);
+    identity.attempt = 0;
+    points.emplace(std::move(identity), ResultPoint{one.unit,
+                                                    {one.magnitude, 0.5 * one.of_magnitude.expanded,
+                                                     one.phase_rad, 0.5 * one.of_phase.expanded},
+                                                    one.attempt});
   }
   return points;
 }

@@ -1,17 +1,14 @@
-// The transfer function in a result file of dyncal (the means over repetitions), for commands that
-// go on from results.
+// The points of a result file of dyncal, for commands that go on from results.
 //
-// Points without a value are left out. Fails (bad_file) as read_values() does. Any thread.
+// Points without a value are left out. Any thread.
 #pragma once
 
-#include <filesystem>
+#include <cstdint>
 #include <map>
 #include <string>
-#include <utility>
 
 #include "analysis/response/comparison.hpp"
-#include "services/base/byte_count.hpp"
-#include "services/base/error.hpp"
+#include "services/evaluation/result/point_identity.hpp"
 #include "services/views/report/stored_result.hpp"
 
 namespace dyncal::inline views {
@@ -19,15 +16,20 @@ namespace dyncal::inline views {
 struct ResultPoint {
   std::string unit;
   analysis::ComparedResult value;
+  std::uint32_t attempt = 0; // of a mean 0
 };
 
-// By channel and frequency in Hz.
-using ResultPoints = std::map<std::pair<std::string, double>, ResultPoint>;
+// In the order of their identity. Where a plan has one twice, in the order of its steps.
+using ResultPoints = std::multimap<PointIdentity, ResultPoint>;
+
+[[nodiscard]] PointIdentity identity_of(const StoredValue& value);
 
 // So that its factor 2 gives the U that was stated.
 [[nodiscard]] analysis::ComparedResult comparable(const StoredValue& value);
 
-[[nodiscard]] Expected<ResultPoints> read_result_file(const std::filesystem::path& path,
-                                                      ByteCount& bytes);
+[[nodiscard]] ResultPoints means_of(const StoredResult& result);
+// Of every repetition the last attempt, which is the one that counts: the attempt is left out of
+// their identity.
+[[nodiscard]] ResultPoints repetitions_of(const StoredResult& result);
 
 } // namespace dyncal::inline views
