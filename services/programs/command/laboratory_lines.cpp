@@ -1,5 +1,6 @@
 #include "services/programs/command/laboratory_lines.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/core.h>
@@ -42,9 +43,18 @@ std::string flags_text(const std::vector<Flag>& flags, Lines& lines) {
   return text;
 }
 
-std::string result_line(const std::string& place, const StepResult& result, Lines& lines) {
-  const std::string head = fmt::format("{}: step {}, {} Hz, #{}, {}", place, result.step,
-                                       result.frequency_text_hz, result.repetition, result.channel);
+bool has_several_levels(const network::Run& run) {
+  return std::any_of(run.results.begin(), run.results.end(), [&](const auto& one) {
+    return one.second.level_m_s2 != run.results.begin()->second.level_m_s2;
+  });
+}
+
+std::string result_line(const std::string& place, const StepResult& result, bool with_level,
+                        Lines& lines) {
+  const std::string level = with_level ? fmt::format(", {} m/s^2", result.level_m_s2) : "";
+  const std::string head =
+      fmt::format("{}: step {}, {} Hz{}, #{}, {}", place, result.step, result.frequency_text_hz,
+                  level, result.repetition, result.channel);
   const std::string flags = flags_text(result.flags, lines);
   if (!result.valid) {
     return fmt::format("{}: no result: {}{}", head, result.problem, flags);
@@ -98,10 +108,11 @@ void add_run(const network::Bench& bench, const network::Run& run, Lines& lines)
                                             step.frequency_text_hz, step.level_m_s2,
                                             to_string(step.state), attempt));
   }
+  const bool with_level = has_several_levels(run);
   for (const auto& [key, result] : run.results) {
     lines.emplace(
         fmt::format("5 {} {:06} {:06} {}", place, result.repetition, result.step, result.channel),
-        result_line(place, result, lines));
+        result_line(place, result, with_level, lines));
   }
   for (const auto& [channel, function] : run.transfer_functions) {
     lines.emplace(fmt::format("6 {} function {}", place, channel),

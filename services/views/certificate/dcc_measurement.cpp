@@ -167,6 +167,7 @@ void add_conditions(XmlElement parent, const CertificateContents& contents) {
     channels.push_back(channel.channel);
   }
   const std::vector<StoredPoint> points = contents.result.points_of(channels);
+  add_said("Excited axis", points.empty() ? "" : points.front().excited_axis);
   const std::string temperature = temperature_range(points);
   add_said("Temperature of the sensor",
            temperature.empty() ? ""

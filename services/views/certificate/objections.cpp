@@ -9,10 +9,16 @@
 #include <fmt/ranges.h>
 
 #include "services/views/certificate/refusing_flags.hpp"
+#include "services/views/report/result_file.hpp"
 #include "services/views/report/stated_value.hpp"
 
 namespace dyncal::inline views {
 namespace {
+
+// "80 Hz, repetition 2", with the level where the result has several.
+std::string place_of(const StoredResult& result, const PointIdentity& point) {
+  return place_text(point, {.levels = have_several_levels(result.values), .axes = false});
+}
 
 // Which values have a flag, by its name; a flag of the whole channel stands at "all frequencies".
 using FlagPlaces = std::map<std::string, std::vector<std::string>>;
@@ -37,11 +43,11 @@ FlagPlaces flag_places(const StoredResult& result, const std::string& channel) {
   const auto is_of_all = [&](const std::string& flag) { return places.contains(flag); };
   FlagPlaces single;
   for (const StoredValue& value : result.values_of(channel)) {
-    add_place(single, value.flag_names, value.frequency_text_hz + " Hz");
+    add_place(single, value.flag_names, place_of(result, identity_of(value)));
   }
   for (const StoredPoint& point : result.points_of(channel)) {
     if (point.valid) {
-      add_place(single, point.flag_names, point.frequency_text_hz + " Hz");
+      add_place(single, point.flag_names, place_of(result, mean_identity_of(point)));
     }
   }
   for (auto& [flag, where] : single) {
@@ -79,8 +85,7 @@ void add_missing_values(const StoredResult& result, const std::string& channel,
     if (point.valid) {
       measured_steps.insert(point.step);
     } else if (++invalid == 1) {
-      first = fmt::format("at {} Hz, repetition {}: {}", point.frequency_text_hz, point.repetition,
-                          point.problem);
+      first = fmt::format("at {}: {}", place_of(result, identity_of(point)), point.problem);
     }
   }
   if (invalid > 0) {
@@ -93,9 +98,9 @@ void add_missing_values(const StoredResult& result, const std::string& channel,
   }
   for (const StoredValue& value : result.values_of(channel)) {
     if (!can_be_stated(value)) {
-      objections.push_back(fmt::format("{} at {} Hz: the result has no value with a usable U; it "
-                                       "is left out",
-                                       channel, value.frequency_text_hz));
+      objections.push_back(fmt::format("{} at {}: the result has no value with a usable U; it is "
+                                       "left out",
+                                       channel, place_of(result, identity_of(value))));
     }
   }
 }
@@ -114,10 +119,9 @@ void add_losses(const StoredResult& result, const std::string& channel,
     const bool is_explained =
         std::any_of(point.flag_names.begin(), point.flag_names.end(), explains_loss);
     if (point.valid && point.lost > 0 && !is_explained) {
-      objections.push_back(fmt::format("{} at {} Hz, repetition {}: {} samples were lost within "
-                                       "the step, and no flag says why",
-                                       channel, point.frequency_text_hz, point.repetition,
-                                       point.lost));
+      objections.push_back(fmt::format("{} at {}: {} samples were lost within the step, and no "
+                                       "flag says why",
+                                       channel, place_of(result, identity_of(point)), point.lost));
     }
   }
 }

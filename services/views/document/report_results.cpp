@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "services/base/rounding.hpp"
 #include "services/contract/unit.hpp"
+#include "services/evaluation/result/delay_points.hpp"
+#include "services/evaluation/result/point_identity.hpp"
 #include "services/views/document/html.hpp"
 #include "services/views/figures/deviation.hpp"
 #include "services/views/report/stated_value.hpp"
@@ -79,6 +82,12 @@ std::string with_own_ids(std::string svg, std::size_t figure) {
   return begin == std::string::npos ? "" : svg.substr(begin);
 }
 
+// "80", with the level where there are several.
+std::string place_cell(const StoredPoint& point, bool with_level) {
+  return with_level ? fmt::format("{} at {:g} m/s²", point.frequency_text_hz, point.level_m_s2)
+                    : point.frequency_text_hz;
+}
+
 figures::TransferFunctionData transfer_data(const StoredResult& result, const std::string& channel,
                                             const std::vector<StoredValue>& values) {
   figures::TransferFunctionData data;
@@ -86,6 +95,7 @@ figures::TransferFunctionData transfer_data(const StoredResult& result, const st
   data.title = channel;
   data.subtitle = fmt::format("bench {}, run {}", result.bench, result.run);
   data.unit = short_form(values.front().unit);
+  data.excited_axis = values.front().excited_axis;
   for (const StoredPoint& point : result.points_of(channel)) {
     if (point.valid) {
       data.repetitions.push_back(
@@ -94,7 +104,9 @@ figures::TransferFunctionData transfer_data(const StoredResult& result, const st
             point.level_m_s2,
             {point.magnitude, point.u_magnitude, point.phase_rad, point.u_phase_rad},
             joined(point.flag_names)},
-           point.residual_rel()});
+           point.residual_rel(),
+           point.step,
+           point.attempt});
     }
   }
   for (const StoredValue& value : values) {
@@ -136,9 +148,11 @@ std::string delay_sentence(const StoredResult& result, const std::string& channe
   }
   analysis::CombinedUncertainty of_delay_us = delay->of_delay;
   of_delay_us.u *= 1e6;
-  return element("p", fmt::format("Group delay over all frequencies (from the slope of the phase): "
-                                  "{}.",
-                                  stated_text(1e6 * delay->delay_s, of_delay_us, "us")));
+  const std::set<double> levels = delay_levels_m_s2(result.values_of(channel));
+  return element(
+      "p", fmt::format("Group delay over all frequencies (from the slope of the phase{}): {}.",
+                       levels.empty() ? "" : fmt::format(" at {} m/s²", fmt::join(levels, ", ")),
+                       stated_text(1e6 * delay->delay_s, of_delay_us, "us")));
 }
 
 // The first valid result of every frequency: its budget stands for the others.
@@ -186,8 +200,9 @@ std::string budget_table(const std::vector<StoredPoint>& points,
   }
   head.emplace_back("<i>u</i>");
   HtmlTable table("budget", head);
+  const bool with_level = have_several_levels(points);
   for (const StoredPoint& point : points) {
-    std::vector<std::string> cells{point.frequency_text_hz};
+    std::vector<std::string> cells{place_cell(point, with_level)};
     double squares = 0.0;
     for (const analysis::Contribution& column : rows) {
       const auto found = std::find_if(
@@ -237,9 +252,10 @@ std::string budget_section(const StoredResult& result, const std::string& channe
 
 std::string missing_values(const StoredResult& result, const std::string& channel) {
   HtmlTable table("legend", {"<i>f</i> / Hz", "repetition", "why there is no value"});
+  const bool with_level = have_several_levels(result.points);
   for (const StoredPoint& point : result.points_of(channel)) {
     if (!point.valid) {
-      table.row({point.frequency_text_hz, std::to_string(point.repetition), point.problem});
+      table.row({place_cell(point, with_level), std::to_string(point.repetition), point.problem});
     }
   }
   return table.empty() ? "" : element("p", "Without a value:", "warning") + table.finish();
@@ -318,6 +334,7 @@ std::string single_results(const ReportContents& contents) {
                      element("p", "One result a step and repetition; u is a standard uncertainty "
                                   "(k = 1). The hash is the beginning of the SHA-256 of the "
                                   "samples used; the result file has all of it.");
+  const bool with_level = have_several_levels(contents.result.points);
   for (const std::string& channel : contents.channels) {
     HtmlTable table("single", {"<i>f</i> / Hz", "rep.", "|<i>H</i>|", "<i>u</i>", "<i>φ</i> / °",
                                "<i>u</i> / °", "measured <i>a</i>", "<i>T</i> / °C", "lost", "data",
@@ -328,7 +345,7 @@ std::string single_results(const ReportContents& contents) {
       const auto shown = [](double value, int decimals) {
         return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : std::string();
       };
-      table.row({point.frequency_text_hz, std::to_string(point.repetition),
+      table.row({place_cell(point, with_level), std::to_string(point.repetition),
                  point.valid ? magnitude.value : "no value", point.valid ? magnitude.u : "",
                  point.valid ? phase.value : "", point.valid ? phase.u : "",
                  shown(point.measured_level_m_s2, 3),

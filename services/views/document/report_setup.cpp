@@ -167,6 +167,7 @@ std::string conditions_section(const ReportContents& contents) {
   table.add("Temperature of the sensor, measured by itself",
             temperature.empty() ? "" : temperature + " °C");
   const std::string level = level_range(points);
+  table.add("Excited axis", points.empty() ? "" : points.front().excited_axis);
   table.add("Amplitude of the excitation, measured", level.empty() ? "" : level + " m/s²");
   table.add("Largest deviation from the planned amplitude", level_deviation(points));
   return "<h2>Conditions</h2>\n" + table.finish() + pauses_of(contents.result);

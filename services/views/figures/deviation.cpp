@@ -5,6 +5,7 @@
 #include <iterator>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -16,7 +17,7 @@ constexpr double percent = 100.0;
 constexpr double degrees = 180.0 / std::numbers::pi;
 
 struct Deviation {
-  std::uint32_t repetition = 0;
+  const RepetitionPoint* of = nullptr;
   double frequency_hz = 0.0;
   double magnitude_rel = 0.0;
   double u_magnitude_rel = 0.0;
@@ -25,8 +26,6 @@ struct Deviation {
   double half_magnitude_bar_rel = 0.0;
   double half_phase_bar_rad = 0.0;
   double residual_rel = 0.0;
-  std::string flags{};
-  std::uint32_t step = 0;
 };
 
 // Of the repetitions.
@@ -35,21 +34,28 @@ ErrorBars bars_of(const TransferFunctionData& data) {
   return have_band ? ErrorBars::standard : data.error_bars;
 }
 
-std::vector<Deviation> deviations_of(const TransferFunctionData& data) {
+// In the order of the repetitions; nothing for one without a mean. They live as long as the data.
+std::vector<std::optional<Deviation>> deviations_of(const TransferFunctionData& data) {
   const ErrorBars bars = bars_of(data);
-  std::vector<Deviation> deviations;
-  for (const auto& [repetition, point, residual_rel, step] : data.repetitions) {
+  std::vector<std::optional<Deviation>> deviations;
+  for (const RepetitionPoint& one : data.repetitions) {
+    const ValueOverFrequency& point = one.point;
     const ValueOverFrequency* mean = mean_of(point, data);
+    auto& deviation = deviations.emplace_back();
     if (mean == nullptr) {
       continue;
     }
     const double magnitude = mean->value.magnitude;
-    deviations.push_back(
-        {repetition, point.frequency_hz, point.value.magnitude / magnitude - 1.0,
-         point.value.u_magnitude / magnitude,
-         std::remainder(point.value.phase_rad - mean->value.phase_rad, 2 * std::numbers::pi),
-         point.value.u_phase_rad, half_magnitude_bar(point, bars) / magnitude,
-         half_phase_bar(point, bars), residual_rel, point.flags, step});
+    deviation = {
+        &one,
+        point.frequency_hz,
+        point.value.magnitude / magnitude - 1.0,
+        point.value.u_magnitude / magnitude,
+        std::remainder(point.value.phase_rad - mean->value.phase_rad, 2 * std::numbers::pi),
+        point.value.u_phase_rad,
+        half_magnitude_bar(point, bars) / magnitude,
+        half_phase_bar(point, bars),
+        one.residual_rel};
   }
   return deviations;
 }
@@ -58,21 +64,22 @@ using Quantity = Point (*)(const Deviation&);
 
 Point magnitude(const Deviation& deviation) {
   return {deviation.frequency_hz, percent * deviation.magnitude_rel,
-          percent * deviation.half_magnitude_bar_rel, deviation.step};
+          percent * deviation.half_magnitude_bar_rel, deviation.of->step};
 }
 Point phase(const Deviation& deviation) {
   return {deviation.frequency_hz, degrees * deviation.phase_rad,
-          degrees * deviation.half_phase_bar_rad, deviation.step};
+          degrees * deviation.half_phase_bar_rad, deviation.of->step};
 }
 Point residual(const Deviation& deviation) {
-  return {deviation.frequency_hz, percent * deviation.residual_rel, 0.0, deviation.step};
+  return {deviation.frequency_hz, percent * deviation.residual_rel, 0.0, deviation.of->step};
 }
 
-Panel panel_of(const std::vector<Deviation>& deviations, ErrorBars bars, Quantity quantity,
-               std::string y_label) {
-  std::map<std::uint32_t, std::vector<Point>> by_repetition;
-  for (const Deviation& deviation : deviations) {
-    by_repetition[deviation.repetition].push_back(quantity(deviation));
+Panel panel_of(const TransferFunctionData& data,
+               const std::vector<std::optional<Deviation>>& deviations, ErrorBars bars,
+               Quantity quantity, std::string y_label) {
+  std::vector<std::optional<Point>> points;
+  for (const auto& deviation : deviations) {
+    points.push_back(deviation ? std::optional(quantity(*deviation)) : std::nullopt);
   }
   Panel panel;
   panel.x_label = "frequency in Hz";
@@ -80,12 +87,11 @@ Panel panel_of(const std::vector<Deviation>& deviations, ErrorBars bars, Quantit
   panel.x_scale = Scale::logarithmic;
   panel.x_tick_labels = false;
   panel.colour = "#cccccc";
-  for (auto& [repetition, points] : by_repetition) {
-    const std::size_t index = panel.series.size();
-    panel.series.push_back({.label = repetition_label(repetition, bars),
-                            .points = std::move(points),
-                            .colour = series_colour(index),
-                            .marker = series_marker(index),
+  for (MarkerGroup& group : marker_groups(data, points, bars)) {
+    panel.series.push_back({.label = std::move(group.label),
+                            .points = std::move(group.points),
+                            .colour = series_colour(group.colour),
+                            .marker = series_marker(group.colour),
                             .radius = 3.5});
   }
   return panel;
@@ -97,13 +103,16 @@ void add_mean(Panel& panel, const TransferFunctionData& data,
   if (data.means_are_plain || data.error_bars == ErrorBars::none) {
     return;
   }
-  panel.band_label = fmt::format("± {} of the mean", symbol_of(data.error_bars));
+  panel.band_label = fmt::format("± {} of the mean{}", symbol_of(data.error_bars),
+                                 told_levels(data).empty() ? "" : ", the largest of all levels");
+  std::map<double, double> half_by_frequency;
   for (const ValueOverFrequency& mean : data.mean) {
-    const double half = half_width(mean, data.error_bars);
-    panel.band.push_back({mean.frequency_hz, -half, half});
+    double& half = half_by_frequency[mean.frequency_hz];
+    half = std::max(half, half_width(mean, data.error_bars));
   }
-  std::sort(panel.band.begin(), panel.band.end(),
-            [](const BandPoint& a, const BandPoint& b) { return a.x < b.x; });
+  for (const auto& [frequency_hz, half] : half_by_frequency) {
+    panel.band.push_back({frequency_hz, -half, half});
+  }
 }
 
 double magnitude_half_width(const ValueOverFrequency& mean, ErrorBars bars) {
@@ -113,7 +122,8 @@ double phase_half_width(const ValueOverFrequency& mean, ErrorBars bars) {
   return degrees * half_phase_bar(mean, bars);
 }
 
-std::string csv_of(const TransferFunctionData& data, const std::vector<Deviation>& deviations) {
+std::string csv_of(const TransferFunctionData& data,
+                   const std::vector<std::optional<Deviation>>& deviations) {
   std::string csv = csv_comment(data.title);
   if (!data.subtitle.empty()) {
     csv += csv_comment(data.subtitle);
@@ -123,12 +133,16 @@ std::string csv_of(const TransferFunctionData& data, const std::vector<Deviation
       "standard uncertainty of the repetition; residual: what the fitted sine "
       "leaves of the channel, over its amplitude");
   csv += "repetition,frequency_hz,deviation_magnitude_rel,u_magnitude_rel,deviation_phase_rad,"
-         "u_phase_rad,residual_rel,flags\n";
-  for (const Deviation& one : deviations) {
-    fmt::format_to(std::back_inserter(csv), "{},{},{},{},{},{},{},{}\n", one.repetition,
-                   csv_number(one.frequency_hz), csv_number(one.magnitude_rel),
-                   csv_number(one.u_magnitude_rel), csv_number(one.phase_rad),
-                   csv_number(one.u_phase_rad), csv_number(one.residual_rel), one.flags);
+         "u_phase_rad,residual_rel,flags,level_m_s2,excited_axis,attempt\n";
+  for (const auto& one : deviations) {
+    if (one) {
+      fmt::format_to(std::back_inserter(csv), "{},{},{},{},{},{},{},{},{},{},{}\n",
+                     one->of->repetition, csv_number(one->frequency_hz),
+                     csv_number(one->magnitude_rel), csv_number(one->u_magnitude_rel),
+                     csv_number(one->phase_rad), csv_number(one->u_phase_rad),
+                     csv_number(one->residual_rel), one->of->point.flags,
+                     csv_number(one->of->point.level_m_s2), data.excited_axis, one->of->attempt);
+    }
   }
   return csv;
 }
@@ -136,17 +150,18 @@ std::string csv_of(const TransferFunctionData& data, const std::vector<Deviation
 } // namespace
 
 Figure deviation_figure(const TransferFunctionData& data, const std::string& name) {
-  const std::vector<Deviation> deviations = deviations_of(data);
+  const auto deviations = deviations_of(data);
   const ErrorBars bars = bars_of(data);
   Picture picture{.title = {data.title + ": repetitions less their mean", data.subtitle},
                   .panel_height = 190};
-  picture.panels = {panel_of(deviations, bars, magnitude, "magnitude in %"),
-                    panel_of(deviations, bars, phase, "phase in degrees")};
+  picture.panels = {panel_of(data, deviations, bars, magnitude, "magnitude in %"),
+                    panel_of(data, deviations, bars, phase, "phase in degrees")};
   add_mean(picture.panels[0], data, magnitude_half_width);
   add_mean(picture.panels[1], data, phase_half_width);
   if (std::any_of(deviations.begin(), deviations.end(),
-                  [](const Deviation& one) { return std::isfinite(one.residual_rel); })) {
-    Panel residuals = panel_of(deviations, ErrorBars::none, residual, "residual of the fit in %");
+                  [](const auto& one) { return one && std::isfinite(one->residual_rel); })) {
+    Panel residuals =
+        panel_of(data, deviations, ErrorBars::none, residual, "residual of the fit in %");
     for (Series& series : residuals.series) {
       series.label.clear(); // those of the other panels, without the bars
     }

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <map>
 #include <numbers>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -40,21 +41,18 @@ ValueOverFrequency in_turn_of_mean(ValueOverFrequency point, const TransferFunct
 
 std::vector<Series> repetition_series(const TransferFunctionData& data, Quantity quantity) {
   const ErrorBars bars = data.means_are_plain ? data.error_bars : ErrorBars::none;
-  std::map<std::uint32_t, std::vector<Point>> by_repetition;
+  std::vector<std::optional<Point>> points;
   for (const RepetitionPoint& one : data.repetitions) {
-    Point point = quantity(in_turn_of_mean(one.point, data), bars);
-    point.step = one.step;
-    by_repetition[one.repetition].push_back(point);
+    points.emplace_back(quantity(in_turn_of_mean(one.point, data), bars))->step = one.step;
   }
   std::vector<Series> series;
-  for (auto& [repetition, points] : by_repetition) {
-    const auto index = series.size();
+  for (MarkerGroup& group : marker_groups(data, points, bars)) {
     // Markers of different size, because repetitions of a good sensor lie on top of each other.
-    series.push_back({.label = repetition_label(repetition, bars),
-                      .points = std::move(points),
-                      .colour = series_colour(index),
-                      .marker = series_marker(index),
-                      .radius = 6.0 - 1.2 * static_cast<double>(index % 3)});
+    series.push_back({.label = std::move(group.label),
+                      .points = std::move(group.points),
+                      .colour = series_colour(group.colour),
+                      .marker = series_marker(group.colour),
+                      .radius = 6.0 - 1.2 * static_cast<double>(group.colour % 3)});
   }
   return series;
 }
@@ -67,15 +65,41 @@ std::string mean_label(const TransferFunctionData& data) {
                                             : fmt::format("mean ± {}", symbol_of(data.error_bars));
 }
 
-Series mean_series(const TransferFunctionData& data, Quantity quantity) {
+// Of one level; nothing: of all.
+Series mean_series(const TransferFunctionData& data, Quantity quantity,
+                   std::optional<double> level_m_s2) {
   const ErrorBars bars = data.means_are_plain ? ErrorBars::none : data.error_bars;
   Series series{.label = mean_label(data), .colour = "#222222", .joined = true, .line_width = 1.1};
   for (const auto& point : data.mean) {
-    series.points.push_back(quantity(point, bars));
+    if (!level_m_s2 || point.level_m_s2 == *level_m_s2) {
+      series.points.push_back(quantity(point, bars));
+    }
   }
   std::sort(series.points.begin(), series.points.end(),
             [](const auto& a, const auto& b) { return a.x < b.x; });
   return series;
+}
+
+std::string level_text(double level_m_s2) {
+  return fmt::format("{:g} m/s²", level_m_s2);
+}
+
+std::vector<Series> mean_series(const TransferFunctionData& data, Quantity quantity) {
+  if (data.mean.empty()) {
+    return {};
+  }
+  const std::vector<double> levels = told_levels(data);
+  if (levels.empty()) {
+    return {mean_series(data, quantity, std::nullopt)};
+  }
+  std::vector<Series> all;
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    Series& one = all.emplace_back(mean_series(data, quantity, levels[i]));
+    one.label = fmt::format("{}: {}", level_text(levels[i]), one.label);
+    one.colour = series_colour(i);
+  }
+  std::erase_if(all, [](const Series& one) { return one.points.empty(); });
+  return all;
 }
 
 // A ring around every mean that has a flag.
@@ -116,10 +140,9 @@ Panel quantity_panel(const TransferFunctionData& data, Quantity quantity) {
   panel.x_label = "frequency in Hz";
   panel.x_scale = Scale::logarithmic;
   panel.enlarges_low_x = true;
-  panel.series = repetition_series(data, quantity);
-  if (!data.mean.empty()) {
-    panel.series.insert(panel.series.begin(), mean_series(data, quantity));
-  }
+  panel.series = mean_series(data, quantity);
+  std::vector<Series> repetitions = repetition_series(data, quantity);
+  std::move(repetitions.begin(), repetitions.end(), std::back_inserter(panel.series));
   if (Series flagged = flagged_series(data, quantity); !flagged.points.empty()) {
     panel.series.push_back(std::move(flagged));
   }
@@ -153,27 +176,28 @@ std::string csv_of(const TransferFunctionData& data) {
                      "of means by U and in (-pi, pi]");
   csv += "repetition,frequency_hz,magnitude,u_magnitude,phase_rad,u_phase_rad,flags,U_magnitude,"
          "U_phase_rad,magnitude_text,uncertainty_magnitude_text,phase_rad_text,"
-         "uncertainty_phase_rad_text\n";
-  const auto add = [&](const std::string& repetition, const ValueOverFrequency& p) {
+         "uncertainty_phase_rad_text,level_m_s2,excited_axis,attempt\n";
+  const auto add = [&](const std::string& repetition, const std::string& attempt,
+                       const ValueOverFrequency& p) {
     const bool is_mean = repetition == "mean";
     const RoundedValue magnitude = round_by_uncertainty(
         p.value.magnitude, is_mean ? p.expanded_magnitude : p.value.u_magnitude);
     const RoundedValue phase = is_mean
                                    ? round_phase(p.stated_phase_rad, p.expanded_phase_rad).radians
                                    : round_phase(p.value.phase_rad, p.value.u_phase_rad).radians;
-    fmt::format_to(std::back_inserter(csv), "{},{},{},{},{},{},{},{},{},{},{},{},{}\n", repetition,
-                   csv_number(p.frequency_hz), csv_number(p.value.magnitude),
+    fmt::format_to(std::back_inserter(csv), "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
+                   repetition, csv_number(p.frequency_hz), csv_number(p.value.magnitude),
                    csv_number(p.value.u_magnitude), csv_number(p.value.phase_rad),
                    csv_number(p.value.u_phase_rad), p.flags,
                    is_mean ? csv_number(p.expanded_magnitude) : "",
                    is_mean ? csv_number(p.expanded_phase_rad) : "", magnitude.value, magnitude.u,
-                   phase.value, phase.u);
+                   phase.value, phase.u, csv_number(p.level_m_s2), data.excited_axis, attempt);
   };
   for (const RepetitionPoint& one : data.repetitions) {
-    add(std::to_string(one.repetition), one.point);
+    add(std::to_string(one.repetition), std::to_string(one.attempt), one.point);
   }
   for (const auto& point : data.mean) {
-    add("mean", point);
+    add("mean", "", point);
   }
   return csv;
 }
@@ -216,9 +240,45 @@ double half_phase_bar(const ValueOverFrequency& value, ErrorBars bars) {
   return 0.0;
 }
 
-std::string repetition_label(std::uint32_t repetition, ErrorBars bars) {
-  return bars == ErrorBars::none ? fmt::format("#{}", repetition)
-                                 : fmt::format("#{} ± {}", repetition, symbol_of(bars));
+std::vector<double> told_levels(const TransferFunctionData& data) {
+  std::set<double> levels;
+  std::set<double> frequencies;
+  std::set<std::pair<double, double>> excited;
+  const auto add = [&](const ValueOverFrequency& one) {
+    levels.insert(one.level_m_s2);
+    frequencies.insert(one.frequency_hz);
+    excited.emplace(one.frequency_hz, one.level_m_s2);
+  };
+  std::for_each(data.mean.begin(), data.mean.end(), add);
+  for (const RepetitionPoint& one : data.repetitions) {
+    add(one.point);
+  }
+  return excited.size() > frequencies.size() ? std::vector(levels.begin(), levels.end())
+                                             : std::vector<double>{};
+}
+
+std::vector<MarkerGroup> marker_groups(const TransferFunctionData& data,
+                                       const std::vector<std::optional<Point>>& points,
+                                       ErrorBars bars) {
+  const std::vector<double> levels = told_levels(data);
+  std::map<double, MarkerGroup> by_place; // level, or repetition
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const RepetitionPoint& one = data.repetitions[i];
+    if (points[i]) {
+      by_place[levels.empty() ? one.repetition : one.point.level_m_s2].points.push_back(*points[i]);
+    }
+  }
+  std::vector<MarkerGroup> groups;
+  for (auto& [place, group] : by_place) {
+    group.label = levels.empty() ? fmt::format("#{}", place) : level_text(place);
+    group.label += bars == ErrorBars::none ? "" : fmt::format(" ± {}", symbol_of(bars));
+    group.colour = levels.empty()
+                       ? groups.size()
+                       : static_cast<std::size_t>(std::find(levels.begin(), levels.end(), place) -
+                                                  levels.begin());
+    groups.push_back(std::move(group));
+  }
+  return groups;
 }
 
 const ValueOverFrequency* mean_of(const ValueOverFrequency& repetition,

@@ -2,6 +2,9 @@
 // logarithmic axis, every repetition with a marker of its own, the mean as a line with error bars
 // of u or U, and the low frequencies enlarged where the plot has room (figure 5 of the paper).
 //
+// Where a frequency was excited at several levels, every level has markers of its own and a line of
+// its means, and the legend names it.
+//
 // Means with a flag have a ring around them, and the legend below the panels explains each flag.
 // Points of repetitions carry their step.
 //
@@ -46,13 +49,15 @@ struct RepetitionPoint {
   ValueOverFrequency point{};
   // What the fitted sine leaves of the channel, over its amplitude; NaN: not known.
   double residual_rel = std::numeric_limits<double>::quiet_NaN();
-  std::uint32_t step = 0; // 0: not known
+  std::uint32_t step = 0;    // 0: not known
+  std::uint32_t attempt = 1; // the excitation of the step
 };
 
 struct TransferFunctionData {
-  std::string title{};    // e.g. "acc-1: dau/acceleration_z"
-  std::string subtitle{}; // e.g. run and date; may be empty
-  std::string unit{};     // of the magnitude; "1" for none, empty: not known
+  std::string title{};        // e.g. "acc-1: dau/acceleration_z"
+  std::string subtitle{};     // e.g. run and date; may be empty
+  std::string unit{};         // of the magnitude; "1" for none, empty: not known
+  std::string excited_axis{}; // empty: not stated
   std::vector<RepetitionPoint> repetitions{};
   std::vector<ValueOverFrequency> mean{}; // unwrapped phase
   std::optional<analysis::GroupDelay> group_delay{};
@@ -67,8 +72,19 @@ struct TransferFunctionData {
 [[nodiscard]] double half_magnitude_bar(const ValueOverFrequency& value, ErrorBars bars);
 [[nodiscard]] double half_phase_bar(const ValueOverFrequency& value, ErrorBars bars);
 
-// "#2 ± u"; without bars "#2".
-[[nodiscard]] std::string repetition_label(std::uint32_t repetition, ErrorBars bars);
+// All levels, ascending, if there is a frequency that has several; else empty.
+[[nodiscard]] std::vector<double> told_levels(const TransferFunctionData& data);
+
+// Markers of one colour: of a repetition, or of a level where those are told apart.
+struct MarkerGroup {
+  std::string label{}; // "#2 ± u", "10 m/s² ± u"; without bars "#2"
+  std::size_t colour = 0;
+  std::vector<Point> points{};
+};
+// `points`: of each of the data's repetitions, in their order; nothing: not shown.
+[[nodiscard]] std::vector<MarkerGroup>
+marker_groups(const TransferFunctionData& data, const std::vector<std::optional<Point>>& points,
+              ErrorBars bars);
 
 // The mean at the frequency and level of a repetition; null where there is none. Lives as long as
 // the data.

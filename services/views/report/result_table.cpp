@@ -1,7 +1,6 @@
 #include "services/views/report/result_table.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <map>
 #include <set>
@@ -12,18 +11,20 @@
 #include "services/base/printable_text.hpp"
 #include "services/base/rounding.hpp"
 #include "services/contract/unit.hpp"
+#include "services/evaluation/result/delay_points.hpp"
+#include "services/evaluation/result/point_identity.hpp"
 #include "services/views/report/expanded_uncertainty.hpp"
 #include "services/views/report/flag_legend.hpp"
 
 namespace dyncal::inline views {
 namespace {
 
-constexpr std::size_t columns = 7;
-using Row = std::array<std::string, columns>;
+using Row = std::vector<std::string>; // as many in every row of a table
 
 // Right-aligned but for the last column.
 std::string aligned(const std::vector<Row>& rows) {
-  std::array<std::size_t, columns> width{};
+  const std::size_t columns = rows.front().size();
+  std::vector<std::size_t> width(columns);
   for (const Row& row : rows) {
     for (std::size_t i = 0; i < columns; ++i) {
       width[i] = std::max(width[i], row[i].size());
@@ -69,14 +70,21 @@ std::string coverage_line(const TransferFunction& function) {
                      max_magnitude, max_phase, advice.empty() ? "" : "  " + advice + "\n");
 }
 
+// Which points the line takes where a frequency has several levels; else empty.
+std::string delay_levels_text(const TransferFunction& function) {
+  const std::set<double> levels = delay_levels_m_s2(function.points);
+  return levels.empty() ? "" : fmt::format(" (of the values at {} m/s^2)", fmt::join(levels, ", "));
+}
+
 std::string group_delay_line(const TransferFunction& function) {
   if (function.group_delay) {
     const analysis::GroupDelay& delay = *function.group_delay;
     const RoundedValue ms = round_by_uncertainty(delay.delay_s * 1e3, delay.of_delay.u * 1e3);
     const RoundedValue intercept = round_by_uncertainty(delay.intercept_rad, delay.of_intercept.u);
-    return fmt::format("  group delay {} ms, u = {} ms{}; intercept {} rad, u = {} rad{}\n",
+    return fmt::format("  group delay {} ms, u = {} ms{}; intercept {} rad, u = {} rad{}{}\n",
                        ms.value, ms.u, notable_k_text(delay.of_delay.k), intercept.value,
-                       intercept.u, notable_k_text(delay.of_intercept.k));
+                       intercept.u, notable_k_text(delay.of_intercept.k),
+                       delay_levels_text(function));
   }
   return function.group_delay_problem.empty()
              ? ""
@@ -104,8 +112,12 @@ std::string unit_text(const std::string& unit) {
   return unit == R"(\one)" ? "" : ", in " + one_line(short_form(unit));
 }
 
-std::string channel_table(const RunOutcome& outcome, const TransferFunction& function) {
-  std::string text = fmt::format("\n{}{}\n", one_line(function.channel), unit_text(function.unit));
+std::string axis_text(const TransferFunction& function) {
+  return function.excited_axis.empty() ? "" : ", excited axis " + one_line(function.excited_axis);
+}
+
+// With the levels where there are several.
+std::vector<Row> point_rows(const RunOutcome& outcome, const TransferFunction& function) {
   std::vector<Row> rows{{"f / Hz", "|H|", "u(|H|)", "arg H / rad", "u / rad", "n", "flags"}};
   bool any_flags = false;
   for (const FrequencyPoint& point : function.points) {
@@ -115,7 +127,20 @@ std::string channel_table(const RunOutcome& outcome, const TransferFunction& fun
   if (!any_flags) {
     rows.front().back().clear();
   }
-  text += aligned(rows);
+  if (have_several_levels(function.points)) {
+    rows.front().insert(rows.front().begin() + 1, "level / (m/s^2)");
+    for (std::size_t i = 0; i < function.points.size(); ++i) {
+      Row& row = rows[i + 1];
+      row.insert(row.begin() + 1, fmt::format("{}", function.points[i].level_m_s2));
+    }
+  }
+  return rows;
+}
+
+std::string channel_table(const RunOutcome& outcome, const TransferFunction& function) {
+  std::string text = fmt::format("\n{}{}{}\n", one_line(function.channel), unit_text(function.unit),
+                                 axis_text(function));
+  text += aligned(point_rows(outcome, function));
   text += coverage_line(function);
   text += group_delay_line(function);
   text += closures_lines(function);

@@ -33,7 +33,8 @@ figures::RepetitionPoint repetition_of(const StepResult& result) {
            {result.magnitude, result.u_magnitude, result.phase_rad, result.u_phase_rad},
            flag_names(result.flags)},
           fit_residual(result),
-          result.step};
+          result.step,
+          result.attempt};
 }
 
 std::vector<const StepResult*> valid_results(const RunOutcome& outcome,
@@ -55,6 +56,7 @@ figures::TransferFunctionData common_data(const RunOutcome& outcome,
   data.subtitle =
       fmt::format("bench {}, run {}", outcome.bench, RunIdentity::parse(outcome.run).name);
   data.unit = short_form(function.unit);
+  data.excited_axis = function.excited_axis;
   for (const StepResult* result : valid_results(outcome, function.channel)) {
     data.repetitions.push_back(repetition_of(*result));
   }
@@ -112,6 +114,7 @@ figures::TransferFunctionData transfer_data_so_far(const RunOutcome& outcome,
   TransferFunction function;
   function.channel = channel;
   function.unit = results.empty() ? "" : results.front()->unit;
+  function.excited_axis = results.empty() ? "" : results.front()->excited_axis;
   figures::TransferFunctionData data = common_data(outcome, function);
   data.means_are_plain = true;
   std::map<std::pair<double, double>, std::vector<const StepResult*>> by_excitation;

@@ -15,13 +15,13 @@ using testing::Contains;
 using testing::HasSubstr;
 using testing::Not;
 
-// Two frequencies, the second at two levels; the second repetition is 1 % and 2 mrad off.
+// Three frequencies, one at another level; the second repetition is 1 % and 2 mrad off.
 TransferFunctionData two_repetitions() {
   TransferFunctionData data;
   data.title = "acc-1: dau/acceleration_z";
   data.mean = {{10, 1, {2.0, 0.01, -7.0, 0.001}, "", 0.02, 0.003},
                {20, 1, {4.0, 0.01, -9.0, 0.001}, "", 0.02, 0.003},
-               {20, 5, {8.0, 0.01, -9.5, 0.001}, "", 0.02, 0.003}};
+               {40, 5, {8.0, 0.01, -9.5, 0.001}, "", 0.02, 0.003}};
   for (const ValueOverFrequency& mean : data.mean) {
     for (const std::uint32_t repetition : {1U, 2U}) {
       ValueOverFrequency point = mean;
@@ -92,11 +92,33 @@ TEST(DeviationFigure, LeavesOutWhatHasNoMean) {
 
 TEST(DeviationCsv, NamesColumnsAndHasEveryRepetition) {
   const std::string csv = deviation_figure(two_repetitions(), "").csv;
-  EXPECT_THAT(csv, HasSubstr("\nrepetition,frequency_hz,deviation_magnitude_rel,u_magnitude_rel,"
-                             "deviation_phase_rad,u_phase_rad,residual_rel,flags\n"));
+  EXPECT_THAT(
+      csv,
+      HasSubstr(
+          "\nrepetition,frequency_hz,deviation_magnitude_rel,u_magnitude_rel,"
+          "deviation_phase_rad,u_phase_rad,residual_rel,flags,level_m_s2,excited_axis,attempt\n"));
+  EXPECT_THAT(csv, HasSubstr(",nan,,5,,1\n"));
   EXPECT_THAT(csv, HasSubstr("\n1,10,0,0.0050000000000000001,"));
   EXPECT_THAT(csv, HasSubstr("\n2,20,0.010000000000000"));
   EXPECT_THAT(csv, Not(HasSubstr("inf")));
+}
+
+TEST(DeviationFigure, ShowsALevelInAColourWhereAFrequencyHasSeveral) {
+  TransferFunctionData data = two_repetitions();
+  for (auto* value : {&data.mean[2], &data.repetitions[4].point, &data.repetitions[5].point}) {
+    value->frequency_hz = 20;
+  }
+  data.mean[2].value.u_magnitude = 0.08; // 1 % of 8, where that of 4 is 0.25 %
+  const Panel panel = deviation_figure(data, "deviation").picture.panels[0];
+  ASSERT_EQ(panel.series.size(), 2U);
+  EXPECT_EQ(panel.series[0].label, "1 m/s² ± u");
+  EXPECT_EQ(panel.series[0].points.size(), 4U);
+  EXPECT_EQ(panel.series[1].label, "5 m/s² ± u");
+  ASSERT_EQ(panel.series[1].points.size(), 2U);
+  EXPECT_NEAR(panel.series[1].points[1].y, 1.0, 1e-9);
+  EXPECT_EQ(panel.band_label, "± u of the mean, the largest of all levels");
+  ASSERT_EQ(panel.band.size(), 2U);
+  EXPECT_DOUBLE_EQ(panel.band[1].high, 1.0);
 }
 
 TEST(DeviationFigure, HasNeitherBarsNorBandWithoutErrorBars) {

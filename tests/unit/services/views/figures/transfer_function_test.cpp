@@ -93,6 +93,47 @@ TEST(TransferFunctionFigure, NamesAxesUnitsRepetitionsAndGroupDelay) {
   }
 }
 
+TEST(TransferFunctionFigure, DrawsALineAndMarkersForEachLevelWhereAFrequencyHasSeveral) {
+  auto data = low_pass(3);
+  data.excited_axis = "z";
+  for (const double level : {2.0, 4.0}) {
+    ValueOverFrequency mean = data.mean[1];
+    mean.level_m_s2 = level;
+    mean.value.magnitude = level;
+    data.mean.push_back(mean);
+    data.repetitions.push_back({.repetition = 1, .point = mean, .step = 7, .attempt = 2});
+  }
+  const Figure figure = transfer_function_figure(data, "tf");
+  EXPECT_EQ(problem_of(figure.svg()), "");
+  const auto& series = figure.picture.panels[0].series;
+  ASSERT_EQ(series.size(), 6U);
+  const char* const labels[] = {"1 m/s²: mean ± u", "2 m/s²: mean ± u", "4 m/s²: mean ± u",
+                                "1 m/s²",           "2 m/s²",           "4 m/s²"};
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(series[i].label, labels[i]);
+    EXPECT_EQ(series[i].points.size(), i == 0 ? 3U : i == 3 ? 9U : 1U) << i;
+    EXPECT_EQ(series[i].colour, series[i % 3].colour);
+    EXPECT_EQ(series[i].joined, i < 3);
+  }
+  EXPECT_EQ(series[2].points[0].y, 4.0);
+  EXPECT_EQ(series[5].points[0].step, 7U);
+  EXPECT_THAT(figure.csv, HasSubstr(",level_m_s2,excited_axis,attempt\n"));
+  EXPECT_THAT(figure.csv, HasSubstr(",4,z,2\n")); // the repetition
+  EXPECT_THAT(figure.csv, HasSubstr(",4,z,\n"));  // the mean
+}
+
+TEST(TransferFunctionFigure, KeepsOneLineWhereEveryFrequencyHasALevelOfItsOwn) {
+  auto data = low_pass(3);
+  data.mean[0].level_m_s2 = 0.5;
+  for (std::size_t i = 0; i < 3; ++i) {
+    data.repetitions[i].point.level_m_s2 = 0.5;
+  }
+  const auto series = transfer_function_figure(data, "tf").picture.panels[0].series;
+  ASSERT_EQ(series.size(), 4U);
+  EXPECT_EQ(series[0].label, "mean ± u");
+  EXPECT_EQ(series[1].label, "#1");
+}
+
 TEST(TransferFunctionFigure, IsDrawnWithoutData) {
   const auto figure = transfer_function_figure({}, "tf");
   EXPECT_EQ(problem_of(figure.svg()), "");
@@ -144,7 +185,7 @@ TEST(TransferFunctionCsv, SaysUnitsAndPhaseConvention) {
       csv,
       HasSubstr("\nrepetition,frequency_hz,magnitude,u_magnitude,phase_rad,u_phase_rad,flags,"
                 "U_magnitude,U_phase_rad,magnitude_text,uncertainty_magnitude_text,phase_rad_text,"
-                "uncertainty_phase_rad_text\n"));
+                "uncertainty_phase_rad_text,level_m_s2,excited_axis,attempt\n"));
   EXPECT_THAT(csv, HasSubstr("intercept 0.25 rad"));
   EXPECT_THAT(csv, HasSubstr("\nmean,10,"));
   EXPECT_EQ(lines_without_comments(csv), 1U + 2 * 3 + 2);
@@ -165,7 +206,7 @@ TEST(TransferFunctionFigure, RingsMeansWithAFlagAndExplainsThemBelowThePanels) {
   // Two panels, and the sample in the legend.
   EXPECT_EQ(count_elements(figure.svg(), "circle"), count_elements(without.svg(), "circle") + 3);
   EXPECT_THAT(figure.csv, HasSubstr("# flag samples_lost (dau: samples lost): aaa"));
-  EXPECT_THAT(figure.csv, HasSubstr(",samples_lost,,,0.9976,0.0010,-0.6407,0.0020\n3,"));
+  EXPECT_THAT(figure.csv, HasSubstr(",samples_lost,,,0.9976,0.0010,-0.6407,0.0020,1,,1\n3,"));
 }
 
 TEST(TransferFunctionFigure, HasBarsByChoice) {

@@ -69,6 +69,21 @@ TEST(ResultTable, ShowsTextsOfOthersInItsOwnLinesOnly) {
   EXPECT_THAT(table, HasSubstr("[...]"));
 }
 
+TEST(ResultTable, HasAColumnOfLevelsWhereThereAreSeveral) {
+  RunOutcome outcome = example_outcome();
+  EXPECT_THAT(result_table(outcome), Not(HasSubstr("level / (m/s^2)")));
+  TransferFunction& function = outcome.transfer_functions.front();
+  function.points.push_back(function.points.back());
+  function.points.back().level_m_s2 = 10.0;
+  function.excited_axis = "z";
+  const std::string table = result_table(outcome);
+  EXPECT_THAT(table, HasSubstr("dau/acceleration_z, excited axis z\n"));
+  EXPECT_THAT(table, HasSubstr("  f / Hz  level / (m/s^2)     |H|"));
+  EXPECT_THAT(table, HasSubstr("      20             2.75  1.0000"));
+  EXPECT_THAT(table, HasSubstr("      20               10  1.0000"));
+  EXPECT_THAT(table, HasSubstr("rad (of the values at 2.75 m/s^2)\n"));
+}
+
 TEST(ResultTable, ShowsSmallMagnitudes) {
   RunOutcome outcome = example_outcome();
   for (FrequencyPoint& point : outcome.transfer_functions.front().points) {
