@@ -13,6 +13,7 @@
 //   visit.derived("phase_deg", value)       follows from other members: written, never read
 //   visit.derived_if("fit", optional)       the same, absent where there is none
 //   visit.unless_empty("recipe", one.text)  absent where it is empty
+//   visit.unless("attempt", one.attempt, 1U)  absent where it is that
 //
 // Units and signs are those of the structs. Templates, any thread.
 #pragma once

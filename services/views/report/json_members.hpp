@@ -55,6 +55,12 @@ public:
       json_[name] = of(value);
     }
   }
+  template <class T>
+  void unless(const char* name, const T& value, const T& usual) {
+    if (value != usual) {
+      json_[name] = of(value);
+    }
+  }
   template <class Enum>
   void named(const char* name, Enum value, Enum last) {
     named(name, value, last, [](Enum one) { return to_string(one); });
@@ -135,6 +141,10 @@ public:
   void derived_if(const char* /*name*/, const T& /*value*/) {}
   template <class T>
   void unless_empty(const char* name, T& value) {
+    (*this)(name, value);
+  }
+  template <class T>
+  void unless(const char* name, T& value, const T& /*usual*/) {
     (*this)(name, value);
   }
   template <class Enum>

@@ -124,9 +124,7 @@ void members(auto& visit, Either<StoredPoint> auto& one) {
   }
   visit("temperature_degc", one.temperature_degc);
   visit("monte_carlo", one.monte_carlo);
-  if (one.attempt > 1) {
-    visit("attempt", one.attempt);
-  }
+  visit.unless("attempt", one.attempt, 1U);
   if (one.series) {
     visit("sample_rate_hz", one.series->sample_rate_hz);
     visit("u_sample_rate_hz", one.series->u_sample_rate_hz);

@@ -50,6 +50,7 @@ TEST(ResultFile, GivesSingleResultsByTheirRepetitionWhateverTheAttempt) {
   RunOutcome outcome = tests::example_outcome();
   StepResult& single = outcome.results.front();
   single.attempt = 2;
+  single.u_magnitude = 1e-3;
   single.excited_axis = "z";
   const tests::TemporaryFolder folder;
   const auto path = folder.path() / "result.json";
