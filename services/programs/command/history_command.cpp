@@ -27,8 +27,7 @@ namespace {
 struct HistoryOptions {
   StorePlace store;
   std::string sensor;
-  std::string channel;                // empty: all
-  std::optional<double> frequency_hz; // nothing: all
+  HistoryFilter filter;
   std::optional<std::filesystem::path> figures;
   bool json = false;
 };
@@ -37,9 +36,10 @@ void add_history(CLI::App& command, HistoryOptions& history) {
   command
       .add_option("SENSOR", history.sensor, "serial number, device or source, as 'runs' lists it")
       ->required();
-  command.add_option("--channel", history.channel, "only this channel (default: all)");
-  add_checked(command, "--frequency", history.frequency_hz, "only this frequency in Hz",
+  command.add_option("--channel", history.filter.channel, "only this channel (default: all)");
+  add_checked(command, "--frequency", history.filter.frequency_hz, "only this frequency in Hz",
               CLI::PositiveNumber);
+  command.add_option("--level", history.filter.level_m_s2, "only this planned level in m/s^2");
   command.add_option("--figures", history.figures, "write figures (SVG and CSV) into this folder");
   command.add_flag("--json", history.json, "print JSON");
   add_store_place(command, history.store);
@@ -87,6 +87,10 @@ void print_json(const History& history) {
   Json json{{"sensor", history.sensor}, {"calibrations", Json::array()}, {"lines", Json::array()}};
   for (const Calibration& calibration : history.calibrations) {
     const StoredRun& run = calibration.run;
+    Json open = Json::array();
+    for (const OpenClosure& closure : calibration.open_closures) {
+      open.push_back(closure.sentence);
+    }
     json["calibrations"].push_back(
         {{"bench", run.bench},
          {"run", run.run},
@@ -96,17 +100,22 @@ void print_json(const History& history) {
          {"software", run.software},
          {"recipe_sha256", run.recipe_sha256},
          {"result_sha256", run.result_sha256},
-         {"folder", run.folder}});
+         {"folder", run.folder},
+         {"open_closures", std::move(open)}});
   }
   for (const HistoryLine& line : history.lines) {
     Json values = Json::array();
     for (const HistoryValue& value : line.values) {
       values.push_back(value_json(value));
     }
-    json["lines"].push_back({{"channel", line.channel},
-                             {"frequency_text_hz", line.frequency_text_hz},
-                             {"frequency_hz", line.frequency_hz},
-                             {"values", std::move(values)}});
+    const PointIdentity& point = line.point;
+    json["lines"].push_back(
+        {{"channel", point.channel},
+         {"frequency_text_hz", line.frequency_text_hz},
+         {"frequency_hz", point.frequency_hz},
+         {"level_m_s2", number_or_null(point.level_m_s2)},
+         {"excited_axis", point.axis.empty() ? Json(nullptr) : Json(point.axis)},
+         {"values", std::move(values)}});
   }
   fmt::print("{}\n", json_text(json, 2));
 }
@@ -117,8 +126,7 @@ std::string en_text(std::optional<double> en) {
 
 void print_line(const HistoryLine& line, const History& history) {
   const std::string unit = short_form(line.values.back().point.unit);
-  fmt::print("\n{} at {} Hz, magnitude in {}\n", one_line(line.channel),
-             one_line(line.frequency_text_hz),
+  fmt::print("\n{}, magnitude in {}\n", one_line(to_string(line.point, history.differences())),
              unit.empty() ? "a unit that is not known" : one_line(unit));
   fmt::print("{:<20} {:<12} {:>13} {:>10} {:>10} {:>7} {:>11} {:>9} {:>9} {:>7}\n", "begin (UTC)",
              "state", "|H|", "U", "d|H| / %", "E_n", "arg H / deg", "U / deg", "d / deg", "E_n");
@@ -139,6 +147,15 @@ void print_line(const HistoryLine& line, const History& history) {
   }
 }
 
+void print_open_closures(const History& history) {
+  for (const Calibration& calibration : history.calibrations) {
+    for (const OpenClosure& closure : calibration.open_closures) {
+      fmt::print("open closure of the calibration of {}: {}\n", one_line(day_and_time(calibration)),
+                 one_line(closure.sentence));
+    }
+  }
+}
+
 void print_tables(const History& history) {
   fmt::print("{}: {} calibrations, deviations from the first, E_n against the one before, each U "
              "at its own k\n",
@@ -155,6 +172,7 @@ void print_tables(const History& history) {
   fmt::print("\n{} of {} values agree with the calibration before (|E_n| <= 1 in magnitude and "
              "phase)\n",
              agreeing, compared);
+  print_open_closures(history);
 }
 
 figures::DriftData drift_of(const std::string& channel, const History& history) {
@@ -164,11 +182,14 @@ figures::DriftData drift_of(const std::string& channel, const History& history) 
   data.subtitle = fmt::format("{} calibrations, the first on {}", history.calibrations.size(),
                               day_and_time(history.calibrations.front()));
   for (const HistoryLine& line : history.lines) {
-    if (line.channel != channel) {
+    if (line.point.channel != channel) {
       continue;
     }
     figures::DriftLine& drawn = data.lines.emplace_back();
-    drawn.frequency_hz = line.frequency_hz;
+    drawn.label = place_text(line.point, history.differences());
+    drawn.frequency_hz = line.point.frequency_hz;
+    drawn.level_m_s2 = line.point.level_m_s2;
+    drawn.excited_axis = line.point.axis;
     data.unit = short_form(line.values.back().point.unit);
     for (const HistoryValue& value : line.values) {
       const Calibration& calibration = history.calibrations[value.calibration];
@@ -189,10 +210,10 @@ figures::DriftData drift_of(const std::string& channel, const History& history) 
 Expected<void> write_drift(const History& history, const std::filesystem::path& folder) {
   std::string channel;
   for (const HistoryLine& line : history.lines) {
-    if (line.channel == channel) {
+    if (line.point.channel == channel) {
       continue;
     }
-    channel = line.channel;
+    channel = line.point.channel;
     std::string name = "drift-" + channel;
     for (char& c : name) {
       c = c == '/' ? '-' : c;
@@ -210,7 +231,7 @@ Expected<History> look_up(const HistoryOptions& command, const SharedWorkCount& 
   DYNCAL_TRY(auto store, Store::open_existing(command.store.text()));
   DYNCAL_TRY(auto calibrations, store->calibrations(command.sensor, count));
   count->begin("comparing", "", 0);
-  return history_of(command.sensor, std::move(calibrations), command.channel, command.frequency_hz);
+  return history_of(command.sensor, std::move(calibrations), command.filter);
 }
 
 Expected<void> run_history(const HistoryOptions& command) {
@@ -222,9 +243,10 @@ Expected<void> run_history(const HistoryOptions& command) {
                 fmt::format("the store has no calibration of sensor '{}' with a value{}; 'dyncal "
                             "runs' lists serial numbers and sources",
                             command.sensor,
-                            command.channel.empty() && !command.frequency_hz
+                            command.filter.channel.empty() && !command.filter.frequency_hz &&
+                                    !command.filter.level_m_s2
                                 ? ""
-                                : " at this channel and frequency"));
+                                : " at this channel, frequency and level"));
   }
   if (command.figures) {
     DYNCAL_TRY(write_drift(history, *command.figures));

@@ -41,6 +41,16 @@ Json sensors_json(const std::vector<StoredRun>& runs) {
   return sensors;
 }
 
+Json open_closures(const Calibration& calibration, const std::string& channel) {
+  Json sentences = Json::array();
+  for (const OpenClosure& closure : calibration.open_closures) {
+    if (closure.channel == channel) {
+      sentences.push_back(closure.sentence);
+    }
+  }
+  return sentences;
+}
+
 // One row a run and channel.
 Json runs_json(const std::vector<Calibration>& calibrations) {
   Json runs = Json::array();
@@ -56,6 +66,7 @@ Json runs_json(const std::vector<Calibration>& calibrations) {
                       {"utc_ms", milliseconds(calibration.run.began_utc)},
                       {"state", calibration.run.state},
                       {"channel", channel},
+                      {"open_closures", open_closures(calibration, channel)},
                       {"points", std::move(points)}});
     }
   }
@@ -79,8 +90,10 @@ Json en_json(const History& history) {
       };
       rows.push_back({{"of", run_of(value)},
                       {"against", run_of(line.values[i - 1])},
-                      {"channel", line.channel},
+                      {"channel", line.point.channel},
                       {"frequency_text_hz", line.frequency_text_hz},
+                      {"level_m_s2", line.point.level_m_s2},
+                      {"excited_axis", line.point.axis},
                       {"en_magnitude", number(value.en_magnitude)},
                       {"en_phase", number(value.en_phase)}});
     }

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <utility>
+#include <set>
 
 #include "services/views/report/result_file.hpp"
 
@@ -16,12 +16,14 @@ bool is_usable(const StoredValue& point) {
          point.of_phase.expanded > 0.0;
 }
 
-bool is_wanted(const StoredValue& point, const std::string& channel,
-               std::optional<double> frequency_hz) {
-  constexpr double same_frequency_rel = 1e-6;
-  return (channel.empty() || point.channel == channel) &&
-         (!frequency_hz ||
-          std::abs(point.frequency_hz - *frequency_hz) <= same_frequency_rel * *frequency_hz);
+bool is_wanted(const StoredValue& point, const HistoryFilter& filter) {
+  constexpr double same_rel = 1e-6;
+  const auto is_same = [](double value, std::optional<double> wanted) {
+    return !wanted || std::abs(value - *wanted) <= same_rel * std::abs(*wanted);
+  };
+  return (filter.channel.empty() || point.channel == filter.channel) &&
+         is_same(point.frequency_hz, filter.frequency_hz) &&
+         is_same(point.level_m_s2, filter.level_m_s2);
 }
 
 bool are_comparable(const HistoryValue& before, const HistoryValue& value,
@@ -29,10 +31,7 @@ bool are_comparable(const HistoryValue& before, const HistoryValue& value,
   const StoredRun& a = calibrations[before.calibration].run;
   const StoredRun& b = calibrations[value.calibration].run;
   const bool same_run = a.bench == b.bench && a.run == b.run && a.began_utc == b.began_utc;
-  constexpr double same_level_rel = 0.05;
-  const bool same_level = !(std::abs(before.point.level_m_s2 - value.point.level_m_s2) >
-                            same_level_rel * std::abs(value.point.level_m_s2));
-  return !same_run && same_level && before.point.unit == value.point.unit;
+  return !same_run && before.point.unit == value.point.unit;
 }
 
 void compare(const HistoryLine& line, const std::vector<Calibration>& calibrations,
@@ -59,18 +58,25 @@ bool HistoryValue::agrees() const {
   return std::abs(en_magnitude.value_or(0.0)) <= 1.0 && std::abs(en_phase.value_or(0.0)) <= 1.0;
 }
 
+PointDifferences History::differences() const {
+  std::vector<PointIdentity> points;
+  for (const HistoryLine& line : lines) {
+    points.push_back(line.point);
+  }
+  return differences_of(points);
+}
+
 History history_of(std::string sensor, std::vector<Calibration> calibrations,
-                   const std::string& channel, std::optional<double> frequency_hz) {
-  std::map<std::pair<std::string, double>, HistoryLine> lines;
+                   const HistoryFilter& filter) {
+  std::map<PointIdentity, HistoryLine> lines;
   for (std::size_t i = 0; i < calibrations.size(); ++i) {
     for (const StoredValue& point : calibrations[i].points) {
-      if (!is_usable(point) || !is_wanted(point, channel, frequency_hz)) {
+      if (!is_usable(point) || !is_wanted(point, filter)) {
         continue;
       }
-      HistoryLine& line = lines[{point.channel, point.frequency_hz}];
-      line.channel = point.channel;
+      HistoryLine& line = lines[identity_of(point)];
+      line.point = identity_of(point);
       line.frequency_text_hz = point.frequency_text_hz;
-      line.frequency_hz = point.frequency_hz;
       HistoryValue value{.calibration = i, .point = point};
       if (!line.values.empty()) {
         compare(line, calibrations, value);
@@ -78,8 +84,16 @@ History history_of(std::string sensor, std::vector<Calibration> calibrations,
       line.values.push_back(std::move(value));
     }
   }
+  std::set<std::string> channels;
+  for (const auto& [point, line] : lines) {
+    channels.insert(point.channel);
+  }
+  for (Calibration& calibration : calibrations) {
+    std::erase_if(calibration.open_closures,
+                  [&](const OpenClosure& one) { return !channels.contains(one.channel); });
+  }
   History history{std::move(sensor), std::move(calibrations), {}};
-  for (auto& [place, line] : lines) {
+  for (auto& [point, line] : lines) {
     history.lines.push_back(std::move(line));
   }
   return history;

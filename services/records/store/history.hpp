@@ -1,13 +1,13 @@
-// The drift of a sensor over its calibrations: for every channel and frequency the values by time,
-// how far each is from the first, and E_n against the one before
+// The drift of a sensor over its calibrations: for every channel, frequency, level and excited axis
+// the values by time, how far each is from the first, and E_n against the one before
 // (analysis/response/comparison.hpp).
 //
 //   deviation    magnitude: (|H| - |H|_first) / |H|_first; phase: modulo 2 pi, in (-pi, pi]
-//   E_n          with U of both; nothing for the first, across a change of unit or level, and
-//                between two evaluations of one run
+//   E_n          with U of both; nothing for the first, across a change of unit, and between two
+//                evaluations of one run
 //
-// Values that are not known, and uncertainties that are not positive, are left out. Plain
-// functions, any thread.
+// Open closures are those of the channels that are shown. Values that are not known, and
+// uncertainties that are not positive, are left out. Plain functions, any thread.
 #pragma once
 
 #include <cstddef>
@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "services/evaluation/result/point_identity.hpp"
 #include "services/records/store/store.hpp"
 
 namespace dyncal::inline records {
@@ -30,22 +31,28 @@ struct HistoryValue {
   [[nodiscard]] bool agrees() const; // |E_n| <= 1, or there is none
 };
 
-struct HistoryLine { // one channel at one frequency, by time
-  std::string channel;
+struct HistoryLine { // one point, by time
+  PointIdentity point;
   std::string frequency_text_hz;
-  double frequency_hz = 0.0;
   std::vector<HistoryValue> values; // not empty
 };
 
 struct History {
   std::string sensor;
   std::vector<Calibration> calibrations;
-  std::vector<HistoryLine> lines; // by channel, then frequency
+  std::vector<HistoryLine> lines; // in the order of their points
+
+  // Of all its points: what titles of lines must say.
+  [[nodiscard]] PointDifferences differences() const;
 };
 
-// `channel`, `frequency_hz`: only these, if given.
+struct HistoryFilter { // empty: any
+  std::string channel{};
+  std::optional<double> frequency_hz{};
+  std::optional<double> level_m_s2{}; // as planned
+};
+
 [[nodiscard]] History history_of(std::string sensor, std::vector<Calibration> calibrations,
-                                 const std::string& channel = "",
-                                 std::optional<double> frequency_hz = {});
+                                 const HistoryFilter& filter = {});
 
 } // namespace dyncal::inline records

@@ -34,6 +34,18 @@ const std::vector<Change>& changes() {
        "result_sha256 TEXT NOT NULL REFERENCES results (result_sha256), channel TEXT NOT NULL, "
        "step BIGINT NOT NULL, repetition BIGINT NOT NULL, data_sha256 TEXT NOT NULL)",
        "CREATE INDEX samples_of_result ON samples (result_sha256)"},
+      // NULL of samples: not known, of results that were added before.
+      {"ALTER TABLE points ADD COLUMN excited_axis TEXT NOT NULL DEFAULT ''",
+       "ALTER TABLE samples ADD COLUMN frequency_hz DOUBLE PRECISION",
+       "ALTER TABLE samples ADD COLUMN level_m_s2 DOUBLE PRECISION",
+       "ALTER TABLE samples ADD COLUMN excited_axis TEXT NOT NULL DEFAULT ''",
+       "ALTER TABLE samples ADD COLUMN attempt BIGINT",
+       "CREATE TABLE closures ("
+       "result_sha256 TEXT NOT NULL REFERENCES results (result_sha256), source TEXT NOT NULL, "
+       "channel TEXT NOT NULL, kind TEXT NOT NULL, subject TEXT NOT NULL, verdict TEXT NOT NULL, "
+       "found DOUBLE PRECISION, u DOUBLE PRECISION, bound DOUBLE PRECISION, unit TEXT NOT NULL, "
+       "sentence TEXT NOT NULL)",
+       "CREATE INDEX closures_of_result ON closures (result_sha256)"},
   };
   return all;
 }

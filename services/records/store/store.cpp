@@ -184,7 +184,7 @@ Expected<void> Store::insert(const ResultRecord& record) {
          source.description.firmware, source.software});
     DYNCAL_TRY(inserted);
   }
-  return insert_values(result);
+  return insert_values(result).and_then([&] { return insert_closures(result); });
 }
 
 Expected<void> Store::insert_values(const StoredResult& result) {
@@ -192,14 +192,14 @@ Expected<void> Store::insert_values(const StoredResult& result) {
     const auto inserted = database_->execute(
         "INSERT INTO points (result_sha256, source, channel, frequency_text_hz, frequency_hz, "
         "level_m_s2, unit, magnitude, u_magnitude, k_magnitude, expanded_magnitude, phase_rad, "
-        "u_phase_rad, k_phase, expanded_phase_rad, flags) "
-        "VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16)",
+        "u_phase_rad, k_phase, expanded_phase_rad, flags, excited_axis) "
+        "VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16, $17)",
         {result.sha256, source_of(point.channel), point.channel, point.frequency_text_hz,
          point.frequency_hz, value(point.level_m_s2), point.unit, value(point.magnitude),
          value(point.of_magnitude.u), value(point.of_magnitude.k),
          value(point.of_magnitude.expanded), value(point.phase_rad), value(point.of_phase.u),
          value(point.of_phase.k), value(point.of_phase.expanded),
-         fmt::format("{}", fmt::join(point.flag_names, ","))});
+         fmt::format("{}", fmt::join(point.flag_names, ",")), point.excited_axis});
     DYNCAL_TRY(inserted);
   }
   for (const StoredPoint& point : result.points) {
@@ -207,17 +207,35 @@ Expected<void> Store::insert_values(const StoredResult& result) {
       continue;
     }
     const auto inserted = database_->execute(
-        "INSERT INTO samples (result_sha256, channel, step, repetition, data_sha256) "
-        "VALUES ($1, $2, $3, $4, $5)",
+        "INSERT INTO samples (result_sha256, channel, step, repetition, data_sha256, "
+        "frequency_hz, level_m_s2, excited_axis, attempt) "
+        "VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9)",
         {result.sha256, point.channel, std::int64_t{point.step}, std::int64_t{point.repetition},
-         point.data_sha256});
+         point.data_sha256, point.frequency_hz, value(point.level_m_s2), point.excited_axis,
+         std::int64_t{point.attempt}});
     DYNCAL_TRY(inserted);
   }
   return {};
 }
 
+Expected<void> Store::insert_closures(const StoredResult& result) {
+  for (const StoredChannel& channel : result.channels) {
+    for (const Closure& closure : channel.closures) {
+      const auto inserted = database_->execute(
+          "INSERT INTO closures (result_sha256, source, channel, kind, subject, verdict, found, u, "
+          "bound, unit, sentence) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11)",
+          {result.sha256, source_of(channel.channel), channel.channel,
+           std::string(to_string(closure.kind)), closure.subject,
+           std::string(to_string(closure.verdict)), value(closure.value), value(closure.u),
+           value(closure.limit), closure.unit, closure.sentence});
+      DYNCAL_TRY(inserted);
+    }
+  }
+  return {};
+}
+
 Expected<void> Store::remove(const std::string& result_sha256) {
-  for (const char* table : {"samples", "points", "sources", "results"}) {
+  for (const char* table : {"closures", "samples", "points", "sources", "results"}) {
     const auto removed = database_->execute(
         fmt::format("DELETE FROM {} WHERE result_sha256 = $1", table), {result_sha256});
     DYNCAL_TRY(removed);
@@ -267,8 +285,9 @@ Expected<std::vector<StoredValue>> Store::points_of(const std::string& result_sh
           "SELECT channel, frequency_text_hz, frequency_hz, level_m_s2, unit, magnitude, "
           "u_magnitude, "
           "k_magnitude, expanded_magnitude, phase_rad, u_phase_rad, k_phase, expanded_phase_rad, "
-          "flags "
-          "FROM points WHERE result_sha256 = $1 AND source = $2 ORDER BY channel, frequency_hz",
+          "flags, excited_axis "
+          "FROM points WHERE result_sha256 = $1 AND source = $2 "
+          "ORDER BY channel, frequency_hz, level_m_s2",
           {result_sha256, source}));
   std::vector<StoredValue> points;
   for (const DatabaseRow& row : rows) {
@@ -285,9 +304,29 @@ Expected<std::vector<StoredValue>> Store::points_of(const std::string& result_sh
     point.of_phase = {
         .u = number_of(row[10]), .k = number_of(row[11]), .expanded = number_of(row[12])};
     point.flag_names = names_in(text_of(row[13]));
+    point.excited_axis = text_of(row[14]);
     points.push_back(std::move(point));
   }
   return points;
+}
+
+Expected<std::vector<OpenClosure>> Store::open_closures_of(const std::string& result_sha256,
+                                                           const std::string& source) {
+  DYNCAL_TRY(const auto rows, database_->execute("SELECT channel, kind, sentence FROM closures "
+                                                 "WHERE result_sha256 = $1 AND source = $2 AND "
+                                                 "verdict = 'open' ORDER BY channel, kind",
+                                                 {result_sha256, source}));
+  std::vector<OpenClosure> all;
+  for (const DatabaseRow& row : rows) {
+    const auto kind = parse_closure_kind(text_of(row[1]));
+    const Closure closure{.kind = kind.value_or(ClosureKind::clock_rate),
+                          .verdict = Verdict::open,
+                          .sentence = text_of(row[2])};
+    if (kind && casts_doubt(closure)) {
+      all.push_back({text_of(row[0]), closure_line(text_of(row[0]), closure)});
+    }
+  }
+  return all;
 }
 
 Expected<std::vector<Calibration>> Store::calibrations(const std::string& sensor,
@@ -301,7 +340,8 @@ Expected<std::vector<Calibration>> Store::calibrations(const std::string& sensor
                                   ? points_of(run.result_sha256, source.source)
                                   : Expected<std::vector<StoredValue>>{});
       if (!points.empty()) {
-        calibrations.push_back({run, source.source, std::move(points)});
+        DYNCAL_TRY(auto open, open_closures_of(run.result_sha256, source.source));
+        calibrations.push_back({run, source.source, std::move(points), std::move(open)});
       }
     }
     add_done(count);

@@ -54,11 +54,17 @@ struct RunFilter { // empty: any
   std::string state{};
 };
 
+struct OpenClosure { // that casts doubt on values
+  std::string channel;
+  std::string sentence; // "dau/x: phase towards 0 Hz: ..."
+};
+
 // What one run says of one sensor.
 struct Calibration {
   StoredRun run;
   std::string source; // the sensor's, in the run
   std::vector<StoredValue> points;
+  std::vector<OpenClosure> open_closures{};
 };
 
 class Store {
@@ -82,10 +88,13 @@ private:
   Expected<StoreAddition> make_way(const ResultRecord& record);
   Expected<void> insert(const ResultRecord& record);
   Expected<void> insert_values(const StoredResult& result);
+  Expected<void> insert_closures(const StoredResult& result);
   Expected<void> remove(const std::string& result_sha256);
   Expected<std::vector<RunSource>> sources_of(const std::string& result_sha256);
   Expected<std::vector<StoredValue>> points_of(const std::string& result_sha256,
                                                const std::string& source);
+  Expected<std::vector<OpenClosure>> open_closures_of(const std::string& result_sha256,
+                                                      const std::string& source);
 
   std::unique_ptr<Database> database_;
 };

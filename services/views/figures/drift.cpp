@@ -44,7 +44,7 @@ Panel quantity_panel(const DriftData& data, Quantity quantity, const std::string
   panel.y_label = y_label;
   for (const DriftLine* line : shown_lines(data)) {
     const std::size_t index = panel.series.size();
-    Series series{.label = fmt::format("{:g} Hz", line->frequency_hz),
+    Series series{.label = line->label,
                   .colour = series_colour(index),
                   .marker = series_marker(index),
                   .joined = true};
@@ -64,15 +64,16 @@ std::string csv_of(const DriftData& data) {
                                  "(95.45 %); deviations are from the first calibration",
                                  data.unit.empty() ? "a unit that is not known" : data.unit));
   csv += "frequency_hz,run,began_utc,days,magnitude,U_magnitude,deviation_magnitude_rel,"
-         "phase_rad,U_phase_rad,deviation_phase_rad\n";
+         "phase_rad,U_phase_rad,deviation_phase_rad,level_m_s2,excited_axis\n";
   for (const DriftLine& line : data.lines) {
     for (const DriftValue& value : line.values) {
-      fmt::format_to(std::back_inserter(csv), "{},{},{},{},{},{},{},{},{},{}\n",
+      fmt::format_to(std::back_inserter(csv), "{},{},{},{},{},{},{},{},{},{},{},{}\n",
                      csv_number(line.frequency_hz), value.run, value.began_utc,
                      csv_number(value.days), csv_number(value.magnitude),
                      csv_number(value.expanded_magnitude),
                      csv_number(value.deviation_magnitude_rel), csv_number(value.phase_rad),
-                     csv_number(value.expanded_phase_rad), csv_number(value.deviation_phase_rad));
+                     csv_number(value.expanded_phase_rad), csv_number(value.deviation_phase_rad),
+                     csv_number(line.level_m_s2), line.excited_axis);
     }
   }
   return csv;

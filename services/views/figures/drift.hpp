@@ -1,6 +1,6 @@
 // How a sensor's response drifts over its calibrations, as a picture: deviation from the first
 // calibration over time with expanded uncertainty, magnitude in per cent above, phase in degrees
-// below; a line for every frequency, at most six that spread over the range. The CSV holds all.
+// below; a line for every point, at most six that spread over the range. The CSV holds all.
 #pragma once
 
 #include <string>
@@ -23,7 +23,10 @@ struct DriftValue {
 };
 
 struct DriftLine {
+  std::string label;
   double frequency_hz = 0.0;
+  double level_m_s2 = 0.0; // 0: not known
+  std::string excited_axis;
   std::vector<DriftValue> values;
 };
 
@@ -31,7 +34,7 @@ struct DriftData {
   std::string title{};
   std::string subtitle{};
   std::string unit{};             // of the magnitude; may be empty
-  std::vector<DriftLine> lines{}; // by frequency
+  std::vector<DriftLine> lines{}; // by frequency, then level
 };
 
 [[nodiscard]] Figure drift_figure(const DriftData& data, const std::string& name);

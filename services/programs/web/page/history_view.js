@@ -115,25 +115,30 @@ export class HistoryView {
       box.checked = !this.hidden.has(run.run);
       return element("li", {}, element("label", {}, box, " ", name_element(run.run, 48)), " ",
                      element("span", { class: "quiet" }, `${utc_text(run.utc_ms)}, `,
-                             name_element(run.bench, 32), `, ${run.points?.length ?? 0} frequencies`),
-                     " ", element("a", { href: href_of("run", run.bench, run.run) }, "open"));
+                             name_element(run.bench, 32), `, ${run.points?.length ?? 0} values`),
+                     " ", element("a", { href: href_of("run", run.bench, run.run) }, "open"),
+                     (run.open_closures ?? []).map((sentence) =>
+                       element("p", { class: "flagged" }, "▲ open closure: ",
+                               name_element(sentence, 300))));
     }));
   }
 
   // In the form in which the daemon describes the figures of a run.
   show_chart(chart, shown, quantity, y_label) {
-    const series = shown.map(({ run, index }) => ({
-      label: `${run.run}, ${utc_text(run.utc_ms).slice(0, 10)}`,
-      colour: series_colour(index),
-      marker: series_marker(index),
-      radius: 6 - 1.2 * (index % 3),
-      joined: true,
-      line_width: 1.3,
-      points: (run.points ?? []).map((p) => (quantity === "magnitude"
-        ? [p.frequency_hz, p.magnitude, p.U_magnitude ?? 0]
-        : [p.frequency_hz, p.unwrapped_phase_rad ?? p.phase_rad, p.U_phase_rad ?? 0]))
-        .sort((a, b) => a[0] - b[0]),
-    }));
+    const series = shown.flatMap(({ run, index }) => lines_of(run.points ?? []).map(
+      ({ name, points }, line) => ({
+        label: `${run.run}, ${utc_text(run.utc_ms).slice(0, 10)}${name}`,
+        colour: series_colour(index),
+        marker: series_marker(index + line),
+        radius: 6 - 1.2 * (index % 3),
+        joined: true,
+        line_width: 1.3,
+        points: points.map((p) => (quantity === "magnitude"
+          ? [p.frequency_hz, p.magnitude, p.U_magnitude ?? 0]
+          : [p.frequency_hz, p.unwrapped_phase_rad ?? p.phase_rad, p.U_phase_rad ?? 0]))
+          .sort((a, b) => a[0] - b[0]),
+      }),
+    ));
     chart.show({ x_label: "frequency in Hz", y_label: `${y_label}, bars: U`,
                  x_scale: "logarithmic", y_scale: "linear", y_range: null, series });
   }
@@ -144,13 +149,14 @@ export class HistoryView {
     errors.sort((a, b) => size_of(b) - size_of(a));
     set_shown(this.en_table, errors.length > 0);
     const apart = errors.filter((one) => !agrees(one)).length;
+    const place_of = place_texts(errors);
     set_text(this.worst, errors.length === 0 ? "There are not two runs to compare."
       : apart === 0 ? `✓ All ${errors.length} comparisons agree; the largest come first.`
                     : `▲ ${apart} of ${errors.length} comparisons do not agree; they come first.`);
     this.en_body.replaceChildren(...errors.slice(0, MAX_ROWS).map((one) =>
       element("tr", {}, element("th", { scope: "row" }, name_element(one.of, 40)),
               element("td", {}, name_element(one.against, 40)),
-              element("td", { class: "number" }, one.frequency_text_hz),
+              element("td", { class: "number" }, place_of(one)),
               element("td", { class: "number", title: full(one.en_magnitude) },
                       significant(one.en_magnitude, 2)),
               element("td", { class: "number", title: full(one.en_phase) },
@@ -166,6 +172,24 @@ export class HistoryView {
     this.magnitude.destroy();
     this.phase.destroy();
   }
+}
+
+// Points as lines: one, or one a level where a frequency has several levels.
+function lines_of(points) {
+  const levels = [...new Set(points.map((p) => p.level_m_s2))].sort((a, b) => a - b);
+  const frequencies = new Set(points.map((p) => p.frequency_hz));
+  const places = new Set(points.map((p) => `${p.frequency_hz} ${p.level_m_s2}`));
+  return places.size === frequencies.size ? [{ name: "", points }] : levels.map((level) => ({
+    name: `, ${significant(level)} m/s²`, points: points.filter((p) => p.level_m_s2 === level),
+  }));
+}
+
+// Frequency, with level and axis where they tell errors apart.
+function place_texts(errors) {
+  const has_several = (key) => new Set(errors.map((one) => one[key])).size > 1;
+  const [levels, axes] = [has_several("level_m_s2"), has_several("excited_axis")];
+  return (one) => `${one.frequency_text_hz}${levels ? `, ${significant(one.level_m_s2)} m/s²` : ""}` +
+    `${axes && one.excited_axis ? `, axis ${one.excited_axis}` : ""}`;
 }
 
 // The larger of both, which decides.

@@ -83,6 +83,27 @@ TEST_P(DatabaseTest, MigratesAnOlderDatabaseWithItsRows) {
   EXPECT_EQ(integer_of(versions->back()[0]), newest_store_version());
 }
 
+TEST_P(DatabaseTest, KeepsPointsAndSamplesOfAStoreWithoutAxes) {
+  const auto database = open();
+  ASSERT_TRUE(migrate(*database, 2));
+  ASSERT_TRUE(database->execute(
+      "INSERT INTO results VALUES ('a','b','c','bench','run','complete','m','','','sw',1,1,'','',"
+      "'','','')"));
+  ASSERT_TRUE(database->execute("INSERT INTO points VALUES ('a','dau','dau/x','80',80,10,'1',"
+                                "1,0.1,2,0.2,0,0.1,2,0.2,'')"));
+  ASSERT_TRUE(database->execute("INSERT INTO samples VALUES ('a','dau/x',1,1,'hash')"));
+  ASSERT_TRUE(migrate(*database));
+  const auto points = database->execute("SELECT frequency_hz, excited_axis FROM points");
+  ASSERT_TRUE(points && points->size() == 1);
+  EXPECT_EQ(number_of(points->front()[0]), 80.0);
+  EXPECT_EQ(text_of(points->front()[1]), "");
+  const auto samples = database->execute("SELECT data_sha256, attempt FROM samples");
+  ASSERT_TRUE(samples && samples->size() == 1);
+  EXPECT_EQ(text_of(samples->front()[0]), "hash");
+  EXPECT_TRUE(std::holds_alternative<std::monostate>(samples->front()[1])); // not known
+  EXPECT_TRUE(database->execute("SELECT * FROM closures")->empty());
+}
+
 TEST_P(DatabaseTest, LeavesADatabaseOfANewerProgramAlone) {
   const auto database = open();
   ASSERT_TRUE(migrate(*database));

@@ -61,16 +61,48 @@ TEST(History, TakesThePhaseModuloOneTurn) {
 TEST(History, DoesNotCompareWhatCannotBe) {
   StoredValue other_unit = point(10, 2.0, 0.0);
   other_unit.unit = R"(\volt)";
-  StoredValue other_level = other_unit;
-  other_level.level_m_s2 = 100.0;
   const History history =
       history_of("s", {calibration("r1", {point(10, 1.0, 0.0)}), calibration("r2", {other_unit}),
-                       calibration("r3", {other_level}), calibration("r3", {other_level})});
+                       calibration("r2", {other_unit})});
   const auto& values = history.lines.front().values;
-  ASSERT_EQ(values.size(), 4U);
+  ASSERT_EQ(values.size(), 3U);
   EXPECT_FALSE(values[1].en_magnitude);
-  EXPECT_FALSE(values[2].en_magnitude);
-  EXPECT_FALSE(values[3].en_magnitude); // another evaluation of the same run
+  EXPECT_FALSE(values[2].en_magnitude); // another evaluation of the same run
+}
+
+TEST(History, KeepsLevelsAndAxesApart) {
+  std::vector<StoredValue> levels;
+  for (const double level : {2.0, 4.0, 8.0, 12.0, 15.0}) {
+    levels.push_back(point(80, 1.0 + 0.01 * level, 0.0));
+    levels.back().level_m_s2 = level;
+  }
+  std::vector<StoredValue> along_z = levels;
+  for (StoredValue& value : along_z) {
+    value.excited_axis = "z";
+  }
+  const std::vector<Calibration> twice{calibration("r1", levels), calibration("r2", levels)};
+  const History history = history_of("s", twice);
+  ASSERT_EQ(history.lines.size(), 5U);
+  EXPECT_TRUE(history.differences().levels);
+  EXPECT_FALSE(history.differences().axes);
+  for (const HistoryLine& line : history.lines) {
+    ASSERT_EQ(line.values.size(), 2U);
+    EXPECT_EQ(line.values[1].deviation_magnitude_rel, 0.0);
+    EXPECT_EQ(*line.values[1].en_magnitude, 0.0);
+  }
+  EXPECT_EQ(history.lines[4].point.level_m_s2, 15.0);
+  EXPECT_EQ(history_of("s", twice, {.level_m_s2 = 8.0}).lines.size(), 1U);
+  const History axes = history_of("s", {calibration("r1", levels), calibration("r2", along_z)});
+  EXPECT_EQ(axes.lines.size(), 10U);
+  EXPECT_TRUE(axes.differences().axes);
+}
+
+TEST(History, HasTheOpenClosuresOfTheChannelsThatItShows) {
+  Calibration one = calibration("r1", {point(10, 1.0, 0.0)});
+  one.open_closures = {{"dau/z", "dau/z: level: off"}, {"dau/y", "dau/y: level: off"}};
+  const History history = history_of("s", {one});
+  ASSERT_EQ(history.calibrations[0].open_closures.size(), 1U);
+  EXPECT_EQ(history.calibrations[0].open_closures[0].sentence, "dau/z: level: off");
 }
 
 TEST(History, LeavesOutWhatIsNotKnown) {
@@ -86,10 +118,10 @@ TEST(History, ShowsOneChannelAndFrequencyIfAsked) {
   const std::vector<Calibration> all{
       calibration("r1", {point(20, 1.0, 0.0), point(10, 1.0, 0.0), y})};
   EXPECT_EQ(history_of("s", all).lines.size(), 3U);
-  EXPECT_EQ(history_of("s", all).lines[1].frequency_hz, 10.0);
-  EXPECT_EQ(history_of("s", all, "dau/z").lines.size(), 2U);
-  EXPECT_EQ(history_of("s", all, "dau/z", 20.0).lines.size(), 1U);
-  EXPECT_TRUE(history_of("s", all, "dau/z", 30.0).lines.empty());
+  EXPECT_EQ(history_of("s", all).lines[1].point.frequency_hz, 10.0);
+  EXPECT_EQ(history_of("s", all, {.channel = "dau/z"}).lines.size(), 2U);
+  EXPECT_EQ(history_of("s", all, {.channel = "dau/z", .frequency_hz = 20.0}).lines.size(), 1U);
+  EXPECT_TRUE(history_of("s", all, {.channel = "dau/z", .frequency_hz = 30.0}).lines.empty());
 }
 
 } // namespace

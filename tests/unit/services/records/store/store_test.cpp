@@ -151,6 +151,57 @@ TEST_P(StoreTest, GivesTheCalibrationsOfASensorByTime) {
   EXPECT_TRUE(store_->calibrations("42")->empty()); // the reference is calibrated by nobody
 }
 
+TEST_P(StoreTest, KeepsLevelsAxisAttemptAndClosures) {
+  RunOutcome outcome = tests::outcome_of(ExampleResult{});
+  outcome.results.front().attempt = 2;
+  outcome.results.front().excited_axis = "z";
+  TransferFunction& function = outcome.transfer_functions.front();
+  function.excited_axis = "z";
+  for (const double level : {2.0, 4.0, 15.0}) {
+    function.points.push_back(function.points.back());
+    function.points.back().level_m_s2 = level;
+  }
+  function.closures = {{.kind = ClosureKind::level,
+                        .subject = "20 Hz, 2 m/s^2",
+                        .verdict = Verdict::open,
+                        .value = 0.25,
+                        .limit = 0.1,
+                        .unit = "1",
+                        .sentence = "the level is off"},
+                       {.kind = ClosureKind::delay_fit, // which makes no value wrong
+                        .verdict = Verdict::open,
+                        .value = 5.0,
+                        .limit = 3.0,
+                        .unit = "1",
+                        .sentence = "phases are on no line"},
+                       {.kind = ClosureKind::first_repeated, .sentence = "not planned"}};
+  ASSERT_TRUE(add(outcome));
+  const auto calibrations = store_->calibrations("mpu-7");
+  ASSERT_TRUE(calibrations) << calibrations.error().message;
+  const Calibration& one = calibrations->front();
+  std::vector<double> levels;
+  for (const StoredValue& value : one.points) {
+    if (value.channel == "dau/acceleration_z" && value.frequency_hz == 20.0) {
+      levels.push_back(value.level_m_s2);
+      EXPECT_EQ(value.excited_axis, "z");
+    }
+  }
+  EXPECT_EQ(levels, (std::vector<double>{2.0, 2.75, 4.0, 15.0}));
+  ASSERT_THAT(one.open_closures, SizeIs(1));
+  EXPECT_EQ(one.open_closures[0].sentence,
+            "dau/acceleration_z: level of the excitation: the level is off");
+  EXPECT_EQ(count("closures"), 3);
+  const auto samples =
+      open()->execute("SELECT frequency_hz, level_m_s2, excited_axis, repetition, attempt "
+                      "FROM samples");
+  ASSERT_THAT(*samples, SizeIs(1));
+  EXPECT_EQ(number_of(samples->front()[0]), 10.0);
+  EXPECT_EQ(number_of(samples->front()[1]), 2.75);
+  EXPECT_EQ(text_of(samples->front()[2]), "z");
+  EXPECT_EQ(integer_of(samples->front()[3]), 1);
+  EXPECT_EQ(integer_of(samples->front()[4]), 2);
+}
+
 TEST_P(StoreTest, CountsTheRunsThatItLooksThrough) {
   ASSERT_TRUE(add(ExampleResult{}));
   ASSERT_TRUE(add(ExampleResult{.run = "r2", .days = 30, .serial = "mpu-8"}));

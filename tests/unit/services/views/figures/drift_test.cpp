@@ -1,5 +1,7 @@
 #include "services/views/figures/drift.hpp"
 
+#include <string>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -17,6 +19,9 @@ DriftData drift(std::size_t frequencies) {
   for (std::size_t i = 1; i <= frequencies; ++i) {
     DriftLine& line = data.lines.emplace_back();
     line.frequency_hz = 10.0 * static_cast<double>(i);
+    line.label = std::to_string(10 * i) + " Hz";
+    line.level_m_s2 = 2.5;
+    line.excited_axis = "z";
     for (const double days : {0.0, 365.0}) {
       line.values.push_back({.run = "r",
                              .began_utc = "2026-11-22T10:00:00Z",
@@ -45,6 +50,8 @@ TEST(DriftFigure, ShowsEveryCalibrationOfAFewFrequencies) {
 TEST(DriftFigure, WritesEveryNumber) {
   const Figure figure = drift_figure(drift(20), "drift");
   EXPECT_THAT(figure.csv, HasSubstr("\n20,r,2026-11-22T10:00:00Z,365,1.0036499999999999,0.002"));
+  EXPECT_THAT(figure.csv, HasSubstr("deviation_phase_rad,level_m_s2,excited_axis\n"));
+  EXPECT_THAT(figure.csv, HasSubstr(",0,2.5,z\n"));
 }
 
 TEST(DriftFigure, SaysSoWithoutPoints) {
