@@ -1,5 +1,6 @@
 #include "services/records/exchange/exported_runs.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <limits>
 #include <map>
@@ -10,8 +11,9 @@
 #include "services/base/json_text.hpp"
 #include "services/base/version.hpp"
 #include "services/contract/topics.hpp"
+#include "services/evaluation/result/transfer_function_message.hpp"
 #include "services/records/capture/recorded_topics.hpp"
-#include "services/views/report/json_number.hpp"
+#include "services/views/report/json_members.hpp"
 
 namespace dyncal::inline records {
 namespace {
@@ -98,8 +100,10 @@ Json json_of(const wire::CalibrationResult& result) {
   return {{"channel", result.channel().to_string()},
           {"step", result.step()},
           {"repetition", result.repetition()},
+          {"attempt", std::max(result.attempt(), 1U)},
           {"frequency_hz", result.frequency_hz()},
           {"level_m_s2", result.level_m_s2()},
+          {"excited_axis", result.excited_axis()},
           {"valid", result.valid()},
           {"problem", result.problem()},
           {"magnitude", result.magnitude()},
@@ -110,6 +114,22 @@ Json json_of(const wire::CalibrationResult& result) {
           {"lost", result.lost()}};
 }
 
+// As result files have them, with their channel.
+Json closures_of(const std::vector<wire::TransferFunction>& functions, const std::string& run) {
+  Json closures = Json::array();
+  for (const wire::TransferFunction& function : functions) {
+    if (function.run() != run) {
+      continue;
+    }
+    for (const Closure& closure : from_message(function).closures) {
+      Json one{{"channel", function.channel().to_string()}};
+      one.update(views::JsonWriter::of(closure));
+      closures.push_back(std::move(one));
+    }
+  }
+  return closures;
+}
+
 } // namespace
 
 Expected<ExportedRuns> read_runs(recording::RecordingReader& reader) {
@@ -118,6 +138,7 @@ Expected<ExportedRuns> read_runs(recording::RecordingReader& reader) {
   using Value = std::tuple<std::string, std::uint32_t, std::uint32_t, std::string>;
   std::map<Step, wire::Excitation> excitations;
   std::map<Value, wire::CalibrationResult> results;
+  std::map<std::pair<std::string, std::string>, wire::TransferFunction> functions;
   ExportedRuns runs;
   const auto take = [&](const recording::MessageInFile& message) {
     if (message.channel.topic == topics::excitation) {
@@ -130,6 +151,10 @@ Expected<ExportedRuns> read_runs(recording::RecordingReader& reader) {
         results[{one->run().to_string(), one->step(), one->repetition(),
                  one->channel().to_string()}] = *one;
       }
+    } else if (message.channel.topic == topics::transfer_function) {
+      if (const auto one = recording::decode<wire::TransferFunction>(message.message.data)) {
+        functions[{one->run().to_string(), one->channel().to_string()}] = *one;
+      }
     }
   };
   const auto report = reader.scan(
@@ -139,6 +164,7 @@ Expected<ExportedRuns> read_runs(recording::RecordingReader& reader) {
   DYNCAL_TRY(report);
   runs.excitations = values_of(std::move(excitations));
   runs.results = values_of(std::move(results));
+  runs.functions = values_of(std::move(functions));
   return runs;
 }
 
@@ -167,8 +193,10 @@ std::string contents_json(const ExportedRecording& recording, const ExportedRuns
              {"state", text_of(index.newest.state())},
              {"message", index.newest.message()},
              {"recipe_sha256", index.plan.recipe_sha256()},
+             {"excited_axis", index.plan.excited_axis()},
              {"excitation", Json::array()},
-             {"results", Json::array()}};
+             {"results", Json::array()},
+             {"closures", closures_of(runs.functions, name)}};
     for (const wire::Excitation& excitation : runs.excitations) {
       if (excitation.run() == name) {
         run["excitation"].push_back(json_of(excitation));

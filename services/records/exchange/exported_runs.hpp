@@ -11,8 +11,9 @@
 namespace dyncal::inline records {
 
 struct ExportedRuns {
-  std::vector<wire::Excitation> excitations;    // the newest of every step and attempt
-  std::vector<wire::CalibrationResult> results; // the newest of every value
+  std::vector<wire::Excitation> excitations;     // the newest of every step and attempt
+  std::vector<wire::CalibrationResult> results;  // the newest of every value
+  std::vector<wire::TransferFunction> functions; // the newest of every channel
   std::vector<recording::Metadata> metadata;
   std::vector<recording::Attachment> attachments;
 };

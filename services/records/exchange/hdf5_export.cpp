@@ -2,6 +2,7 @@
 
 #ifdef DYNCAL_HAVE_HDF5
 
+#include <algorithm>
 #include <cerrno>
 
 #include <fmt/core.h>
@@ -120,6 +121,7 @@ private:
                          .step = one.step(),
                          .repetition = one.repetition(),
                          .valid = one.valid() ? 1U : 0U,
+                         .attempt = std::max(one.attempt(), 1U),
                          .lost = one.lost(),
                          .frequency_hz = one.frequency_hz(),
                          .level_m_s2 = one.level_m_s2(),

@@ -73,7 +73,8 @@ Hdf5Handle hdf5_type<Hdf5Result>() {
                    DYNCAL_MEMBER(T, repetition), DYNCAL_MEMBER(T, valid), DYNCAL_MEMBER(T, lost),
                    DYNCAL_MEMBER(T, frequency_hz), DYNCAL_MEMBER(T, level_m_s2),
                    DYNCAL_MEMBER(T, magnitude), DYNCAL_MEMBER(T, u_magnitude),
-                   DYNCAL_MEMBER(T, phase_rad), DYNCAL_MEMBER(T, u_phase_rad)});
+                   DYNCAL_MEMBER(T, phase_rad), DYNCAL_MEMBER(T, u_phase_rad),
+                   DYNCAL_MEMBER(T, attempt)});
 }
 
 #undef DYNCAL_MEMBER

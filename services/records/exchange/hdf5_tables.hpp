@@ -50,7 +50,7 @@ struct Hdf5Result {
   std::uint32_t step = 0;
   std::uint32_t repetition = 0;
   std::uint32_t valid = 0;
-  std::uint32_t reserved = 0;
+  std::uint32_t attempt = 0;
   std::uint64_t lost = 0;
   double frequency_hz = 0.0;
   double level_m_s2 = 0.0;

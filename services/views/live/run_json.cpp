@@ -60,6 +60,9 @@ Json channels_json(const StoredResult& result) {
   Json channels = Json::array();
   for (const StoredChannel& channel : result.channels) {
     channels.push_back(JsonWriter::of(channel));
+    for (std::size_t i = 0; i < channel.closures.size(); ++i) {
+      channels.back()["closures"][i]["title"] = title_of(channel.closures[i].kind);
+    }
     channels.back()["advice"] = advice_on_repetitions(result.values_of(channel.channel));
     if (const analysis::GroupDelay* delay = result.group_delay_of(channel.channel)) {
       analysis::CombinedUncertainty of_delay_ms = delay->of_delay;

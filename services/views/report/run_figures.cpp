@@ -5,9 +5,11 @@
 
 #include <fmt/core.h>
 
+#include "services/base/output_file.hpp"
 #include "services/contract/run_identity.hpp"
 #include "services/views/figures/deviation.hpp"
 #include "services/views/figures/sample_clock.hpp"
+#include "services/views/report/closures_csv.hpp"
 #include "services/views/report/result_table.hpp"
 #include "services/views/report/transfer_data.hpp"
 
@@ -77,6 +79,11 @@ Expected<std::vector<std::filesystem::path>> write_figures(const RunOutcome& out
   for (const figures::Figure& figure : run_figures(outcome, error_bars)) {
     DYNCAL_TRY(const auto written, figures::write(figure, folder));
     paths.insert(paths.end(), written.begin(), written.end());
+  }
+  if (const std::string closures = closures_csv(outcome); !closures.empty()) {
+    DYNCAL_TRY(check_output_folder(folder));
+    paths.push_back(folder / "closures.csv");
+    DYNCAL_TRY(write_output_file(paths.back(), closures));
   }
   return paths;
 }

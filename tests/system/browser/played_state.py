@@ -108,9 +108,23 @@ def transfer(points):
     return means
 
 
+CLOSURES = [
+    {"kind": "clock_rate", "title": "rate of the sensor's clock", "subject": "dau", "verdict":
+     "closes", "value": 3.12e-6, "u": 2.1e-7, "limit": 2e-4, "unit": "1",
+     "sentence": "the clock of dau is 3.12 ppm fast"},
+    {"kind": "first_repeated", "title": "first point repeated at the end", "subject": "",
+     "verdict": "not_possible", "value": 0.0, "u": None, "limit": None, "unit": "",
+     "sentence": "the plan does not end with its first point (repeat_first)"},
+    {"kind": "phase_at_zero", "title": "phase towards 0 Hz", "subject": "", "verdict": "open",
+     "value": 0.0512, "u": 0.0041, "limit": 0.0184, "unit": "rad",
+     "sentence": "towards 0 Hz the phase tends to 2.934 degrees (u 0.23), where 0 or 180 is "
+                 "expected"},
+]
+
+
 def channel():
     return {"channel": CHANNEL, "unit": "\\one", "responds": True, "lost": 12, "flags": [],
-            "flag_names": [], "advice": "Repeat more often.",
+            "flag_names": [], "advice": "Repeat more often.", "closures": CLOSURES,
             "text": {"group_delay_ms": {"value": "1.7003", "u": "0.0012", "U": "0.0024",
                                         "k": "2.00"}}}
 

@@ -4,6 +4,7 @@ uncertainty leaves them, and every digit in the title."""
 
 import json
 import threading
+import unittest.mock
 
 import played_state
 from page_case import PageCase, rows_of_chart, run, text_of, texts_of
@@ -134,6 +135,39 @@ class Views(PageCase):
         for i in range(8):
             page.wait_for(f"{drawn_pixels(i)} > 200")
 
+    def test_run_shows_its_closures_the_open_ones_first(self):
+        page = self.open("run/acc-2")
+        page.wait_for("document.querySelectorAll('[data-closure]').length === 3")
+        self.assertEqual(page.value(text_of("[data-field=closures]")), "▲ 1 open, 1 close.")
+        self.assertEqual(page.value("[...document.querySelectorAll('[data-closure]')].map(r => "
+                                    "[...r.cells].map(c => c.textContent))"),
+                         [["phase towards 0 Hz", "–", "▲ open", "0.0512 rad", "0.0041 rad",
+                           "0.0184 rad", played_state.CLOSURES[2]["sentence"]],
+                          ["rate of the sensor's clock", "dau", "✓ closes", "3.12e-06", "2.1e-07",
+                           "0.0002", played_state.CLOSURES[0]["sentence"]],
+                          ["first point repeated at the end", "–", "– not possible", "–", "–", "–",
+                           played_state.CLOSURES[1]["sentence"]]])
+        self.assertEqual(page.value("document.querySelectorAll('[data-verdict=open] .flagged')"
+                                    ".length"), 1)
+        page = self.open("run/acc-1")  # which lasts
+        page.wait_for("document.querySelectorAll('[data-step]').length === 24")
+        self.assertIn("when it is over", page.value(text_of("[data-field=closures]")))
+        self.assertEqual(page.value("document.querySelectorAll('[data-closure]').length"), 0)
+
+    def test_levels_at_a_frequency_are_rows_of_their_own(self):
+        points = self.laboratory.points["acc-2"]
+        for point in points:
+            point["excited_axis"] = "z"
+        for number, level in enumerate((2.0, 15.0), len(points) + 1):
+            points.append({**points[9], "step": number, "level_m_s2": level})
+        page = self.open("run/acc-2")
+        page.wait_for("document.querySelectorAll('[data-step]').length === 53")
+        rows = page.value("[...document.querySelectorAll('[data-step]')].slice(-2).map(r => "
+                          "[...r.cells].map(c => c.textContent))")
+        self.assertEqual([row[:4] for row in rows],
+                         [["52", "80", "2", "1"], ["53", "80", "15", "1"]])
+        self.assertIn(", excited axis z", page.value(text_of("[data-field=unit]")))
+
     def test_figures_are_drawn_as_they_are_described(self):
         page = self.open("run/acc-2")
         for bars in ("U", "u", "none"):
@@ -246,6 +280,28 @@ class Views(PageCase):
         self.assertEqual(titles[0], max(expected, key=lambda e: max(map(abs, e))))
         page.value("document.querySelector('.runs input').click()")
         page.wait_for("document.querySelectorAll('[data-panel=en] tbody tr').length === 17")
+
+    def test_history_tells_levels_apart_and_shows_open_closures(self):
+        history = played_state.history("MPU-9250 0xbccb0100")
+        for run in history["runs"]:
+            run["points"] = [{**p, "level_m_s2": level} for p in run["points"][:3]
+                             for level in (2.0, 10.0)]
+        history["en"] = [{**one, "level_m_s2": level, "excited_axis": "z"}
+                         for one in history["en"][:3] for level in (2.0, 10.0)]
+        history["runs"][2]["open_closures"] = ["dau/x_acceleration: phase towards 0 Hz: far off"]
+        with unittest.mock.patch.object(played_state, "history", lambda sensor: history):
+            page = self.open("history")
+            page.wait_for("document.querySelectorAll('[data-panel=en] tbody tr').length === 6")
+        places = page.value("[...document.querySelectorAll('[data-panel=en] tbody tr')].map(r => "
+                            "r.cells[2].textContent)")
+        self.assertEqual(set(places), {f"{f}, {level} m/s²" for f in ("10", "12.5", "16")
+                                       for level in (2, 10)})
+        self.assertEqual(page.value(texts_of(".runs .flagged")),
+                         ["▲ open closure: dau/x_acceleration: phase towards 0 Hz: far off"])
+        page.wait_for(f"{texts_of('.legend')}[0]?.includes('10 m/s²')")
+        rows = page.value(rows_of_chart(0))
+        self.assertEqual(len({row[0] for row in rows}), 3)
+        self.assertEqual(len(rows[0]) - 1, 6)  # three runs at two levels
 
     def test_texts_of_the_daemon_are_shown_as_they_are(self):
         """The page rounds nothing that has an uncertainty: ties would go another way."""

@@ -45,10 +45,11 @@ export class ResultTable {
                                 element("summary", {}, "Every repetition"), points.root));
   }
 
-  /** transfer: with the means; null while the run lasts. */
-  update(points, transfer, unit) {
+  /** transfer: with the means; null while the run lasts. axis: excited; empty: not stated. */
+  update(points, transfer, unit, axis) {
     const short = unit_text(unit);
-    set_text(this.unit, unit ? `|H| in ${short || "one (dimensionless)"}` : "unit not known");
+    set_text(this.unit, (unit ? `|H| in ${short || "one (dimensionless)"}` : "unit not known") +
+      (axis ? `, excited axis ${axis}` : ""));
     set_shown(this.no_means, transfer === null);
     set_shown(this.means_root, transfer !== null);
     set_text(this.advice, transfer?.advice ?? "");
@@ -154,8 +155,8 @@ export function table_csv(points, unit) {
     : `"${String(value ?? "").replace(/"/g, '""')}"`);
   const lines = points.map((p) => [...keys.map((key) => cell(p[key])),
                                    cell((p.flag_names ?? []).join(" ")),
-                                   ...text_of(p).map(cell)]);
+                                   ...text_of(p).map(cell), cell(p.excited_axis)]);
   return `# magnitude in ${String(unit || "a unit that is not known").replace(/\s/g, " ")}; phase: ` +
     "lead, rad; u: standard uncertainty; U: expanded, 95.45 %; _text: rounded by u, as shown\n" +
-    [[...keys, "flags", ...TEXTS], ...lines].map((line) => line.join(",")).join("\n") + "\n";
+    [[...keys, "flags", ...TEXTS, "excited_axis"], ...lines].map((line) => line.join(",")).join("\n") + "\n";
 }

@@ -5,6 +5,7 @@
 import { bench_path, get } from "./api.js";
 import { BudgetPanel } from "./budget_panel.js";
 import { ClockPanel } from "./clock_panel.js";
+import { ClosurePanel } from "./closure_panel.js";
 import { DownloadPanel } from "./download_panel.js";
 import { Choice, element, name_element, set_attribute, set_name, set_text } from "./element.js";
 import { FlagPanel } from "./flag_panel.js";
@@ -39,6 +40,7 @@ export class RunView {
     this.figures = new RunFigures((step) => this.show_budget_of_step(step));
     this.budget = new BudgetPanel();
     this.flags = new FlagPanel();
+    this.closures = new ClosurePanel();
     this.clock_panel = new ClockPanel(this.figures.clock.root);
     this.table = new ResultTable((point) => this.show_budget(point));
     this.files = new DownloadPanel();
@@ -59,7 +61,7 @@ export class RunView {
       element("div", { class: "tools no-print" }, this.benches.root, this.runs.root,
               this.channel.root, this.bars.root),
       this.note, this.progress, this.delay,
-      this.figures.root, this.budget.root, this.flags.root, this.table.root,
+      this.figures.root, this.budget.root, this.flags.root, this.closures.root, this.table.root,
       this.clock_panel.root, this.files.root,
     );
   }
@@ -164,7 +166,9 @@ export class RunView {
     const unit = transfer?.unit ?? points.find(({ valid }) => valid)?.unit ?? "";
     this.show_figures();
     this.show_delay(transfer);
-    this.table.update(points, transfer, unit);
+    const axis = transfer?.points[0]?.excited_axis ?? points[0]?.excited_axis ?? "";
+    this.table.update(points, transfer, unit, axis);
+    this.closures.update(transfer?.closures ?? []);
     this.flags.update(flags_of(run, channel), points);
     this.clock_panel.update(clock_of(run, channel));
     this.files.update(run.files, this.csv);
