@@ -111,7 +111,7 @@ TEST_F(Triaxial, SaysInOneLineWhatIsMissing) {
   EXPECT_THAT(error_of({"--z", z, "--motion-z", z}),
               HasSubstr("needs the results and the motions of all three directions"));
   EXPECT_THAT(error_of({"--z", z, "--channels", "a", "b", "c"}),
-              HasSubstr("no frequency in common at which a, b and c have values"));
+              HasSubstr("no frequency and level in common at which a, b and c have values"));
   EXPECT_THAT(error_of({"--z", file("other.json", "dau/field", column(response, 2))}),
               HasSubstr("name them: --channels X Y Z"));
   std::ofstream(folder / "no.json") << "{}";
