@@ -5,7 +5,6 @@
 #include <charconv>
 #include <fmt/core.h>
 #include <fmt/ranges.h>
-#include <map>
 
 #include "services/base/version.hpp"
 #include "services/daemon/program/command_line.hpp"
@@ -162,16 +161,11 @@ void add_options(CLI::App& app, Words& words, BenchOptions& options) {
   add_recording_options(app, options);
 }
 
-template <class Number>
-bool read_whole(const std::string& text, Number& value, int base_or_unused = 10) {
+template <class Number, class... Base>
+bool read_whole(const std::string& text, Number& value, Base... base) {
   const char* end = text.data() + text.size();
-  std::from_chars_result result{};
-  if constexpr (std::is_integral_v<Number>) {
-    result = std::from_chars(text.data(), end, value, base_or_unused);
-  } else {
-    result = std::from_chars(text.data(), end, value);
-  }
-  return result.ec == std::errc() && result.ptr == end;
+  const auto [read_to, status] = std::from_chars(text.data(), end, value, base...);
+  return status == std::errc() && read_to == end;
 }
 
 Expected<void> read_addresses(const Words& words, device::ServerSettings& server) {
@@ -197,7 +191,7 @@ Expected<void> read_scope_faults(const std::vector<std::string>& texts,
     const std::size_t sign = text.find('=');
     const std::string name = text.substr(0, sign);
     double probability = 0.0;
-    if (std::find(known.begin(), known.end(), name) == known.end()) {
+    if (std::ranges::find(known, name) == known.end()) {
       return refuse(
           fmt::format("{} {}: no such fault; there are: {}", option, text, fmt::join(known, ", ")));
     }
@@ -237,11 +231,8 @@ Expected<void> read_programme(const Words& words, BenchOptions& options) {
 }
 
 Expected<void> read_can(const Words& words, BenchOptions& options) {
-  const auto& kinds = drivers::virtual_bench::can_bus_kinds();
-  const auto kind =
-      std::find_if(kinds.begin(), kinds.end(), [&](const drivers::virtual_bench::CanBusKind& one) {
-        return one.name == words.can_bus;
-      });
+  const auto& kinds = device::can_bus_kinds();
+  const auto kind = std::ranges::find(kinds, words.can_bus, &device::CanBusKind::name);
   if (kind == kinds.end()) {
     return refuse(
         fmt::format("--can-bus {}: no such bus; there are 500k, 1M, fd-5M", words.can_bus));

@@ -5,7 +5,6 @@
 #include <charconv>
 #include <map>
 #include <optional>
-#include <string_view>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -44,7 +43,6 @@ public:
   }
 
   [[nodiscard]] const std::string& name() const { return name_; }
-  [[nodiscard]] bool has_value() const { return !value_.empty(); }
 
   [[nodiscard]] tl::unexpected<Error> refuse(const std::string& what) const {
     return fail(ErrorCode::bad_argument, fmt::format("--fault {}: {}", whole_, what));
@@ -61,14 +59,27 @@ public:
                 : Expected<double>(usual);
   }
 
-  [[nodiscard]] std::optional<std::string> take(const std::string& key) {
-    const auto found = settings_.find(key);
-    if (found == settings_.end()) {
-      return std::nullopt;
+  [[nodiscard]] Expected<std::string> word(const std::string& key, const std::string& usual,
+                                           const std::vector<std::string>& words) {
+    std::string word = take(key).value_or(usual);
+    if (std::ranges::find(words, word) == words.end()) {
+      const std::string another = fmt::format(" or {}=", key);
+      return refuse(fmt::format("write {}={}", key, fmt::join(words, another)));
     }
-    std::string value = found->second;
-    settings_.erase(found);
-    return value;
+    return word;
+  }
+
+  [[nodiscard]] Expected<void> without_value(bool& fault) const {
+    if (!value_.empty()) {
+      return refuse("takes no value");
+    }
+    fault = true;
+    return {};
+  }
+
+  [[nodiscard]] std::optional<std::string> take(const std::string& key) {
+    auto found = settings_.extract(key);
+    return found ? std::optional(std::move(found.mapped())) : std::nullopt;
   }
 
   [[nodiscard]] Expected<void> nothing_left() const {
@@ -95,11 +106,11 @@ private:
 };
 
 Expected<ChannelFaults*> channel_of(FaultText& text, BenchFaults& faults) {
-  const std::string name = text.take("at").value_or("");
   const std::pair<const char*, ChannelFaults*> channels[] = {{"sensor", &faults.sensor},
                                                              {"reference", &faults.reference},
                                                              {"sync_acs", &faults.sync_acs},
                                                              {"sync_dau", &faults.sync_dau}};
+  const std::string name = text.take("at").value_or("");
   for (const auto& [known, channel] : channels) {
     if (name == known) {
       return channel;
@@ -109,137 +120,86 @@ Expected<ChannelFaults*> channel_of(FaultText& text, BenchFaults& faults) {
 }
 
 Expected<void> read_over_range(FaultText& text, BenchFaults& faults) {
-  const auto channel = channel_of(text, faults);
-  const auto limit = text.value("LIMIT", 1e-3, 1e4);
-  if (!channel || !limit) {
-    return fail(!channel ? channel.error() : limit.error());
-  }
-  (*channel)->range = *limit;
+  DYNCAL_TRY(ChannelFaults* const channel, channel_of(text, faults));
+  DYNCAL_TRY(channel->range, text.value("LIMIT", 1e-3, 1e4));
   return {};
 }
 
 Expected<void> read_soft_ends(FaultText& text, BenchFaults& faults) {
-  const auto channel = channel_of(text, faults);
-  const auto limit = text.value("LIMIT", 1e-3, 1e4);
-  if (!channel || !limit) {
-    return fail(!channel ? channel.error() : limit.error());
-  }
-  const std::string end = text.take("end").value_or("both");
-  if (end != "both" && end != "upper" && end != "lower") {
-    return text.refuse("write end=both, end=upper or end=lower");
-  }
-  (*channel)->soft_upper = end == "lower" ? 0.0 : *limit;
-  (*channel)->soft_lower = end == "upper" ? 0.0 : *limit;
+  DYNCAL_TRY(ChannelFaults* const channel, channel_of(text, faults));
+  DYNCAL_TRY(const double limit, text.value("LIMIT", 1e-3, 1e4));
+  DYNCAL_TRY(const auto end, text.word("end", "both", {"both", "upper", "lower"}));
+  channel->soft_upper = end == "lower" ? 0.0 : limit;
+  channel->soft_lower = end == "upper" ? 0.0 : limit;
   return {};
 }
 
 Expected<void> read_held(FaultText& text, BenchFaults& faults) {
-  const auto channel = channel_of(text, faults);
-  const auto part = text.value("PART", 0.0, 1.0);
-  if (!channel || !part) {
-    return fail(!channel ? channel.error() : part.error());
-  }
-  (*channel)->held_part = *part;
+  DYNCAL_TRY(ChannelFaults* const channel, channel_of(text, faults));
+  DYNCAL_TRY(channel->held_part, text.value("PART", 0.0, 1.0));
   return {};
 }
 
 Expected<void> read_fifo(FaultText& text, BenchFaults& faults) {
-  DYNCAL_TRY(const auto samples, text.value("SAMPLES", 2.0, 1e6));
+  DYNCAL_TRY(const double samples, text.value("SAMPLES", 2.0, 1e6));
   faults.fifo_samples = static_cast<std::size_t>(samples);
   return {};
 }
 
 Expected<void> read_stuck(FaultText& text, BenchFaults& faults) {
-  const auto channel = channel_of(text, faults);
-  const auto samples = text.value("SAMPLES", 1.0, 1e6);
-  const auto every_s = text.setting("every", "SECONDS", 1.0, 1e-3, 1e6);
-  if (!channel || !samples || !every_s) {
-    return fail(!channel ? channel.error() : !samples ? samples.error() : every_s.error());
-  }
-  (*channel)->stuck_samples = static_cast<std::size_t>(*samples);
-  (*channel)->stuck_every_s = *every_s;
+  DYNCAL_TRY(ChannelFaults* const channel, channel_of(text, faults));
+  DYNCAL_TRY(const double samples, text.value("SAMPLES", 1.0, 1e6));
+  channel->stuck_samples = static_cast<std::size_t>(samples);
+  DYNCAL_TRY(channel->stuck_every_s, text.setting("every", "SECONDS", 1.0, 1e-3, 1e6));
   return {};
 }
 
 Expected<void> read_hum(FaultText& text, BenchFaults& faults) {
-  const auto channel = channel_of(text, faults);
-  const auto part = text.value("PART", 0.0, 10.0);
-  const auto frequency_hz = text.setting("frequency", "HZ", 50.0, 0.1, 1e5);
-  if (!channel || !part || !frequency_hz) {
-    return fail(!channel ? channel.error() : !part ? part.error() : frequency_hz.error());
-  }
-  const std::string when = text.take("while").value_or("always");
-  if (when != "always" && when != "driven") {
-    return text.refuse("write while=driven, or nothing for hum that is always there");
-  }
-  (*channel)->hum_while_driven = when == "driven";
-  (*channel)->hum_rel = *part;
-  (*channel)->hum_hz = *frequency_hz;
+  DYNCAL_TRY(ChannelFaults* const channel, channel_of(text, faults));
+  DYNCAL_TRY(channel->hum_rel, text.value("PART", 0.0, 10.0));
+  DYNCAL_TRY(channel->hum_hz, text.setting("frequency", "HZ", 50.0, 0.1, 1e5));
+  DYNCAL_TRY(const auto when, text.word("while", "always", {"always", "driven"}));
+  channel->hum_while_driven = when == "driven";
   return {};
 }
 
 Expected<void> read_drift(FaultText& text, BenchFaults& faults) {
-  const auto channel = channel_of(text, faults);
-  const auto part = text.value("PART", -10.0, 10.0);
-  if (!channel || !part) {
-    return fail(!channel ? channel.error() : part.error());
-  }
-  (*channel)->drift_rel_per_s = *part;
+  DYNCAL_TRY(ChannelFaults* const channel, channel_of(text, faults));
+  DYNCAL_TRY(channel->drift_rel_per_s, text.value("PART", -10.0, 10.0));
   return {};
 }
 
 Expected<void> read_knock(FaultText& text, BenchFaults& faults) {
-  const auto channel = channel_of(text, faults);
-  const auto part = text.value("PART", -1e3, 1e3);
-  const auto after_s = text.setting("after", "SECONDS", 1.0, 0.0, 1e6);
-  if (!channel || !part || !after_s) {
-    return fail(!channel ? channel.error() : !part ? part.error() : after_s.error());
-  }
-  (*channel)->knock_rel = *part;
-  (*channel)->knock_after_s = *after_s;
+  DYNCAL_TRY(ChannelFaults* const channel, channel_of(text, faults));
+  DYNCAL_TRY(channel->knock_rel, text.value("PART", -1e3, 1e3));
+  DYNCAL_TRY(channel->knock_after_s, text.setting("after", "SECONDS", 1.0, 0.0, 1e6));
   return {};
 }
 
 Expected<void> read_delay_change(FaultText& text, BenchFaults& faults) {
-  const auto by_s = text.value("SECONDS", -0.1, 0.1);
-  const auto after_s = text.setting("after", "SECONDS", 1.0, 0.0, 1e6);
-  if (!by_s || !after_s) {
-    return fail(!by_s ? by_s.error() : after_s.error());
-  }
-  faults.delay_change = {*by_s, *after_s};
+  DYNCAL_TRY(const double by_s, text.value("SECONDS", -0.1, 0.1));
+  DYNCAL_TRY(const double after_s, text.setting("after", "SECONDS", 1.0, 0.0, 1e6));
+  faults.delay_change = {by_s, after_s};
   return {};
 }
 
 Expected<void> read_wandering(FaultText& text, BenchFaults& faults) {
-  const auto part = text.value("PART", 0.0, 0.5);
-  const auto period_s = text.setting("period", "SECONDS", 1.0, 0.01, 1e6);
-  if (!part || !period_s) {
-    return fail(!part ? part.error() : period_s.error());
-  }
-  faults.wandering = {*part, *period_s};
+  DYNCAL_TRY(const double part, text.value("PART", 0.0, 0.5));
+  DYNCAL_TRY(const double period_s, text.setting("period", "SECONDS", 1.0, 0.01, 1e6));
+  faults.wandering = {part, period_s};
   return {};
 }
 
 Expected<void> read_loss(FaultText& text, BenchFaults& faults) {
-  DYNCAL_TRY(const auto probability, text.value("PROBABILITY", 0.0, 1.0));
-  const std::string at = text.take("at").value_or("");
-  const std::string counted = text.take("counted").value_or("yes");
-  if (at != "sensor" && at != "acs") {
-    return text.refuse("write at=sensor or at=acs");
-  }
-  if (counted != "yes" && counted != "no") {
-    return text.refuse("write counted=yes or counted=no");
-  }
+  DYNCAL_TRY(const double probability, text.value("PROBABILITY", 0.0, 1.0));
+  DYNCAL_TRY(const auto at, text.word("at", "", {"sensor", "acs"}));
+  DYNCAL_TRY(const auto counted, text.word("counted", "yes", {"yes", "no"}));
   (at == "acs" ? faults.acs_loss : faults.sensor_loss) = {probability, counted == "yes"};
   return {};
 }
 
 Expected<void> read_free_running(FaultText& text, BenchFaults& faults) {
-  if (text.has_value()) {
-    return text.refuse("takes no value");
-  }
-  faults.series_start.free_running = true;
-  return {};
+  return text.without_value(faults.series_start.free_running);
 }
 
 Expected<void> read_start_jitter(FaultText& text, BenchFaults& faults) {
@@ -263,32 +223,19 @@ Expected<void> read_left_offset(FaultText& text, BenchFaults& faults) {
 }
 
 Expected<void> read_left_burst(FaultText& text, BenchFaults& faults) {
-  if (text.has_value()) {
-    return text.refuse("takes no value");
-  }
-  faults.left_in_generator.in_burst = true;
-  return {};
+  return text.without_value(faults.left_in_generator.in_burst);
 }
 
 Expected<void> read_no_reset(FaultText& text, BenchFaults& faults) {
-  if (text.has_value()) {
-    return text.refuse("takes no value");
-  }
-  faults.left_in_generator.is_kept = true;
-  return {};
+  return text.without_value(faults.left_in_generator.is_kept);
 }
 
 Expected<void> read_output_stays_on(FaultText& text, BenchFaults& faults) {
-  if (text.has_value()) {
-    return text.refuse("takes no value");
-  }
-  faults.output_stays_on = true;
-  return {};
+  return text.without_value(faults.output_stays_on);
 }
 
 Expected<void> read_stamp_fault(FaultText& text, BenchFaults& faults) {
-  DYNCAL_TRY(const auto probability, text.value("PROBABILITY", 0.0, 1.0));
-  faults.stamps[text.name()] = probability;
+  DYNCAL_TRY(faults.stamps[text.name()], text.value("PROBABILITY", 0.0, 1.0));
   return {};
 }
 
@@ -341,18 +288,13 @@ std::string fault_help() {
 Expected<void> read_fault(const std::string& text, BenchFaults& faults) {
   FaultText fault(text);
   const auto& stamp_faults = device::stamp_fault_names();
-  const auto* known = std::find_if(known_faults.begin(), known_faults.end(),
-                                   [&](const Fault& one) { return fault.name() == one.name; });
-  Expected<void> (*read)(FaultText&, BenchFaults&) = nullptr;
-  if (known != known_faults.end()) {
-    read = known->read;
-  } else if (std::find(stamp_faults.begin(), stamp_faults.end(), fault.name()) !=
-             stamp_faults.end()) {
-    read = read_stamp_fault;
-  } else {
+  const auto* known = std::ranges::find(known_faults, fault.name(), &Fault::name);
+  const bool is_of_stamps = std::ranges::find(stamp_faults, fault.name()) != stamp_faults.end();
+  if (known == known_faults.end() && !is_of_stamps) {
     return fault.refuse(fmt::format("no such fault; there are: {}; of stamps: {}",
                                     fmt::join(forms(), ", "), fmt::join(stamp_faults, ", ")));
   }
+  const auto read = is_of_stamps ? read_stamp_fault : known->read;
   return read(fault, faults).and_then([&] { return fault.nothing_left(); });
 }
 
