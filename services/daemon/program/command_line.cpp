@@ -1,7 +1,6 @@
 #include "services/daemon/program/command_line.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <set>
 #include <string>
 #include <string_view>
@@ -184,6 +183,10 @@ std::optional<Expected<void>> print_description(const CLI::App& app,
   if (words[0] == "--print-completion") {
     const auto script = completion_script(app, words.size() > 1 ? words[1] : "");
     return script.map([](const std::string& text) { fmt::print("{}", text); });
+  }
+  if (words[0] == "--complete") {
+    fmt::print("{}", completion_offers(app, {words.begin() + 1, words.end()}));
+    return Expected<void>{};
   }
   if (words[0] == "--print-commands") {
     print_commands(describe_commands(app));

@@ -2,8 +2,9 @@
 //
 // A program describes its commands and options once, in a CLI::App. That description serves the
 // parser, --help, from which the manual pages are made, and the shells (completion.hpp). For the
-// last two every program has options that --help does not list: `--print-commands` (each with what
-// it is for) and `--print-completion bash|zsh|fish`, each as the first argument.
+// last two every program has options that --help does not list, each as the first argument:
+// `--print-commands` (each with what it is for), `--print-completion bash|zsh|fish`, and
+// `--complete`, which the scripts of the shells call.
 //
 // What is wrong is one sentence that names the command or option and, when it is unknown, the one
 // that was probably meant; the exit status is 2. Belongs to the main thread.

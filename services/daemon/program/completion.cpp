@@ -1,65 +1,89 @@
 #include "services/daemon/program/completion.hpp"
 
 #include <algorithm>
-#include <vector>
+#include <map>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
+#include "services/base/printable_text.hpp"
 #include "services/daemon/program/command_tree.hpp"
 
 namespace dyncal::inline daemon {
 namespace {
 
-using Commands = std::vector<DescribedCommand>;
+// {0}: the program; {1}: its name in functions.
+constexpr const char* bash_script =
+    R"(# Completion of {0} for bash, from '{0} --print-completion bash'.
+_{1}() {{
+  local word="${{COMP_WORDS[COMP_CWORD]#=}}" offer about
+  COMPREPLY=()
+  while IFS=$'\t' read -r offer about; do
+    if [[ $offer == /* ]]; then
+      compopt -o filenames 2>/dev/null
+      mapfile -t COMPREPLY < <(compgen -f -X "!${{offer#/}}" -- "$word"; compgen -d -- "$word")
+    elif [[ $offer == "$word"* ]]; then
+      COMPREPLY+=("$offer")
+    fi
+  done < <("${{COMP_WORDS[0]/#\~/$HOME}}" --complete "${{COMP_WORDS[@]:1:COMP_CWORD}}")
+}}
+complete -F _{1} {0}
+)";
 
-// The program and all its commands, each before those inside it.
-void flatten(const DescribedCommand& command, Commands& all) {
-  all.push_back(command);
-  for (const DescribedCommand& inner : command.commands) {
-    flatten(inner, all);
-  }
+constexpr const char* zsh_script = R"(#compdef {0}
+# Completion of {0} for zsh, from '{0} --print-completion zsh'.
+_{1}() {{
+  local line
+  local -a offers
+  for line in "${{(@f)$(${{~words[1]}} --complete "${{(@)words[2,CURRENT]}}")}}"; do
+    if [[ $line == /* ]]; then
+      _files -g "${{${{line%%$'\t'*}}#/}}"
+    else
+      offers+=("${{${{line%%$'\t'*}}//:/\\:}}:${{line#*$'\t'}}")
+    fi
+  done
+  (( $#offers == 0 )) || _describe '{0}' offers
+}}
+if [[ $zsh_eval_context[-1] == loadautofunc ]]; then
+  _{1} "$@"
+else
+  compdef _{1} {0}
+fi
+)";
+
+constexpr const char* fish_script =
+    R"(# Completion of {0} for fish, from '{0} --print-completion fish'.
+function _{1}_offers
+    set -l words (commandline -opc) (commandline -ct)
+    for offer in ($words[1] --complete $words[2..-1])
+        switch $offer
+            case '/*.toml*'
+                __fish_complete_suffix .toml
+            case '/*'
+                __fish_complete_path $words[-1]
+            case '*'
+                echo $offer
+        end
+    end
+end
+complete -c {0} -f -k -a '(_{1}_offers)'
+)";
+
+std::string files(const std::string& pattern) {
+  return "/" + pattern + "\tfiles\n";
 }
 
-// "_dyncal_dau"
-std::string function_name(const DescribedCommand& program) {
-  std::string name = "_" + program.path;
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
+std::string offer(const std::string& word, const std::string& description) {
+  return fmt::format("{}\t{}\n", word, one_line(description));
 }
 
-// 'text', with its quotes escaped as all three shells read them.
-std::string quoted(const std::string& text) {
-  std::string escaped;
-  for (const char letter : text) {
-    escaped += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
+// What may follow this option, behind `before` in one word.
+std::string values_of(const DescribedOption& option, const std::string& before) {
+  std::string values;
+  for (const std::string& choice : option.choices) {
+    values += offer(before + choice, option.description);
   }
-  return "'" + escaped + "'";
-}
-
-std::vector<std::string> option_names(const DescribedCommand& command) {
-  std::vector<std::string> names;
-  for (const DescribedOption& option : command.options) {
-    names.insert(names.end(), option.names.begin(), option.names.end());
-  }
-  return names;
-}
-
-std::vector<std::string> command_names(const DescribedCommand& command) {
-  std::vector<std::string> names;
-  for (const DescribedCommand& inner : command.commands) {
-    names.push_back(inner.name());
-  }
-  return names;
-}
-
-// "dyncal run --json", for every name of an option.
-std::vector<std::string> places(const DescribedCommand& command, const DescribedOption& option) {
-  std::vector<std::string> places;
-  for (const std::string& name : option.names) {
-    places.push_back(quoted(fmt::format("{} {}", command.path, name)));
-  }
-  return places;
+  return option.choices.empty() ? files("*") : values;
 }
 
 bool takes_bench_files(const DescribedCommand& command) {
@@ -68,249 +92,52 @@ bool takes_bench_files(const DescribedCommand& command) {
   });
 }
 
-// The paths of all commands but the program's, as patterns of a case.
-std::string paths(const Commands& all) {
-  std::vector<std::string> paths;
-  for (std::size_t i = 1; i < all.size(); ++i) {
-    paths.push_back(quoted(all[i].path));
-  }
-  return paths.empty() ? "''" : fmt::format("{}", fmt::join(paths, "|"));
-}
-
-void add_bash_values(const Commands& all, std::string& script) {
-  script += "  case \"$command $before\" in\n";
-  std::vector<std::string> free;
-  for (const DescribedCommand& command : all) {
-    for (const DescribedOption& option : command.options) {
-      const auto where = places(command, option);
-      if (!option.choices.empty()) {
-        script += fmt::format("    {})\n      COMPREPLY=($(compgen -W {} -- \"$word\"))\n"
-                              "      return ;;\n",
-                              fmt::join(where, "|"),
-                              quoted(fmt::format("{}", fmt::join(option.choices, " "))));
-      } else if (!option.value.empty()) {
-        free.insert(free.end(), where.begin(), where.end());
-      }
-    }
-  }
-  if (!free.empty()) {
-    script += fmt::format("    {})\n      compopt -o filenames 2>/dev/null\n"
-                          "      mapfile -t COMPREPLY < <(compgen -f -- \"$word\")\n"
-                          "      return ;;\n",
-                          fmt::join(free, "|"));
-  }
-  script += "  esac\n";
-}
-
-void add_bash_words(const Commands& all, std::string& script) {
-  script += "  case \"$command\" in\n";
-  for (const DescribedCommand& command : all) {
-    script += fmt::format("    {})\n      options={}\n", quoted(command.path),
-                          quoted(fmt::format("{}", fmt::join(option_names(command), " "))));
-    if (!command.commands.empty()) {
-      script += fmt::format("      commands={}\n",
-                            quoted(fmt::format("{}", fmt::join(command_names(command), " "))));
-    }
-    if (takes_bench_files(command)) {
-      script += "      files='!*.toml'\n";
-    }
-    script += "      ;;\n";
-  }
-  script += "  esac\n";
-}
-
-std::string bash_script(const Commands& all) {
-  const std::string name = function_name(all.front());
-  const std::string& program = all.front().path;
-  std::string script = fmt::format(
-      R"(# Completion of {0} for bash, made by '{0} --print-completion bash'.
-{1}() {{
-  local word="${{COMP_WORDS[COMP_CWORD]}}" before="${{COMP_WORDS[COMP_CWORD-1]}}"
-  local command='{0}' options='' commands='' files='' i
-  if [[ $word == '=' ]]; then
-    word=''
-  elif [[ $before == '=' ]]; then
-    before="${{COMP_WORDS[COMP_CWORD-2]}}"
-  fi
-  for ((i = 1; i < COMP_CWORD; i++)); do
-    case "$command ${{COMP_WORDS[i]}}" in
-      {2}) command="$command ${{COMP_WORDS[i]}}" ;;
-    esac
-  done
-  COMPREPLY=()
-)",
-      program, name, paths(all));
-  add_bash_values(all, script);
-  add_bash_words(all, script);
-  script += fmt::format(R"(  if [[ $word == -* ]]; then
-    COMPREPLY=($(compgen -W "$options" -- "$word"))
-  elif [[ -n $commands ]]; then
-    COMPREPLY=($(compgen -W "$commands" -- "$word"))
-  else
-    compopt -o filenames 2>/dev/null
-    mapfile -t COMPREPLY < <(
-      compgen -f -X "$files" -- "$word"
-      [[ -n $files ]] && compgen -d -- "$word"
-    )
-  fi
-}}
-complete -F {} {}
-)",
-                        name, program);
-  return script;
-}
-
-// 'name:what it is', as _describe reads it.
-std::string zsh_entry(const std::string& name, const std::string& description) {
-  std::string escaped;
-  for (const char letter : name) {
-    escaped += letter == ':' ? std::string("\\:") : std::string(1, letter);
-  }
-  return quoted(escaped + ":" + description);
-}
-
-void add_zsh_values(const Commands& all, std::string& script) {
-  std::vector<std::string> free;
-  for (const DescribedCommand& command : all) {
-    for (const DescribedOption& option : command.options) {
-      const auto where = places(command, option);
-      if (!option.choices.empty()) {
-        script += fmt::format("    ({}) compadd -- {}; return ;;\n", fmt::join(where, "|"),
-                              fmt::join(option.choices, " "));
-      } else if (!option.value.empty()) {
-        free.insert(free.end(), where.begin(), where.end());
-      }
-    }
-  }
-  if (!free.empty()) {
-    script += fmt::format("    ({}) _files; return ;;\n", fmt::join(free, "|"));
-  }
-  script += "  esac\n";
-}
-
-void add_zsh_words(const Commands& all, std::string& script) {
-  script += "  case \"$command\" in\n";
-  for (const DescribedCommand& command : all) {
-    script += fmt::format("    ({})\n      options=(", quoted(command.path));
-    for (const DescribedOption& option : command.options) {
-      for (const std::string& option_name : option.names) {
-        script += zsh_entry(option_name, option.description) + " ";
-      }
-    }
-    script += ")\n      commands=(";
-    for (const DescribedCommand& inner : command.commands) {
-      script += zsh_entry(inner.name(), inner.description) + " ";
-    }
-    script += takes_bench_files(command) ? ")\n      files='*.toml'\n      ;;\n" : ")\n      ;;\n";
-  }
-}
-
-std::string zsh_script(const Commands& all) {
-  const std::string name = function_name(all.front());
-  std::string script = fmt::format(R"(#compdef {0}
-# Completion of {0} for zsh, made by '{0} --print-completion zsh'.
-{1}() {{
-  local command='{0}' files='*' i
-  local -a options commands
-  for ((i = 2; i < CURRENT; i++)); do
-    case "$command ${{words[i]}}" in
-      ({2}) command="$command ${{words[i]}}" ;;
-    esac
-  done
-  case "$command ${{words[CURRENT-1]}}" in
-)",
-                                   all.front().path, name, paths(all));
-  add_zsh_values(all, script);
-  add_zsh_words(all, script);
-  script += fmt::format(R"(  esac
-  if [[ ${{words[CURRENT]}} == -* ]]; then
-    _describe -o option options
-  elif (( ${{#commands}} )); then
-    _describe command commands
-  else
-    _files -g "$files"
-  fi
-}}
-if [[ $zsh_eval_context[-1] == loadautofunc ]]; then
-  {0} "$@"
-else
-  compdef {0} {1}
-fi
-)",
-                        name, all.front().path);
-  return script;
-}
-
-void add_fish_option(const std::string& program, const std::string& condition,
-                     const DescribedOption& option, std::string& script) {
-  script += fmt::format("complete -c {} -n {}", program, quoted(condition));
-  for (const std::string& name : option.names) {
-    script += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
-  }
-  if (!option.choices.empty()) {
-    script += fmt::format(" -x -a {}", quoted(fmt::format("{}", fmt::join(option.choices, " "))));
-  } else if (!option.value.empty()) {
-    script += " -r";
-  }
-  script += " -d " + quoted(option.description) + "\n";
-}
-
-std::string fish_script(const Commands& all) {
-  const std::string& program = all.front().path;
-  const std::string at = "_" + function_name(all.front()) + "_at";
-  std::string script =
-      fmt::format(R"(# Completion of {0} for fish, made by '{0} --print-completion fish'.
-function {1}
-    set -l command {0}
-    for word in (commandline -opc)[2..-1]
-        switch "$command $word"
-            case {2}
-                set command "$command $word"
-        end
-    end
-    test "$command" = "$argv"
-end
-)",
-                  program, at, [&] {
-                    std::string words = paths(all);
-                    std::replace(words.begin(), words.end(), '|', ' ');
-                    return words;
-                  }());
-  for (const DescribedCommand& command : all) {
-    const std::string condition = at + " " + command.path;
-    for (const DescribedCommand& inner : command.commands) {
-      script += fmt::format("complete -c {} -n {} -f -a {} -d {}\n", program, quoted(condition),
-                            inner.name(), quoted(inner.description));
-    }
-    for (const DescribedOption& option : command.options) {
-      add_fish_option(program, condition, option, script);
-    }
-    if (takes_bench_files(command)) {
-      script += fmt::format("complete -c {} -n {} -k -a '(__fish_complete_suffix .toml)'\n",
-                            program, quoted(condition));
-    }
-  }
-  return script;
-}
-
 } // namespace
 
 Expected<std::string> completion_script(const CLI::App& app, const std::string& shell) {
-  Commands all;
-  flatten(describe_commands(app), all);
-  if (shell == "bash") {
-    return bash_script(all);
+  const std::map<std::string, const char*> scripts{
+      {"bash", bash_script}, {"zsh", zsh_script}, {"fish", fish_script}};
+  const auto script = scripts.find(shell);
+  if (script == scripts.end()) {
+    return fail(ErrorCode::bad_argument,
+                fmt::format("there is no completion for the shell '{}'; there is for bash, zsh and "
+                            "fish",
+                            shell));
   }
-  if (shell == "zsh") {
-    return zsh_script(all);
+  std::string name = app.get_name();
+  std::ranges::replace(name, '-', '_');
+  return fmt::format(fmt::runtime(script->second), app.get_name(), name);
+}
+
+std::string completion_offers(const CLI::App& app, std::vector<std::string> words) {
+  const std::string typed = words.empty() ? "" : words.back();
+  words.resize(words.size() - std::min<std::size_t>(words.size(), 1));
+  std::erase(words, "="); // of --option=value, which bash alone takes to pieces
+  std::string before;
+  if (const auto sign = typed.find('='); typed.starts_with("--") && sign != std::string::npos) {
+    before = typed.substr(0, sign + 1);
+    words.push_back(typed.substr(0, sign));
   }
-  if (shell == "fish") {
-    return fish_script(all);
+  const DescribedCommand program = describe_commands(app);
+  const DescribedCommand* command = &program;
+  for (const std::string& word : words) {
+    const auto inner = std::ranges::find(command->commands, word, &DescribedCommand::name);
+    command = inner == command->commands.end() ? command : &*inner;
   }
-  return fail(ErrorCode::bad_argument,
-              fmt::format("there is no completion for the shell '{}'; there is for bash, zsh and "
-                          "fish",
-                          shell));
+  std::string offers;
+  for (const DescribedOption& option : command->options) {
+    if (!option.value.empty() && !words.empty() &&
+        std::ranges::find(option.names, words.back()) != option.names.end()) {
+      return values_of(option, before);
+    }
+    for (const std::string& name : option.names) {
+      offers += typed.starts_with('-') ? offer(name, option.description) : "";
+    }
+  }
+  for (const DescribedCommand& inner : command->commands) {
+    offers += typed.starts_with('-') ? "" : offer(inner.name(), inner.description);
+  }
+  return offers.empty() ? files(takes_bench_files(*command) ? "*.toml" : "*") : offers;
 }
 
 } // namespace dyncal::inline daemon

@@ -1,10 +1,11 @@
-// What a shell completes on the command line of a program: a script for bash, zsh or fish, from the
-// description that --help has as well. Commands, options, the choices of an option, and files
-// where a value or an argument may be one; arguments that are named *.toml complete such files.
-// Any thread.
+// What a shell completes on the command line of a program: commands, options, the choices of an
+// option, and files where a value or an argument may be one; an argument that is named *.toml
+// completes such files. The script of each shell asks the program itself, which knows all of it
+// from the description that --help has as well. Any thread.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "services/base/error.hpp"
 
@@ -14,8 +15,14 @@ class App;
 
 namespace dyncal::inline daemon {
 
-// Fails (bad_argument) with another shell than "bash", "zsh" and "fish".
+// Calls `PROGRAM --complete WORDS...`. Fails (bad_argument) with another shell than "bash", "zsh"
+// and "fish".
 [[nodiscard]] Expected<std::string> completion_script(const CLI::App& app,
                                                       const std::string& shell);
+
+// What fits behind the words of a command line without its program, in place of the last one, which
+// is being typed: a line each, "--domain<tab>DDS domain", or a pattern of files,
+// "/*.toml<tab>files". Not only what begins with the last word: shells differ in what they let fit.
+[[nodiscard]] std::string completion_offers(const CLI::App& app, std::vector<std::string> words);
 
 } // namespace dyncal::inline daemon

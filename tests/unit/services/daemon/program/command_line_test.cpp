@@ -123,11 +123,28 @@ TEST(CommandLine, CompletionOfThreeShells) {
   for (const char* shell : {"bash", "zsh", "fish"}) {
     const auto script = completion_script(program.app, shell);
     ASSERT_TRUE(script.has_value()) << shell;
-    EXPECT_THAT(*script, HasSubstr("calibrate")) << shell;
-    EXPECT_THAT(*script, testing::Not(HasSubstr("hidden"))) << shell;
+    EXPECT_THAT(*script, HasSubstr("--complete")) << shell;
   }
   EXPECT_THAT(completion_script(program.app, "tcsh").error().message,
               HasSubstr("there is for bash, zsh and fish"));
+}
+
+TEST(CommandLine, OffersWhatFitsBehindItsWords) {
+  const Program program;
+  const auto offers = [&](const std::vector<std::string>& words) {
+    return completion_offers(program.app, words);
+  };
+  EXPECT_EQ(offers({""}), "run\trun it\ncalibrate\tan instrument\n");
+  EXPECT_EQ(offers({}), offers({""}));
+  EXPECT_EQ(offers({"calibrate", ""}), "adc\tof a DAU\n");
+  EXPECT_THAT(offers({"run", "--"}), HasSubstr("--seed\tof the noise\n"));
+  EXPECT_EQ(offers({"run", ""}), "/*.toml\tfiles\n");
+  EXPECT_EQ(offers({"run", "--json", "x"}), "/*\tfiles\n");
+  EXPECT_EQ(offers({"run", "--json", "=", "x"}), "/*\tfiles\n");
+  EXPECT_EQ(offers({"run", "--json", "="}), "/*\tfiles\n");
+  EXPECT_EQ(offers({"run", "--filter", "f"}), "fir\tkind of filter\niir\tkind of filter\n");
+  EXPECT_EQ(offers({"run", "--filter=f"}),
+            "--filter=fir\tkind of filter\n--filter=iir\tkind of filter\n");
 }
 
 } // namespace
