@@ -15,12 +15,6 @@ namespace {
 constexpr mode_t for_everybody = 0666; // less what the umask takes
 constexpr std::size_t buffer_bytes = std::size_t{1} << 20U;
 
-tl::unexpected<Error> failed(const std::filesystem::path& path, int cause) {
-  return fail(ErrorCode::bad_file,
-              fmt::format("{}: cannot be written ({}); choose another folder or make room",
-                          path.string(), std::strerror(cause)));
-}
-
 tl::unexpected<Error> is_there(const std::filesystem::path& path) {
   return fail(ErrorCode::bad_file,
               fmt::format("{}: is there already, and nothing is overwritten: choose another name "
@@ -38,7 +32,39 @@ void synchronise_folder_of(const std::filesystem::path& path) {
   }
 }
 
+Expected<void> take_name_of_older(const std::filesystem::path& unfinished,
+                                  const std::filesystem::path& path) {
+  if (std::rename(unfinished.c_str(), path.c_str()) != 0) {
+    return cannot_be_written(path, errno);
+  }
+  synchronise_folder_of(path);
+  return {};
+}
+
 } // namespace
+
+tl::unexpected<Error> cannot_be_written(const std::filesystem::path& path, int cause) {
+  return fail(ErrorCode::bad_file,
+              fmt::format("{}: cannot be written ({}); choose another folder or make room",
+                          path.string(), std::strerror(cause)));
+}
+
+Expected<void> write_at(const drivers::FileDescriptor& file, std::uint64_t offset,
+                        std::string_view bytes, const std::filesystem::path& path) {
+  while (!bytes.empty()) {
+    const ssize_t count =
+        ::pwrite(file.number(), bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (count < 0 && errno == EINTR) {
+      continue;
+    }
+    if (count <= 0) {
+      return cannot_be_written(path, count < 0 ? errno : ENOSPC);
+    }
+    bytes.remove_prefix(static_cast<std::size_t>(count));
+    offset += static_cast<std::uint64_t>(count);
+  }
+  return {};
+}
 
 Expected<void> check_new_output(const std::filesystem::path& path) {
   std::error_code unknown;
@@ -56,7 +82,7 @@ Expected<void> take_output_name(const std::filesystem::path& unfinished,
   }
   if (renamed != 0) {
     const int cause = errno;
-    return cause == EEXIST || cause == ENOTEMPTY ? is_there(path) : failed(path, cause);
+    return cause == EEXIST || cause == ENOTEMPTY ? is_there(path) : cannot_be_written(path, cause);
   }
   synchronise_folder_of(path);
   return {};
@@ -64,13 +90,21 @@ Expected<void> take_output_name(const std::filesystem::path& unfinished,
 
 Expected<OutputStream> OutputStream::create(const std::filesystem::path& path) {
   DYNCAL_TRY(check_new_output(path));
+  DYNCAL_TRY(auto stream, replace(path));
+  stream.replaces_ = false;
+  return stream;
+}
+
+Expected<OutputStream> OutputStream::replace(const std::filesystem::path& path) {
   std::filesystem::path unfinished = path.string() + ".part";
   drivers::FileDescriptor file(
       ::open(unfinished.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, for_everybody));
   if (!file.is_open()) {
-    return failed(path, errno);
+    return cannot_be_written(path, errno);
   }
-  return OutputStream(path, std::move(unfinished), std::move(file));
+  OutputStream stream(path, std::move(unfinished), std::move(file));
+  stream.replaces_ = true;
+  return stream;
 }
 
 OutputStream::~OutputStream() {
@@ -80,27 +114,11 @@ OutputStream::~OutputStream() {
 }
 
 tl::unexpected<Error> OutputStream::not_written(int cause) const {
-  return failed(path_, cause);
-}
-
-Expected<void> OutputStream::write_at(std::uint64_t offset, std::string_view bytes) const {
-  while (!bytes.empty()) {
-    const ssize_t count =
-        ::pwrite(file_.number(), bytes.data(), bytes.size(), static_cast<off_t>(offset));
-    if (count < 0 && errno == EINTR) {
-      continue;
-    }
-    if (count <= 0) {
-      return not_written(count < 0 ? errno : ENOSPC);
-    }
-    bytes.remove_prefix(static_cast<std::size_t>(count));
-    offset += static_cast<std::uint64_t>(count);
-  }
-  return {};
+  return cannot_be_written(path_, cause);
 }
 
 Expected<void> OutputStream::flush() {
-  auto done = write_at(written_ - buffer_.size(), buffer_);
+  auto done = write_at(file_, written_ - buffer_.size(), buffer_, path_);
   buffer_.clear();
   return done;
 }
@@ -112,7 +130,7 @@ Expected<void> OutputStream::write(std::string_view bytes) {
 }
 
 Expected<void> OutputStream::overwrite(std::uint64_t offset, std::string_view bytes) {
-  return flush().and_then([&] { return write_at(offset, bytes); });
+  return flush().and_then([&] { return write_at(file_, offset, bytes, path_); });
 }
 
 Expected<void> OutputStream::finish() {
@@ -120,7 +138,8 @@ Expected<void> OutputStream::finish() {
   if (::fsync(file_.number()) != 0) {
     return not_written(errno);
   }
-  auto named = take_output_name(unfinished_, path_);
+  auto named =
+      replaces_ ? take_name_of_older(unfinished_, path_) : take_output_name(unfinished_, path_);
   if (named) {
     const drivers::FileDescriptor finished(std::move(file_));
   }
@@ -138,7 +157,7 @@ Expected<OutputFolder> OutputFolder::create(const std::filesystem::path& path) {
   std::filesystem::remove_all(folder.unfinished_, problem);
   std::filesystem::create_directories(folder.unfinished_, problem);
   if (problem) {
-    return failed(path, problem.value());
+    return cannot_be_written(path, problem.value());
   }
   return folder;
 }

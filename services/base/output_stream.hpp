@@ -1,6 +1,6 @@
 // A large file written piece by piece, whole or not at all: it is NAME.part until finish(), which
-// takes the name when everything is on the disk and never replaces a file of that name. Without
-// finish() nothing is left.
+// takes the name when everything is on the disk, and never replaces a file of that name unless it
+// is made for that. Without finish() nothing is left.
 //
 // Fails (bad_file) with the file and the reason; a full disk shows in write() or finish(). One
 // thread.
@@ -20,6 +20,8 @@ class OutputStream {
 public:
   // Fails when a file or folder of that name is there.
   [[nodiscard]] static Expected<OutputStream> create(const std::filesystem::path& path);
+  // An older file of that name is left as it is until finish().
+  [[nodiscard]] static Expected<OutputStream> replace(const std::filesystem::path& path);
   OutputStream(OutputStream&& other) noexcept = default;
   OutputStream& operator=(OutputStream&&) = delete;
   ~OutputStream();
@@ -41,9 +43,9 @@ private:
                drivers::FileDescriptor file)
       : path_(std::move(path)), unfinished_(std::move(unfinished)), file_(std::move(file)) {}
   [[nodiscard]] Expected<void> flush();
-  [[nodiscard]] Expected<void> write_at(std::uint64_t offset, std::string_view bytes) const;
 
   std::filesystem::path path_;
+  bool replaces_ = false;
   std::filesystem::path unfinished_;
   drivers::FileDescriptor file_; // closed: finished, or moved from
   std::string buffer_;           // the end of what was written
@@ -76,5 +78,10 @@ private:
 [[nodiscard]] Expected<void> check_new_output(const std::filesystem::path& path);
 [[nodiscard]] Expected<void> take_output_name(const std::filesystem::path& unfinished,
                                               const std::filesystem::path& path);
+// All of the bytes, at `offset` of `file`; `path`: for the failure.
+[[nodiscard]] Expected<void> write_at(const drivers::FileDescriptor& file, std::uint64_t offset,
+                                      std::string_view bytes, const std::filesystem::path& path);
+// The failure with the reason that `cause` (errno) has.
+[[nodiscard]] tl::unexpected<Error> cannot_be_written(const std::filesystem::path& path, int cause);
 
 } // namespace dyncal::inline base

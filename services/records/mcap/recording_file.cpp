@@ -1,8 +1,6 @@
 #include "services/records/mcap/recording_file.hpp"
 
 #include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <fcntl.h>
 #include <string>
 #include <sys/statvfs.h>
@@ -10,12 +8,12 @@
 
 #include <fmt/core.h>
 
+#include "services/base/output_stream.hpp"
 #include "services/records/mcap/mcap_record.hpp"
 
 namespace dyncal::inline records::recording {
 namespace {
 
-using base::ErrorCode;
 using base::Expected;
 
 constexpr mode_t for_everybody = 0666; // less what the umask takes
@@ -41,21 +39,7 @@ bool is_divided(std::uint64_t offset) {
   return offset % page > page - head_bytes;
 }
 
-void synchronise_folder(const std::filesystem::path& path) {
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  const drivers::FileDescriptor opened(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (opened.is_open()) {
-    ::fsync(opened.number());
-  }
-}
-
 } // namespace
-
-tl::unexpected<base::Error> RecordingFile::not_written(int cause) const {
-  return fail(ErrorCode::bad_file,
-              fmt::format("{}: cannot be written ({}); choose another folder or make room",
-                          path_.string(), std::strerror(cause)));
-}
 
 Expected<RecordingFile> RecordingFile::create(const std::filesystem::path& path,
                                               std::string_view beginning) {
@@ -65,9 +49,10 @@ Expected<RecordingFile> RecordingFile::create(const std::filesystem::path& path,
       path, drivers::FileDescriptor(
                 ::open(unfinished.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, for_everybody)));
   if (!file.file_.is_open()) {
-    return file.not_written(errno);
+    return base::cannot_be_written(path, errno);
   }
-  auto begun = file.begin(beginning).and_then([&] { return file.take_name(unfinished); });
+  auto begun =
+      file.begin(beginning).and_then([&] { return base::take_output_name(unfinished, path); });
   if (!begun) {
     ::unlink(unfinished.c_str());
     return fail(begun.error());
@@ -83,44 +68,12 @@ Expected<void> RecordingFile::begin(std::string_view beginning) {
   end_ = records.size();
   crc_ = crc32_of(records);
   return write(records, 0).and_then([&] { return extend(0); }).and_then([&]() -> Expected<void> {
-    return ::fsync(file_.number()) == 0 ? Expected<void>{} : not_written(errno);
+    return ::fsync(file_.number()) == 0 ? Expected<void>{} : base::cannot_be_written(path_, errno);
   });
 }
 
-// No file of that name is replaced.
-Expected<void> RecordingFile::take_name(const std::filesystem::path& unfinished) {
-  int renamed =
-      ::renameat2(AT_FDCWD, unfinished.c_str(), AT_FDCWD, path_.c_str(), RENAME_NOREPLACE);
-  if (renamed != 0 && errno != EEXIST && !std::filesystem::exists(path_)) {
-    renamed = std::rename(unfinished.c_str(), path_.c_str()); // a file system without that
-  }
-  if (renamed != 0 && errno == EEXIST) {
-    return fail(ErrorCode::bad_file,
-                fmt::format("{}: is there already, and recordings are never overwritten: choose "
-                            "another name",
-                            path_.string()));
-  }
-  if (renamed != 0) {
-    return not_written(errno);
-  }
-  synchronise_folder(path_);
-  return {};
-}
-
 Expected<void> RecordingFile::write(std::string_view bytes, std::uint64_t offset) const {
-  while (!bytes.empty()) {
-    const ssize_t count =
-        ::pwrite(file_.number(), bytes.data(), bytes.size(), static_cast<off_t>(offset));
-    if (count < 0 && errno == EINTR) {
-      continue;
-    }
-    if (count <= 0) {
-      return not_written(count < 0 ? errno : ENOSPC);
-    }
-    bytes.remove_prefix(static_cast<std::size_t>(count));
-    offset += static_cast<std::uint64_t>(count);
-  }
-  return {};
+  return base::write_at(file_, offset, bytes, path_);
 }
 
 // The new end lies within one page, like the old one.
@@ -178,11 +131,12 @@ Expected<void> RecordingFile::finish(std::string_view ending) {
   end_ = size;
   const bool done =
       ::ftruncate(file_.number(), static_cast<off_t>(size)) == 0 && ::fsync(file_.number()) == 0;
-  return done ? Expected<void>{} : not_written(errno);
+  return done ? Expected<void>{} : base::cannot_be_written(path_, errno);
 }
 
 Expected<void> RecordingFile::synchronise() {
-  return ::fdatasync(file_.number()) == 0 ? Expected<void>{} : not_written(errno);
+  return ::fdatasync(file_.number()) == 0 ? Expected<void>{}
+                                          : base::cannot_be_written(path_, errno);
 }
 
 std::uint64_t RecordingFile::free_bytes() const {

@@ -50,10 +50,8 @@ private:
   RecordingFile(std::filesystem::path path, drivers::FileDescriptor file)
       : path_(std::move(path)), file_(std::move(file)) {}
   [[nodiscard]] base::Expected<void> begin(std::string_view beginning);
-  [[nodiscard]] base::Expected<void> take_name(const std::filesystem::path& unfinished);
   [[nodiscard]] base::Expected<void> extend(std::uint64_t needed);
   [[nodiscard]] base::Expected<void> write(std::string_view bytes, std::uint64_t offset) const;
-  [[nodiscard]] tl::unexpected<base::Error> not_written(int cause) const;
 
   std::filesystem::path path_;
   drivers::FileDescriptor file_;
