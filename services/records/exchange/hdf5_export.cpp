@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <type_traits>
 
 #include <fmt/core.h>
 
@@ -13,6 +14,8 @@
 
 namespace dyncal::inline records {
 namespace {
+
+constexpr std::uint64_t layout = 2;
 
 std::vector<std::string> run_names(const RecordingContents& contents) {
   std::vector<std::string> names;
@@ -35,8 +38,10 @@ public:
     if (!create()) {
       return not_written();
     }
-    for (const ExportedSource& source : recording_.sources()) {
-      DYNCAL_TRY(write_source(source));
+    DYNCAL_TRY(const auto tables, row_tables(recording_, {}));
+    for (const RowTable& table : tables) {
+      DYNCAL_TRY(table.source().recorded->triggered ? write_samples<wire::TriggeredRecord>(table)
+                                                    : write_samples<wire::SampleBlock>(table));
     }
     return write_tables() && write_texts_of_file() && close() ? Expected<void>{} : not_written();
   }
@@ -62,14 +67,10 @@ private:
     return raw_.is_open() && triggered_.is_open() && own_.is_open();
   }
 
-  [[nodiscard]] Expected<void> write_source(const ExportedSource& source) {
-    return source.recorded->triggered ? write_samples<wire::TriggeredRecord>(source)
-                                      : write_samples<wire::SampleBlock>(source);
-  }
-
   template <class T>
-  [[nodiscard]] Expected<void> write_samples(const ExportedSource& source) {
-    Hdf5Samples samples(source, source.recorded->triggered ? triggered_.id() : raw_.id());
+  [[nodiscard]] Expected<void> write_samples(const RowTable& table) {
+    const ExportedSource& source = table.source();
+    Hdf5Samples samples(table, source.recorded->triggered ? triggered_.id() : raw_.id());
     if (!samples.is_open()) {
       return not_written();
     }
@@ -79,7 +80,10 @@ private:
         return fail(ErrorCode::interrupted,
                     "stopped before everything was written: nothing is left");
       }
-      return add(samples, one) ? Expected<void>{} : Expected<void>(not_written());
+      if constexpr (std::is_same_v<T, wire::TriggeredRecord>) {
+        samples.add_shot(one.message, run_numbers_);
+      }
+      return samples.add(table.rows_of(one)) ? Expected<void>{} : Expected<void>(not_written());
     });
     if (!written) {
       return written;
@@ -92,50 +96,49 @@ private:
                                static_cast<double>(recording_.samples()));
   }
 
-  [[nodiscard]] static bool add(Hdf5Samples& samples, const InOrder<wire::SampleBlock>& one) {
-    return samples.add(one);
+  [[nodiscard]] Hdf5Row row_of(const wire::Excitation& one) {
+    return {{"run", run_numbers_(one.run().to_string())}, // from 1, by the attribute Runs
+            {"step", one.step()},
+            {"repetition", one.repetition()},
+            {"attempt", one.attempt()},
+            {"state", static_cast<std::uint32_t>(one.state())},
+            {"frequency_hz", frequency_of(one)},
+            {"level_m_s2", one.level_m_s2()},
+            {"window_begin_utc_ns", one.window_begin_utc_ns()},
+            {"window_end_utc_ns", one.window_end_utc_ns()}};
   }
-  [[nodiscard]] bool add(Hdf5Samples& samples, const InOrder<wire::TriggeredRecord>& one) {
-    return samples.add(one, run_numbers_);
+  [[nodiscard]] Hdf5Row row_of(const wire::CalibrationResult& one) {
+    return {{"run", run_numbers_(one.run().to_string())},
+            {"channel", channel_numbers_(one.channel().to_string())},
+            {"step", one.step()},
+            {"repetition", one.repetition()},
+            {"valid", one.valid() ? 1U : 0U},
+            {"lost", one.lost()},
+            {"frequency_hz", one.frequency_hz()},
+            {"level_m_s2", one.level_m_s2()},
+            {"magnitude", one.magnitude()},
+            {"u_magnitude", one.u_magnitude()},
+            {"phase_rad", one.phase_rad()},
+            {"u_phase_rad", one.u_phase_rad()},
+            {"attempt", std::max(one.attempt(), 1U)}};
+  }
+
+  template <class T>
+  [[nodiscard]] bool write_table(hid_t group, const char* name, const std::vector<T>& messages) {
+    std::string bytes;
+    for (const T& one : messages) {
+      append_row(bytes, row_of(one));
+    }
+    return Hdf5List::create(group, name, hdf5_type(row_of(T{})))
+        .append(bytes.data(), messages.size());
   }
 
   // For people: what the messages say, too.
   [[nodiscard]] bool write_tables() {
-    std::vector<Hdf5Excitation> excitations;
-    for (const wire::Excitation& one : runs_.excitations) {
-      excitations.push_back({.run = run_numbers_(one.run().to_string()),
-                             .step = one.step(),
-                             .repetition = one.repetition(),
-                             .attempt = one.attempt(),
-                             .state = static_cast<std::uint32_t>(one.state()),
-                             .frequency_hz = frequency_of(one),
-                             .level_m_s2 = one.level_m_s2(),
-                             .window_begin_utc_ns = one.window_begin_utc_ns(),
-                             .window_end_utc_ns = one.window_end_utc_ns()});
-    }
-    std::vector<Hdf5Result> results;
-    RunNumbers channels({});
-    for (const wire::CalibrationResult& one : runs_.results) {
-      results.push_back({.run = run_numbers_(one.run().to_string()),
-                         .channel = channels(one.channel().to_string()),
-                         .step = one.step(),
-                         .repetition = one.repetition(),
-                         .valid = one.valid() ? 1U : 0U,
-                         .attempt = std::max(one.attempt(), 1U),
-                         .lost = one.lost(),
-                         .frequency_hz = one.frequency_hz(),
-                         .level_m_s2 = one.level_m_s2(),
-                         .magnitude = one.magnitude(),
-                         .u_magnitude = one.u_magnitude(),
-                         .phase_rad = one.phase_rad(),
-                         .u_phase_rad = one.u_phase_rad()});
-    }
     const Hdf5Handle group = make_group(file_.id(), "RESULTS");
-    auto steps = Hdf5List::create(group.id(), "Excitation", hdf5_type<Hdf5Excitation>());
-    auto values = Hdf5List::create(group.id(), "Results", hdf5_type<Hdf5Result>());
-    return group.is_open() && steps.append(excitations.data(), excitations.size()) &&
-           values.append(results.data(), results.size()) &&
-           write_texts(group.id(), "Channels", channels.names()) &&
+    return group.is_open() && write_table(group.id(), "Excitation", runs_.excitations) &&
+           write_table(group.id(), "Results", runs_.results) &&
+           write_texts(group.id(), "Channels", channel_numbers_.names()) &&
            write_texts(group.id(), "Runs", run_numbers_.names());
   }
 
@@ -161,7 +164,7 @@ private:
       all_damages += damage + "\n";
     }
     return written && write_text(file_.id(), "Software", software_version()) &&
-           write_count(own_.id(), "Layout", hdf5_layout) &&
+           write_count(own_.id(), "Layout", layout) &&
            write_text(own_.id(), "Library", report.library) &&
            write_long_text(own_.id(), "Damages", all_damages) &&
            write_long_text(own_.id(), "Contents_json", contents_json(recording_, runs_));
@@ -180,6 +183,7 @@ private:
   OutputStream& output_;
   const ExportProgress& progress_;
   RunNumbers run_numbers_;
+  RunNumbers channel_numbers_{std::vector<std::string>{}};
   std::uint64_t samples_done_ = 0;
   // What is in the file is closed before the file.
   Hdf5Handle file_;

@@ -3,13 +3,10 @@
 #include "services/records/exchange/hdf5_samples.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
-#include <numeric>
 #include <set>
-
-#include "services/base/version.hpp"
-#include "services/contract/source_block.hpp"
 
 namespace dyncal::inline records {
 namespace {
@@ -36,11 +33,25 @@ std::string quantity_name(const std::string& channel) {
   return name;
 }
 
-template <class T>
-void append(std::vector<T>& to, std::span<const T> values, std::size_t count) {
-  const std::size_t end = to.size() + count;
-  to.insert(to.end(), values.begin(), values.end());
-  to.resize(end);
+hid_t memory_type(const ColumnValues& values) {
+  const std::array types{H5T_NATIVE_INT64, H5T_NATIVE_UINT64, H5T_NATIVE_DOUBLE};
+  return types.at(values.index());
+}
+
+Hdf5Row row_of(const wire::TriggeredRecord& record, RunNumbers& runs, std::uint64_t first_column) {
+  return {{"session", record.session()},
+          {"shot", record.shot()},
+          {"first_column", first_column},
+          {"trigger_utc_ns", record.trigger_utc_ns()},
+          {"received_utc_ns", record.received_utc_ns()},
+          {"first_sample_s", record.first_sample_s()},
+          {"interval_s", record.interval_s()},
+          {"sample_count", record.sample_count()},
+          {"step", record.step()},
+          {"attempt", record.attempt()},
+          {"run", runs(record.run())}, // by its place in the attribute Runs, from 1; 0: none
+          {"acknowledged_run", runs(record.acknowledged_run())},
+          {"end_of_stream", record.end_of_stream() ? 1U : 0U}};
 }
 
 } // namespace
@@ -79,138 +90,127 @@ std::uint32_t RunNumbers::operator()(const std::string& name) {
   return static_cast<std::uint32_t>(found - names_.begin()) + 1;
 }
 
-Hdf5Samples::Hdf5Samples(const ExportedSource& source, hid_t place)
-    : group_(make_group(place, source.name)), quantities_(quantities_of(source.channels)),
-      triggered_(source.recorded->triggered), channels_waiting_(source.channels.size()) {
-  const hid_t group = group_.id();
-  if (triggered_) {
-    shots_ = Hdf5List::create(group, "Shots", hdf5_type<Hdf5Shot>());
-  } else {
-    const bool is_local =
-        source.description && source.description->time_base() == wire::TIME_BASE_LOCAL;
-    stamps_ = Hdf5Matrix::create(
-        group, "Absolutetime", is_local ? H5T_NATIVE_INT64 : H5T_NATIVE_UINT64, 1, source.samples);
-    uncertainties_ =
-        Hdf5Matrix::create(group, "Absolutetime_uncertainty", H5T_NATIVE_UINT32, 1, source.samples);
-    numbers_ = Hdf5Matrix::create(group, "Sample_number", H5T_NATIVE_UINT64, 1, source.samples);
-    flags_ = Hdf5Matrix::create(group, "Stamp_flags", H5T_NATIVE_UINT8, 1, source.samples);
-    sessions_ = Hdf5Matrix::create(group, "Session", H5T_NATIVE_UINT64, 1, source.samples);
+Hdf5Samples::Hdf5Samples(const RowTable& table, hid_t place)
+    : table_(table), group_(make_group(place, table.source().name)) {
+  for (const RowColumn& column : table.columns()) {
+    waiting_.push_back(column.none);
   }
-  open_ = group_.is_open() && shots_.is_open() == triggered_ && add_quantities(source) &&
-          describe(source);
+  open_ = group_.is_open() && describe();
+  if (table.source().recorded->triggered) {
+    RunNumbers none({});
+    shots_ = Hdf5List::create(group_.id(), "Shots", hdf5_type(row_of({}, none, 0)));
+    open_ = open_ && shots_.is_open();
+  } else {
+    open_ = open_ && add_stamps();
+  }
+  for (const Hdf5Quantity& quantity : quantities_of(table.source().channels)) {
+    open_ = open_ && add_quantity(quantity);
+  }
 }
 
-bool Hdf5Samples::describe(const ExportedSource& source) const {
+bool Hdf5Samples::describe() const {
   const hid_t group = group_.id();
-  bool written = write_text(group, "Bench", source.bench) &&
-                 write_text(group, "Source", source.source) &&
-                 write_count(group, "Data_point_number", source.samples) &&
-                 write_count(group, "Lost_samples", source.lost);
-  if (written && source.description) {
-    const wire::SourceDescription& description = *source.description;
-    const bool is_utc = description.time_base() == wire::TIME_BASE_UTC;
-    const double rate_hz = description.nominal_rate_hz();
-    written = write_text(group, "Name", description.device()) &&
-              write_text(group, "Serial", description.serial()) &&
-              write_text(group, "Firmware", description.firmware()) &&
-              write_text(group, "Time_base", is_utc ? "utc" : "local") &&
-              write_numbers(group, "Nominal_rate", {&rate_hz, 1});
-  }
-  if (triggered_ || !written) {
+  const ExportedSource& source = table_.source();
+  const bool written = write_text(group, "Bench", source.bench) &&
+                       write_text(group, "Source", source.source) &&
+                       write_count(group, "Data_point_number", source.samples) &&
+                       write_count(group, "Lost_samples", source.lost);
+  if (!written || !source.description) {
     return written;
   }
-  const double standard = 1.0;
-  return stamps_.is_open() && uncertainties_.is_open() && numbers_.is_open() &&
-         sessions_.is_open() && flags_.is_open() &&
-         write_text(stamps_.id(), "Unit", "\\nano\\second") &&
-         write_text(uncertainties_.id(), "Unit", "\\nano\\second") &&
-         write_numbers(uncertainties_.id(), "Coverage_factor", {&standard, 1}) &&
-         write_text(numbers_.id(), "Unit", "\\one") &&
-         write_text(sessions_.id(), "Unit", "\\one") && write_text(flags_.id(), "Unit", "\\one");
+  const wire::SourceDescription& description = *source.description;
+  const bool is_utc = description.time_base() == wire::TIME_BASE_UTC;
+  const double rate_hz = description.nominal_rate_hz();
+  return write_text(group, "Name", description.device()) &&
+         write_text(group, "Serial", description.serial()) &&
+         write_text(group, "Firmware", description.firmware()) &&
+         write_text(group, "Time_base", is_utc ? "utc" : "local") &&
+         write_numbers(group, "Nominal_rate", {&rate_hz, 1});
 }
 
-bool Hdf5Samples::add_quantities(const ExportedSource& source) {
-  for (const Hdf5Quantity& quantity : quantities_) {
-    values_.push_back(Hdf5Matrix::create(group_.id(), quantity.name, H5T_NATIVE_DOUBLE,
-                                         quantity.channels.size(), source.samples));
-    std::vector<std::string> names;
-    std::vector<std::string> physical;
-    std::vector<double> steps;
-    std::vector<double> minima;
-    std::vector<double> maxima;
-    std::vector<double> numbers; // in the blocks, from 1
-    for (const std::size_t i : quantity.channels) {
-      const drivers::ChannelDescription& channel = source.channels[i];
-      const double range = channel.maximum - channel.minimum;
-      names.push_back(channel.name);
-      physical.push_back(channel.quantity.empty() ? channel.name : channel.quantity);
-      steps.push_back(channel.resolution > 0.0 ? std::round(range / channel.resolution) : 0.0);
-      minima.push_back(channel.minimum);
-      maxima.push_back(channel.maximum);
-      numbers.push_back(static_cast<double>(i + 1));
-    }
-    const hid_t dataset = values_.back().id();
-    if (!values_.back().is_open() ||
-        !write_text(dataset, "Unit", source.channels[quantity.channels.front()].unit) ||
-        !write_texts(dataset, "Channel", names) ||
-        !write_numbers(dataset, "Channel_number", numbers) ||
-        !write_texts(dataset, "Physical_quantity", physical) ||
-        !write_numbers(dataset, "Resolution", steps) ||
-        !write_numbers(dataset, "Min_scale", minima) ||
-        !write_numbers(dataset, "Max_scale", maxima)) {
+hid_t Hdf5Samples::add_dataset(const std::string& name, hid_t type,
+                               std::vector<std::size_t> columns) {
+  auto matrix = Hdf5Matrix::create(group_.id(), name, type, columns.size(), table_.rows());
+  datasets_.push_back({std::move(columns), std::move(matrix)});
+  return datasets_.back().matrix.id();
+}
+
+bool Hdf5Samples::add_stamps() {
+  struct Stamps {
+    const char* column;
+    const char* dataset;
+    hid_t type;
+    const char* unit;
+  };
+  const auto& description = table_.source().description;
+  const bool is_local = description && description->time_base() == wire::TIME_BASE_LOCAL;
+  const Stamps all[] = {
+      {"t_ns", "Absolutetime", is_local ? H5T_NATIVE_INT64 : H5T_NATIVE_UINT64, "\\nano\\second"},
+      {"stamp_uncertainty_ns", "Absolutetime_uncertainty", H5T_NATIVE_UINT32, "\\nano\\second"},
+      {"sample_number", "Sample_number", H5T_NATIVE_UINT64, "\\one"},
+      {"stamp_flags", "Stamp_flags", H5T_NATIVE_UINT8, "\\one"},
+      {"session", "Session", H5T_NATIVE_UINT64, "\\one"}};
+  for (const Stamps& one : all) {
+    const auto column = std::ranges::find(table_.columns(), one.column, &RowColumn::name);
+    const auto place = static_cast<std::size_t>(column - table_.columns().begin());
+    const hid_t dataset = add_dataset(one.dataset, one.type, {place});
+    const double standard = 1.0;
+    if (!datasets_.back().matrix.is_open() || !write_text(dataset, "Unit", one.unit) ||
+        (one.type == H5T_NATIVE_UINT32 &&
+         !write_numbers(dataset, "Coverage_factor", {&standard, 1}))) {
       return false;
     }
   }
   return true;
 }
 
-void Hdf5Samples::add_values(std::span<const double> values, std::size_t samples) {
-  for (std::size_t channel = 0; channel < channels_waiting_.size(); ++channel) {
-    append(channels_waiting_[channel], values.subspan(channel * samples, samples), samples);
+bool Hdf5Samples::add_quantity(const Hdf5Quantity& quantity) {
+  const auto& described = table_.source().channels;
+  const std::size_t first_channel = table_.columns().size() - described.size();
+  std::vector<std::size_t> columns;
+  std::vector<std::string> names;
+  std::vector<std::string> physical;
+  std::vector<double> steps;
+  std::vector<double> minima;
+  std::vector<double> maxima;
+  std::vector<double> numbers; // in the blocks, from 1
+  for (const std::size_t i : quantity.channels) {
+    const drivers::ChannelDescription& channel = described[i];
+    const double range = channel.maximum - channel.minimum;
+    columns.push_back(first_channel + i);
+    names.push_back(channel.name);
+    physical.push_back(channel.quantity.empty() ? channel.name : channel.quantity);
+    steps.push_back(channel.resolution > 0.0 ? std::round(range / channel.resolution) : 0.0);
+    minima.push_back(channel.minimum);
+    maxima.push_back(channel.maximum);
+    numbers.push_back(static_cast<double>(i + 1));
   }
-  columns_ += samples;
-  buffered_ += samples;
+  const hid_t dataset = add_dataset(quantity.name, H5T_NATIVE_DOUBLE, std::move(columns));
+  return datasets_.back().matrix.is_open() &&
+         write_text(dataset, "Unit", described[quantity.channels.front()].unit) &&
+         write_texts(dataset, "Channel", names) &&
+         write_numbers(dataset, "Channel_number", numbers) &&
+         write_texts(dataset, "Physical_quantity", physical) &&
+         write_numbers(dataset, "Resolution", steps) &&
+         write_numbers(dataset, "Min_scale", minima) && write_numbers(dataset, "Max_scale", maxima);
 }
 
-bool Hdf5Samples::add(const InOrder<wire::SampleBlock>& one) {
-  const SourceBlock block = view_block(one.message);
-  append(stamps_waiting_, block.stamps_ns, block.stamps_ns.size());
-  for (std::size_t i = block.stamps_ns.size(); i < block.samples; ++i) {
-    stamps_waiting_.push_back(block.clock.stamp_ns(block.first_sample + i));
+void Hdf5Samples::add_shot(const wire::TriggeredRecord& record, RunNumbers& runs) {
+  append_row(shots_waiting_, row_of(record, runs, columns_));
+  ++shot_count_;
+}
+
+bool Hdf5Samples::add(const Rows& rows) {
+  for (std::size_t i = 0; i < waiting_.size(); ++i) {
+    std::visit(
+        [&](auto& to) {
+          const auto& from = std::get<std::decay_t<decltype(to)>>(rows.columns[i]);
+          to.insert(to.end(), from.begin(), from.end());
+        },
+        waiting_[i]);
   }
-  append(uncertainties_waiting_, block.stamp_uncertainty_ns, block.samples);
-  append(flags_waiting_, block.flags, block.samples);
-  const std::size_t first = numbers_waiting_.size();
-  numbers_waiting_.resize(first + block.samples);
-  std::iota(numbers_waiting_.begin() + static_cast<std::ptrdiff_t>(first), numbers_waiting_.end(),
-            block.first_sample);
-  sessions_waiting_.resize(first + block.samples, one.session + 1); // as rows count them
-  add_values(block.values, block.samples);
-  return flush_if_full();
-}
-
-bool Hdf5Samples::add(const InOrder<wire::TriggeredRecord>& one, RunNumbers& runs) {
-  const wire::TriggeredRecord& record = one.message;
-  Hdf5Shot row;
-  row.session = record.session();
-  row.shot = record.shot();
-  row.first_column = columns_;
-  row.trigger_utc_ns = record.trigger_utc_ns();
-  row.received_utc_ns = record.received_utc_ns();
-  row.first_sample_s = record.first_sample_s();
-  row.interval_s = record.interval_s();
-  row.sample_count = record.sample_count();
-  row.step = record.step();
-  row.attempt = record.attempt();
-  row.run = runs(record.run());
-  row.acknowledged_run = runs(record.acknowledged_run());
-  row.end_of_stream = record.end_of_stream() ? 1 : 0;
-  shots_waiting_.push_back(row);
-  add_values(record.values(), record.sample_count());
-  return flush_if_full();
-}
-
-bool Hdf5Samples::flush_if_full() {
+  columns_ += rows.count;
+  buffered_ += rows.count;
   return buffered_ < max_buffered || flush();
 }
 
@@ -218,29 +218,26 @@ bool Hdf5Samples::flush() {
   if (buffered_ == 0) {
     return true;
   }
-  bool written = triggered_ ? shots_.append(shots_waiting_.data(), shots_waiting_.size())
-                            : stamps_.append(stamps_waiting_.data(), buffered_) &&
-                                  uncertainties_.append(uncertainties_waiting_.data(), buffered_) &&
-                                  numbers_.append(numbers_waiting_.data(), buffered_) &&
-                                  sessions_.append(sessions_waiting_.data(), buffered_) &&
-                                  flags_.append(flags_waiting_.data(), buffered_);
-  for (std::size_t i = 0; written && i < quantities_.size(); ++i) {
-    std::vector<double> rows;
-    for (const std::size_t channel : quantities_[i].channels) {
-      rows.insert(rows.end(), channels_waiting_[channel].begin(), channels_waiting_[channel].end());
+  bool written = shot_count_ == 0 || shots_.append(shots_waiting_.data(), shot_count_);
+  for (Dataset& dataset : datasets_) {
+    std::string bytes;
+    for (const std::size_t column : dataset.columns) {
+      std::visit(
+          [&](const auto& values) {
+            bytes.append(reinterpret_cast<const char*>(values.data()),
+                         values.size() * sizeof(values[0]));
+          },
+          waiting_[column]);
     }
-    written = values_[i].append(rows.data(), buffered_);
+    const hid_t type = memory_type(waiting_[dataset.columns.front()]);
+    written = written && dataset.matrix.append(bytes.data(), type, buffered_);
   }
-  buffered_ = 0;
-  stamps_waiting_.clear();
-  uncertainties_waiting_.clear();
-  numbers_waiting_.clear();
-  sessions_waiting_.clear();
-  flags_waiting_.clear();
-  for (auto& channel : channels_waiting_) {
-    channel.clear();
+  for (ColumnValues& values : waiting_) {
+    std::visit([](auto& one) { one.clear(); }, values);
   }
   shots_waiting_.clear();
+  shot_count_ = 0;
+  buffered_ = 0;
   return written;
 }
 

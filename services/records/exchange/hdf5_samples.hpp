@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "services/records/exchange/exported_recording.hpp"
 #include "services/records/exchange/hdf5_writing.hpp"
+#include "services/records/exchange/row_table.hpp"
 
 namespace dyncal::inline records {
 
@@ -36,41 +36,37 @@ private:
 
 class Hdf5Samples {
 public:
-  // `place`: RAWDATA or TRIGGERED.
-  Hdf5Samples(const ExportedSource& source, hid_t place);
+  // `place`: RAWDATA or TRIGGERED. `table`: with all channels of its source; outlives the object.
+  Hdf5Samples(const RowTable& table, hid_t place);
 
   [[nodiscard]] bool is_open() const { return open_; }
-  [[nodiscard]] bool add(const InOrder<wire::SampleBlock>& one);
-  [[nodiscard]] bool add(const InOrder<wire::TriggeredRecord>& one, RunNumbers& runs);
+  [[nodiscard]] bool add(const Rows& rows);
+  // Of the rows that are added next.
+  void add_shot(const wire::TriggeredRecord& record, RunNumbers& runs);
   [[nodiscard]] bool flush();
 
 private:
-  [[nodiscard]] bool describe(const ExportedSource& source) const;
-  [[nodiscard]] bool add_quantities(const ExportedSource& source);
-  void add_values(std::span<const double> values, std::size_t samples);
-  [[nodiscard]] bool flush_if_full();
+  struct Dataset {
+    std::vector<std::size_t> columns; // of the table, each a row of the matrix
+    Hdf5Matrix matrix;
+  };
 
+  [[nodiscard]] bool describe() const;
+  [[nodiscard]] bool add_stamps();
+  [[nodiscard]] bool add_quantity(const Hdf5Quantity& quantity);
+  hid_t add_dataset(const std::string& name, hid_t type, std::vector<std::size_t> columns);
+
+  const RowTable& table_;
   Hdf5Handle group_;
-  Hdf5Matrix stamps_;
-  Hdf5Matrix uncertainties_;
-  Hdf5Matrix numbers_;
-  Hdf5Matrix sessions_;
-  Hdf5Matrix flags_;
-  std::vector<Hdf5Quantity> quantities_;
-  std::vector<Hdf5Matrix> values_;
+  std::vector<Dataset> datasets_;
   Hdf5List shots_;
-  bool triggered_;
   bool open_ = false;
   std::uint64_t columns_ = 0; // so far
   // Not written yet:
-  std::size_t buffered_ = 0; // columns
-  std::vector<std::int64_t> stamps_waiting_;
-  std::vector<std::uint32_t> uncertainties_waiting_;
-  std::vector<std::uint64_t> numbers_waiting_;
-  std::vector<std::uint64_t> sessions_waiting_;
-  std::vector<std::uint8_t> flags_waiting_;
-  std::vector<std::vector<double>> channels_waiting_;
-  std::vector<Hdf5Shot> shots_waiting_;
+  std::size_t buffered_ = 0;
+  std::vector<ColumnValues> waiting_; // as the table has them
+  std::string shots_waiting_;
+  std::uint64_t shot_count_ = 0;
 };
 
 } // namespace dyncal::inline records

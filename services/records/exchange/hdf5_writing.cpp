@@ -100,12 +100,11 @@ Hdf5Matrix Hdf5Matrix::create(hid_t place, const std::string& name, hid_t type, 
   matrix.dataset_ = Hdf5Handle(H5Dcreate2(place, name.c_str(), type, space.id(), H5P_DEFAULT,
                                           chunked(chunk).id(), H5P_DEFAULT),
                                H5Dclose);
-  matrix.type_ = type;
   matrix.rows_ = rows;
   return matrix;
 }
 
-bool Hdf5Matrix::append(const void* numbers, std::uint64_t count) {
+bool Hdf5Matrix::append(const void* numbers, hid_t type, std::uint64_t count) {
   const Hdf5Handle space(H5Dget_space(dataset_.id()), H5Sclose);
   const std::array<hsize_t, 2> start{0, written_};
   const std::array<hsize_t, 2> size{rows_, count};
@@ -113,7 +112,7 @@ bool Hdf5Matrix::append(const void* numbers, std::uint64_t count) {
   written_ += count;
   return H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, start.data(), nullptr, size.data(),
                              nullptr) >= 0 &&
-         H5Dwrite(dataset_.id(), type_, memory.id(), space.id(), H5P_DEFAULT, numbers) >= 0;
+         H5Dwrite(dataset_.id(), type, memory.id(), space.id(), H5P_DEFAULT, numbers) >= 0;
 }
 
 Hdf5List Hdf5List::create(hid_t place, const std::string& name, Hdf5Handle type) {

@@ -28,17 +28,16 @@ namespace dyncal::inline records {
 class Hdf5Matrix {
 public:
   Hdf5Matrix() = default;
-  // `type`: in file and memory.
+  // `type`: in the file.
   [[nodiscard]] static Hdf5Matrix create(hid_t place, const std::string& name, hid_t type,
                                          std::uint64_t rows, std::uint64_t columns);
   [[nodiscard]] bool is_open() const { return dataset_.is_open(); }
   [[nodiscard]] hid_t id() const { return dataset_.id(); }
-  // `count` numbers of each row, row after row.
-  [[nodiscard]] bool append(const void* numbers, std::uint64_t count);
+  // `count` numbers of each row, row after row; `type`: in memory.
+  [[nodiscard]] bool append(const void* numbers, hid_t type, std::uint64_t count);
 
 private:
   Hdf5Handle dataset_;
-  hid_t type_ = H5I_INVALID_HID;
   std::uint64_t rows_ = 0;
   std::uint64_t written_ = 0; // columns
 };
@@ -49,7 +48,6 @@ public:
   Hdf5List() = default;
   [[nodiscard]] static Hdf5List create(hid_t place, const std::string& name, Hdf5Handle type);
   [[nodiscard]] bool is_open() const { return dataset_.is_open(); }
-  [[nodiscard]] std::uint64_t size() const { return size_; }
   [[nodiscard]] bool append(const void* elements, std::uint64_t count);
 
 private:

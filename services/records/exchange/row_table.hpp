@@ -47,11 +47,10 @@ public:
   // Ends with the first failure of `visit`.
   [[nodiscard]] Expected<void>
   for_each(const std::function<Expected<void>(const Rows&)>& visit) const;
-
-private:
   [[nodiscard]] Rows rows_of(const InOrder<wire::SampleBlock>& one) const;
   [[nodiscard]] Rows rows_of(const InOrder<wire::TriggeredRecord>& one) const;
 
+private:
   const ExportedRecording& recording_;
   const ExportedSource& source_;
   std::vector<std::size_t> channels_;
