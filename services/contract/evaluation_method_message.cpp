@@ -1,33 +1,21 @@
 #include "services/contract/evaluation_method_message.hpp"
 
+#include "services/base/per_enumerator.hpp"
+
 namespace dyncal::inline contract {
 
 wire::Method to_wire(EvaluationMethod method) {
-  switch (method) {
-  case EvaluationMethod::analogue:
-    return wire::METHOD_ANALOGUE;
-  case EvaluationMethod::series_timestamping:
-    return wire::METHOD_SERIES_TIMESTAMPING;
-  case EvaluationMethod::absolute_time:
-    return wire::METHOD_ABSOLUTE_TIME;
-  case EvaluationMethod::sample_timestamping:
-    break;
-  }
-  return wire::METHOD_SAMPLE_TIMESTAMPING;
+  return per_enumerator(method, {wire::METHOD_ANALOGUE, wire::METHOD_SAMPLE_TIMESTAMPING,
+                                 wire::METHOD_SERIES_TIMESTAMPING, wire::METHOD_ABSOLUTE_TIME});
 }
 
 std::optional<EvaluationMethod> from_wire(wire::Method method) {
-  switch (method) {
-  case wire::METHOD_ANALOGUE:
-    return EvaluationMethod::analogue;
-  case wire::METHOD_SERIES_TIMESTAMPING:
-    return EvaluationMethod::series_timestamping;
-  case wire::METHOD_ABSOLUTE_TIME:
-    return EvaluationMethod::absolute_time;
-  case wire::METHOD_SAMPLE_TIMESTAMPING:
-    return EvaluationMethod::sample_timestamping;
-  }
-  return std::nullopt;
+  using Known = std::optional<EvaluationMethod>;
+  return per_enumerator<wire::Method, Known>(
+      method,
+      {EvaluationMethod::analogue, EvaluationMethod::sample_timestamping,
+       EvaluationMethod::series_timestamping, EvaluationMethod::absolute_time},
+      std::nullopt);
 }
 
 } // namespace dyncal::inline contract

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "services/base/per_enumerator.hpp"
 #include "services/contract/unit.hpp"
 
 namespace dyncal::inline contract {
@@ -141,47 +142,12 @@ Quantity quantity_of(const Dimension& dimension) {
 } // namespace
 
 const char* to_string(Quantity quantity) {
-  switch (quantity) {
-  case Quantity::displacement:
-    return "a displacement";
-  case Quantity::velocity:
-    return "a velocity";
-  case Quantity::acceleration:
-    return "an acceleration";
-  case Quantity::angle:
-    return "an angle";
-  case Quantity::angular_velocity:
-    return "an angular velocity";
-  case Quantity::angular_acceleration:
-    return "an angular acceleration";
-  case Quantity::force:
-    return "a force";
-  case Quantity::torque:
-    return "a torque";
-  case Quantity::pressure:
-    return "a pressure";
-  case Quantity::frequency:
-    return "a frequency";
-  case Quantity::magnetic_flux_density:
-    return "a magnetic flux density";
-  case Quantity::voltage:
-    return "a voltage";
-  case Quantity::current:
-    return "a current";
-  case Quantity::charge:
-    return "a charge";
-  case Quantity::other_electrical:
-    return "an electrical quantity";
-  case Quantity::temperature:
-    return "a temperature";
-  case Quantity::time:
-    return "a time";
-  case Quantity::other:
-    return "another quantity";
-  case Quantity::unknown:
-    break;
-  }
-  return "not known";
+  return per_enumerator(quantity,
+                        {"not known", "a displacement", "a velocity", "an acceleration", "an angle",
+                         "an angular velocity", "an angular acceleration", "a force", "a torque",
+                         "a pressure", "a frequency", "a magnetic flux density", "a voltage",
+                         "a current", "a charge", "an electrical quantity", "a temperature",
+                         "a time", "another quantity"});
 }
 
 Quantity quantity_of_unit(const std::string& unit) {

@@ -1,54 +1,23 @@
 #include "services/contract/source_kind.hpp"
 
+#include "services/base/per_enumerator.hpp"
 #include "services/contract/topics.hpp"
 
 namespace dyncal::inline contract {
 
 const char* to_string(SourceKind kind) {
-  switch (kind) {
-  case SourceKind::dau:
-    return "dau";
-  case SourceKind::acs:
-    return "acs";
-  case SourceKind::dso:
-    return "dso";
-  case SourceKind::tss:
-    return "tss";
-  case SourceKind::can:
-    return "can";
-  }
-  return "acs";
+  return per_enumerator(kind, {"dau", "acs", "dso", "tss", "can"});
 }
 
 wire::SourceKind to_wire(SourceKind kind) {
-  switch (kind) {
-  case SourceKind::dau:
-    return wire::SOURCE_DAU;
-  case SourceKind::acs:
-    return wire::SOURCE_ACS;
-  case SourceKind::dso:
-    return wire::SOURCE_DSO;
-  case SourceKind::tss:
-    return wire::SOURCE_TSS;
-  case SourceKind::can:
-    return wire::SOURCE_CAN;
-  }
-  return wire::SOURCE_ACS;
+  return per_enumerator(kind, {wire::SOURCE_DAU, wire::SOURCE_ACS, wire::SOURCE_DSO,
+                               wire::SOURCE_TSS, wire::SOURCE_CAN});
 }
 
 SourceKind from_wire(wire::SourceKind kind) {
-  switch (kind) {
-  case wire::SOURCE_DAU:
-    return SourceKind::dau;
-  case wire::SOURCE_DSO:
-    return SourceKind::dso;
-  case wire::SOURCE_TSS:
-    return SourceKind::tss;
-  case wire::SOURCE_CAN:
-    return SourceKind::can;
-  default:
-    return SourceKind::acs;
-  }
+  return per_enumerator(
+      kind, {SourceKind::dau, SourceKind::acs, SourceKind::dso, SourceKind::tss, SourceKind::can},
+      SourceKind::acs);
 }
 
 bool is_triggered(SourceKind kind) {
@@ -56,19 +25,10 @@ bool is_triggered(SourceKind kind) {
 }
 
 const char* sample_topic(SourceKind kind) {
-  switch (kind) {
-  case SourceKind::dau:
-    return bus::topics::dau_samples;
-  case SourceKind::acs:
-    return bus::topics::acs_samples;
-  case SourceKind::dso:
-    return bus::topics::dso_record;
-  case SourceKind::tss:
-    return bus::topics::tss_record;
-  case SourceKind::can:
-    return bus::topics::can_samples;
-  }
-  return bus::topics::acs_samples;
+  namespace topics = bus::topics;
+  return per_enumerator(kind, {topics::dau_samples.name, topics::acs_samples.name,
+                               topics::dso_record.name, topics::tss_record.name,
+                               topics::can_samples.name});
 }
 
 } // namespace dyncal::inline contract

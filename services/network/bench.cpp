@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include "services/base/per_enumerator.hpp"
+
 namespace dyncal::network {
 namespace {
 
@@ -81,25 +83,8 @@ void worsen_by_guard(const Service& guard, bus::Clock::Instant now, Condition& c
 } // namespace
 
 const char* to_string(BenchState state) {
-  switch (state) {
-  case BenchState::idle:
-    break;
-  case BenchState::arming:
-    return "arming";
-  case BenchState::running:
-    return "running";
-  case BenchState::paused:
-    return "paused";
-  case BenchState::done:
-    return "done";
-  case BenchState::aborted:
-    return "aborted";
-  case BenchState::silent:
-    return "silent";
-  case BenchState::gone:
-    return "gone";
-  }
-  return "idle";
+  return per_enumerator(
+      state, {"idle", "arming", "running", "paused", "done", "aborted", "silent", "gone"});
 }
 
 const Run* Bench::current_run() const {

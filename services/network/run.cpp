@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "services/base/per_enumerator.hpp"
 #include "services/base/printable_text.hpp"
 #include "services/contract/evaluation_method_message.hpp"
 
@@ -9,57 +10,24 @@ namespace dyncal::network {
 namespace {
 
 RunState state_of(wire::MeasurementState state) {
-  switch (state) {
-  case wire::MEASUREMENT_PLANNED:
-    return RunState::planned;
-  case wire::MEASUREMENT_RUNNING:
-    return RunState::running;
-  case wire::MEASUREMENT_DONE:
-    return RunState::done;
-  case wire::MEASUREMENT_ABORTED:
-    return RunState::aborted;
-  }
-  return RunState::unknown;
+  return per_enumerator(state,
+                        {RunState::planned, RunState::running, RunState::done, RunState::aborted},
+                        RunState::unknown);
 }
 
 StepState state_of(wire::ExcitationState state) {
-  switch (state) {
-  case wire::EXCITATION_SETTLING:
-    return StepState::settling;
-  case wire::EXCITATION_STEADY:
-    return StepState::steady;
-  case wire::EXCITATION_DONE:
-    return StepState::done;
-  case wire::EXCITATION_ABORTED:
-    return StepState::aborted;
-  }
-  return StepState::open;
+  return per_enumerator(
+      state, {StepState::settling, StepState::steady, StepState::done, StepState::aborted},
+      StepState::open);
 }
 
 AnalysisState state_of(wire::ArmState state) {
-  switch (state) {
-  case wire::ARM_WAITING:
-    return AnalysisState::waiting;
-  case wire::ARM_ARMED:
-    return AnalysisState::armed;
-  case wire::ARM_REFUSED:
-    return AnalysisState::refused;
-  case wire::ARM_FINISHED:
-    return AnalysisState::finished;
-  }
-  return AnalysisState::waiting;
+  return per_enumerator(state, {AnalysisState::waiting, AnalysisState::armed,
+                                AnalysisState::refused, AnalysisState::finished});
 }
 
 Health health_of(wire::HealthState state) {
-  switch (state) {
-  case wire::HEALTH_OK:
-    return Health::ok;
-  case wire::HEALTH_FAILED:
-    return Health::failed;
-  case wire::HEALTH_WAITING:
-    return Health::waiting;
-  }
-  return Health::ok;
+  return per_enumerator(state, {Health::ok, Health::failed, Health::waiting});
 }
 
 // How far the steps are is not in the plan: those of the one before keep it.
@@ -96,61 +64,19 @@ bool is_driven(StepState state) {
 } // namespace
 
 const char* to_string(RunState state) {
-  switch (state) {
-  case RunState::unknown:
-    break;
-  case RunState::planned:
-    return "planned";
-  case RunState::running:
-    return "running";
-  case RunState::done:
-    return "done";
-  case RunState::aborted:
-    return "aborted";
-  }
-  return "unknown";
+  return per_enumerator(state, {"unknown", "planned", "running", "done", "aborted"});
 }
 
 const char* to_string(StepState state) {
-  switch (state) {
-  case StepState::open:
-    break;
-  case StepState::settling:
-    return "settling";
-  case StepState::steady:
-    return "steady";
-  case StepState::done:
-    return "done";
-  case StepState::aborted:
-    return "aborted";
-  }
-  return "open";
+  return per_enumerator(state, {"open", "settling", "steady", "done", "aborted"});
 }
 
 const char* to_string(AnalysisState state) {
-  switch (state) {
-  case AnalysisState::waiting:
-    break;
-  case AnalysisState::armed:
-    return "armed";
-  case AnalysisState::refused:
-    return "refused";
-  case AnalysisState::finished:
-    return "finished";
-  }
-  return "waiting";
+  return per_enumerator(state, {"waiting", "armed", "refused", "finished"});
 }
 
 const char* to_string(Health health) {
-  switch (health) {
-  case Health::ok:
-    break;
-  case Health::failed:
-    return "failed";
-  case Health::waiting:
-    return "waiting";
-  }
-  return "ok";
+  return per_enumerator(health, {"ok", "failed", "waiting"});
 }
 
 RunState Run::state() const {
@@ -209,20 +135,17 @@ std::optional<double> Run::time_left_s(Instant at) const {
 
 std::size_t Run::steps_done() const {
   const auto is_done = [](const Step& step) { return step.state == StepState::done; };
-  return plan ? static_cast<std::size_t>(
-                    std::count_if(plan->steps.begin(), plan->steps.end(), is_done))
-              : 0;
+  return plan ? static_cast<std::size_t>(std::ranges::count_if(plan->steps, is_done)) : 0;
 }
 
 std::size_t Run::invalid_results() const {
-  return static_cast<std::size_t>(std::count_if(
-      results.begin(), results.end(), [](const auto& result) { return !result.second.valid; }));
+  return static_cast<std::size_t>(
+      std::ranges::count_if(results, [](const auto& result) { return !result.second.valid; }));
 }
 
 std::size_t Run::flagged_results() const {
-  return static_cast<std::size_t>(
-      std::count_if(results.begin(), results.end(),
-                    [](const auto& result) { return !result.second.flags.empty(); }));
+  return static_cast<std::size_t>(std::ranges::count_if(
+      results, [](const auto& result) { return !result.second.flags.empty(); }));
 }
 
 void Run::take(const wire::Measurement& measurement, const Limits& limits, Instant at) {

@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include "services/base/per_enumerator.hpp"
 #include "services/base/printable_text.hpp"
 #include "services/contract/known_sources.hpp"
 #include "services/contract/source_description.hpp"
@@ -12,39 +13,16 @@ namespace dyncal::network {
 namespace {
 
 SourceState state_of(wire::SourceState state) {
-  switch (state) {
-  case wire::SOURCE_STARTING:
-    return SourceState::starting;
-  case wire::SOURCE_RUNNING:
-    return SourceState::running;
-  case wire::SOURCE_SILENT:
-    return SourceState::silent;
-  case wire::SOURCE_ENDED:
-    return SourceState::ended;
-  case wire::SOURCE_FAILED:
-    return SourceState::failed;
-  }
-  return SourceState::unknown;
+  return per_enumerator(state,
+                        {SourceState::starting, SourceState::running, SourceState::silent,
+                         SourceState::ended, SourceState::failed},
+                        SourceState::unknown);
 }
 
 } // namespace
 
 const char* to_string(SourceState state) {
-  switch (state) {
-  case SourceState::unknown:
-    break;
-  case SourceState::starting:
-    return "starting";
-  case SourceState::running:
-    return "running";
-  case SourceState::silent:
-    return "silent";
-  case SourceState::ended:
-    return "ended";
-  case SourceState::failed:
-    return "failed";
-  }
-  return "unknown";
+  return per_enumerator(state, {"unknown", "starting", "running", "silent", "ended", "failed"});
 }
 
 void Source::take(const wire::SourceDescription& described, const Limits& limits) {

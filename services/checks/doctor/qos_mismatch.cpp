@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "services/base/per_enumerator.hpp"
+
 namespace dyncal::inline checks::doctor {
 namespace {
 
@@ -15,27 +17,11 @@ using bus::DiscoveredEndpoint;
 using bus::Liveliness;
 
 const char* name_of(Liveliness liveliness) {
-  switch (liveliness) {
-  case Liveliness::automatic:
-    break;
-  case Liveliness::manual_by_participant:
-    return "MANUAL_BY_PARTICIPANT";
-  case Liveliness::manual_by_topic:
-    return "MANUAL_BY_TOPIC";
-  }
-  return "AUTOMATIC";
+  return per_enumerator(liveliness, {"AUTOMATIC", "MANUAL_BY_PARTICIPANT", "MANUAL_BY_TOPIC"});
 }
 
 const char* name_of(AccessScope scope) {
-  switch (scope) {
-  case AccessScope::instance:
-    break;
-  case AccessScope::topic:
-    return "TOPIC";
-  case AccessScope::group:
-    return "GROUP";
-  }
-  return "INSTANCE";
+  return per_enumerator(scope, {"INSTANCE", "TOPIC", "GROUP"});
 }
 
 const char* name_of(DestinationOrder order) {

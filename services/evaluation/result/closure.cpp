@@ -5,6 +5,8 @@
 
 #include <fmt/core.h>
 
+#include "services/base/per_enumerator.hpp"
+
 namespace dyncal::inline evaluation {
 namespace {
 
@@ -35,8 +37,7 @@ std::string_view to_string(ClosureKind kind) {
 }
 
 std::optional<ClosureKind> parse_closure_kind(std::string_view name) {
-  const auto found =
-      std::find_if(names.begin(), names.end(), [&](const Names& one) { return one.name == name; });
+  const auto found = std::ranges::find(names, name, &Names::name);
   return found == names.end() ? std::nullopt
                               : std::optional(static_cast<ClosureKind>(found - names.begin()));
 }
@@ -46,15 +47,7 @@ std::string_view title_of(ClosureKind kind) {
 }
 
 std::string_view to_string(Verdict verdict) {
-  switch (verdict) {
-  case Verdict::closes:
-    return "closes";
-  case Verdict::open:
-    return "open";
-  case Verdict::not_possible:
-    break;
-  }
-  return "not_possible";
+  return per_enumerator(verdict, {"closes", "open", "not_possible"});
 }
 
 std::string closure_line(const std::string& channel, const Closure& closure) {

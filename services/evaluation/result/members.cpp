@@ -6,6 +6,8 @@
 
 #include <fmt/core.h>
 
+#include "services/base/per_enumerator.hpp"
+
 namespace dyncal::inline evaluation {
 namespace {
 
@@ -19,21 +21,8 @@ const char* to_string(drivers::TimeBase base) {
 }
 
 const char* to_string(drivers::StampInstant instant) {
-  switch (instant) {
-  case drivers::StampInstant::data_ready_edge:
-    return "data_ready_edge";
-  case drivers::StampInstant::conversion:
-    return "conversion";
-  case drivers::StampInstant::trigger_edge:
-    return "trigger_edge";
-  case drivers::StampInstant::frame_start:
-    return "frame_start";
-  case drivers::StampInstant::frame_end:
-    return "frame_end";
-  case drivers::StampInstant::unknown:
-    break;
-  }
-  return "unknown";
+  return per_enumerator(instant, {"unknown", "data_ready_edge", "conversion", "trigger_edge",
+                                  "frame_start", "frame_end"});
 }
 
 std::string utc_text(std::int64_t utc_ns) {

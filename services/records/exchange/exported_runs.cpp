@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "services/base/json_text.hpp"
+#include "services/base/per_enumerator.hpp"
 #include "services/base/version.hpp"
 #include "services/contract/topics.hpp"
 #include "services/evaluation/result/transfer_function_message.hpp"
@@ -30,29 +31,11 @@ std::vector<T> values_of(std::map<Key, T> all) {
 }
 
 const char* text_of(wire::ExcitationState state) {
-  switch (state) {
-  case wire::EXCITATION_SETTLING:
-    return "settling";
-  case wire::EXCITATION_STEADY:
-    return "steady";
-  case wire::EXCITATION_DONE:
-    return "done";
-  default:
-    return "aborted";
-  }
+  return per_enumerator(state, {"settling", "steady", "done", "aborted"}, "aborted");
 }
 
 const char* text_of(wire::MeasurementState state) {
-  switch (state) {
-  case wire::MEASUREMENT_PLANNED:
-    return "planned";
-  case wire::MEASUREMENT_RUNNING:
-    return "running";
-  case wire::MEASUREMENT_DONE:
-    return "done";
-  default:
-    return "aborted";
-  }
+  return per_enumerator(state, {"planned", "running", "done", "aborted"}, "aborted");
 }
 
 Json json_of(const ExportedSource& source) {

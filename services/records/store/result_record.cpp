@@ -2,6 +2,8 @@
 
 #include <set>
 
+#include "services/base/per_enumerator.hpp"
+
 namespace dyncal::inline records {
 namespace {
 
@@ -36,19 +38,8 @@ RunCompletion state_of(const ResultRecord& record) {
 } // namespace
 
 std::string to_string(RunCompletion state) {
-  switch (state) {
-  case RunCompletion::complete:
-    return "complete";
-  case RunCompletion::incomplete:
-    return "incomplete";
-  case RunCompletion::interrupted:
-    return "interrupted";
-  case RunCompletion::ended_early:
-    return "ended-early";
-  case RunCompletion::unfinished:
-    return "unfinished";
-  }
-  return "";
+  return per_enumerator(state,
+                        {"complete", "incomplete", "interrupted", "ended-early", "unfinished"});
 }
 
 Expected<ResultRecord> read_result_record(const std::filesystem::path& path) {

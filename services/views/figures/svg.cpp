@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "services/base/per_enumerator.hpp"
 #include "services/views/figures/markup.hpp"
 
 namespace dyncal::inline views::figures {
@@ -30,15 +31,7 @@ std::string pairs(std::span<const Pixel> points) {
 }
 
 const char* word(Anchor anchor) {
-  switch (anchor) {
-  case Anchor::start:
-    return "start";
-  case Anchor::middle:
-    return "middle";
-  case Anchor::end:
-    return "end";
-  }
-  return "start";
+  return per_enumerator(anchor, {"start", "middle", "end"});
 }
 
 } // namespace

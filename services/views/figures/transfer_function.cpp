@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "services/base/per_enumerator.hpp"
 #include "services/base/rounding.hpp"
 
 namespace dyncal::inline views::figures {
@@ -205,15 +206,7 @@ std::string csv_of(const TransferFunctionData& data) {
 } // namespace
 
 const char* symbol_of(ErrorBars bars) {
-  switch (bars) {
-  case ErrorBars::standard:
-    return "u";
-  case ErrorBars::expanded:
-    return "U";
-  case ErrorBars::none:
-    break;
-  }
-  return "";
+  return per_enumerator(bars, {"u", "U", ""});
 }
 
 double half_magnitude_bar(const ValueOverFrequency& value, ErrorBars bars) {

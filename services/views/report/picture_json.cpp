@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "services/base/per_enumerator.hpp"
 #include "services/views/report/json_number.hpp"
 
 namespace dyncal::inline views {
@@ -16,21 +17,7 @@ const char* to_string(Scale scale) {
 }
 
 const char* to_string(Marker marker) {
-  switch (marker) {
-  case Marker::circle:
-    return "circle";
-  case Marker::square:
-    return "square";
-  case Marker::triangle:
-    return "triangle";
-  case Marker::cross:
-    return "cross";
-  case Marker::dot:
-    return "dot";
-  case Marker::none:
-    break;
-  }
-  return "none";
+  return per_enumerator(marker, {"none", "circle", "square", "triangle", "cross", "dot"});
 }
 
 Json series_json(const figures::Series& series) {
