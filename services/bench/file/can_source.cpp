@@ -1,6 +1,7 @@
 #include "services/bench/file/can_source.hpp"
 
 #include <cstdint>
+#include <map>
 #include <string>
 
 #include <fmt/core.h>
@@ -10,6 +11,9 @@
 namespace dyncal::inline bench {
 
 namespace {
+
+using drivers::can::StampPoint;
+using drivers::can::TimeSource;
 
 double positive(TomlTable& table, const std::string& key, const std::string& unit) {
   const auto value = table.optional_number(key, unit);
@@ -27,24 +31,18 @@ std::optional<double> uncertainty(TomlTable& table, const std::string& key) {
   return value;
 }
 
-std::optional<CanTimeSource> read_time_source(TomlTable& table) {
-  const std::string name = table.one_of(
+std::optional<TimeSource> read_time_source(TomlTable& table) {
+  static const std::map<std::string, TimeSource> sources{
+      {"canopen-sync", TimeSource::canopen_sync},
+      {"payload-time", TimeSource::payload_time},
+      {"counter", TimeSource::counter},
+      {"hardware-stamp", TimeSource::hardware_stamp},
+      {"kernel-stamp", TimeSource::kernel_stamp}};
+  const auto found = sources.find(table.one_of(
       "time_source",
       {"best", "canopen-sync", "payload-time", "counter", "hardware-stamp", "kernel-stamp"},
-      "best");
-  if (name == "canopen-sync") {
-    return CanTimeSource::canopen_sync;
-  }
-  if (name == "payload-time") {
-    return CanTimeSource::payload_time;
-  }
-  if (name == "counter") {
-    return CanTimeSource::counter;
-  }
-  if (name == "hardware-stamp") {
-    return CanTimeSource::hardware_stamp;
-  }
-  return name == "kernel-stamp" ? std::optional(CanTimeSource::kernel_stamp) : std::nullopt;
+      "best"));
+  return found == sources.end() ? std::nullopt : std::optional(found->second);
 }
 
 std::filesystem::path read_file_name(TomlTable& table, const std::string& key,
@@ -60,13 +58,13 @@ std::filesystem::path read_file_name(TomlTable& table, const std::string& key,
   return path;
 }
 
-CanStampPoint read_stamp_point(TomlTable& table) {
+StampPoint read_stamp_point(TomlTable& table) {
   const std::string name = table.one_of("hardware_stamp_point",
                                         {"start-of-frame", "end-of-frame", "unknown"}, "unknown");
   if (name == "start-of-frame") {
-    return CanStampPoint::start_of_frame;
+    return StampPoint::start_of_frame;
   }
-  return name == "end-of-frame" ? CanStampPoint::end_of_frame : CanStampPoint::unknown;
+  return name == "end-of-frame" ? StampPoint::end_of_frame : StampPoint::unknown;
 }
 
 // A positive number, or nothing when the key is not there.
@@ -88,11 +86,11 @@ CanSourceSettings read_can_source(TomlTable& table, NamedFiles& files) {
   can.time_field = table.text("time_field");
   can.time_field_tick_s = positive(table, "time_field_tick_s", "seconds");
   can.nominal_rate_hz = positive(table, "nominal_rate_hz", "Hz");
-  can.bit_rate_per_s = positive(table, "bit_rate_per_s", "bit/s");
-  can.data_bit_rate_per_s = positive(table, "data_bit_rate_per_s", "bit/s");
+  can.bit_rates = {positive(table, "bit_rate_per_s", "bit/s"),
+                   positive(table, "data_bit_rate_per_s", "bit/s")};
   can.sync_id = static_cast<std::uint32_t>(table.whole_number("sync_id", 0x80, 0));
   can.hardware_stamp_point = read_stamp_point(table);
-  can.hardware_tick_s = optional_positive(table, "hardware_tick_s");
+  can.hardware_tick_s = optional_positive(table, "hardware_tick_s").value_or(can.hardware_tick_s);
   can.correct_frame_duration = table.yes_no("frame_duration_correction", true);
   can.bus_is_shared = table.yes_no("bus_is_shared", true);
   can.latency_s = table.number("latency_s", 0.0, "seconds");

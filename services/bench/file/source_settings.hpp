@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "drivers/can/stream_settings.hpp"
 #include "drivers/sample_block.hpp"
 #include "services/contract/bench_file_origin.hpp"
 #include "services/contract/device_identity.hpp"
@@ -34,32 +35,12 @@ struct FileSourceSettings {               // driver = "file"
   double u_stamp_s = 0.0;                 // of its stamps in their time base; 0: not stated
 };
 
-// Where the time of a sample on CAN comes from; drivers/can/stream_settings.hpp explains them.
-enum class CanTimeSource { canopen_sync, payload_time, counter, hardware_stamp, kernel_stamp };
-
-enum class CanStampPoint { start_of_frame, end_of_frame, unknown };
-
-struct CanSourceSettings { // driver = "can"
+// driver = "can". Channels, units and time base of its stream stand in SourceSettings.
+struct CanSourceSettings : drivers::can::StreamSettings {
   std::string interface_name;
-  std::filesystem::path log;                // absolute; a candump log instead of an interface
-  double play_speed = 0.0;                  // of the log, times real time; 0: at once
-  std::filesystem::path dbc;                // absolute
-  std::vector<std::string> messages;        // by name or id; empty: the only one of the DBC file
-  std::optional<CanTimeSource> time_source; // nothing: the best there is
-  std::string counter;
-  std::string time_field;
-  double time_field_tick_s = 0.0; // 0: by the DBC file
-  double nominal_rate_hz = 0.0;   // 0: by the DBC file, or not known
-  double bit_rate_per_s = 0.0;    // 0: what the interface says
-  double data_bit_rate_per_s = 0.0;
-  std::uint32_t sync_id = 0x080;
-  CanStampPoint hardware_stamp_point = CanStampPoint::unknown;
-  std::optional<double> hardware_tick_s;
-  bool correct_frame_duration = true;
-  bool bus_is_shared = true;
-  double latency_s = 0.0;
-  std::optional<double> u_latency_s;
-  std::optional<double> u_utc_s;
+  std::filesystem::path log; // absolute; a candump log instead of an interface
+  double play_speed = 0.0;   // of the log, times real time; 0: at once
+  std::filesystem::path dbc; // absolute
   std::optional<double> restart_after_bus_off_s;
 };
 

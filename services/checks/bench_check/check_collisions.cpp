@@ -186,14 +186,15 @@ void check_can(std::span<const BenchView> views, Findings& findings) {
             fmt::format("message {} ({}) on {}", hexadecimal(message.id), message.name, bus),
             claim_of(view, source, can->messages.empty() ? "dbc" : "messages"), findings);
       }
-      const auto [first, alone] =
-          rates.try_emplace(bus, can->bit_rate_per_s, claim_of(view, source, "bit_rate_per_s"));
-      if (!alone && can->bit_rate_per_s > 0.0 && first->second.first > 0.0 &&
-          can->bit_rate_per_s != first->second.first) {
-        findings.push_back(view.at(
-            Severity::error, {"sources", source.name, "bit_rate_per_s"},
-            fmt::format("is {:g}, but {} gives {} the rate {:g}: a bus has one rate",
-                        can->bit_rate_per_s, first->second.second.who, bus, first->second.first)));
+      const auto [first, alone] = rates.try_emplace(bus, can->bit_rates.nominal_per_s,
+                                                    claim_of(view, source, "bit_rate_per_s"));
+      if (!alone && can->bit_rates.nominal_per_s > 0.0 && first->second.first > 0.0 &&
+          can->bit_rates.nominal_per_s != first->second.first) {
+        findings.push_back(
+            view.at(Severity::error, {"sources", source.name, "bit_rate_per_s"},
+                    fmt::format("is {:g}, but {} gives {} the rate {:g}: a bus has one rate",
+                                can->bit_rates.nominal_per_s, first->second.second.who, bus,
+                                first->second.first)));
       }
     }
   }

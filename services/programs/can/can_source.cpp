@@ -36,8 +36,8 @@ Error named(const std::string& source, const drivers::Error& error) {
 std::unique_ptr<drivers::can::FrameSource> open_interface(const CanSourceSettings& can) {
   drivers::can::SocketCanSettings socket;
   socket.interface_name = can.interface_name;
-  socket.bit_rate_per_s = static_cast<std::uint32_t>(can.bit_rate_per_s);
-  socket.data_bit_rate_per_s = static_cast<std::uint32_t>(can.data_bit_rate_per_s);
+  socket.bit_rate_per_s = static_cast<std::uint32_t>(can.bit_rates.nominal_per_s);
+  socket.data_bit_rate_per_s = static_cast<std::uint32_t>(can.bit_rates.data_per_s);
   if (can.restart_after_bus_off_s) {
     socket.restart_after_bus_off =
         std::chrono::milliseconds(static_cast<std::int64_t>(*can.restart_after_bus_off_s * 1e3));

@@ -87,12 +87,12 @@ restart_after_bus_off_s = 0.2
   EXPECT_EQ(sensor.messages, std::vector<std::string>{"Sample"});
   EXPECT_EQ(source.channels.at("X"), "x");
   EXPECT_EQ(source.units.at("x"), R"(\metre\second\tothe{-2})");
-  EXPECT_EQ(sensor.time_source, CanTimeSource::counter);
+  EXPECT_EQ(sensor.time_source, drivers::can::TimeSource::counter);
   EXPECT_EQ(sensor.counter, "SampleCounter");
   EXPECT_DOUBLE_EQ(sensor.nominal_rate_hz, 1000.0);
-  EXPECT_DOUBLE_EQ(sensor.bit_rate_per_s, 500e3);
-  EXPECT_DOUBLE_EQ(sensor.data_bit_rate_per_s, 2e6);
-  EXPECT_EQ(sensor.hardware_stamp_point, CanStampPoint::start_of_frame);
+  EXPECT_DOUBLE_EQ(sensor.bit_rates.nominal_per_s, 500e3);
+  EXPECT_DOUBLE_EQ(sensor.bit_rates.data_per_s, 2e6);
+  EXPECT_EQ(sensor.hardware_stamp_point, drivers::can::StampPoint::start_of_frame);
   EXPECT_EQ(sensor.hardware_tick_s, 25e-9);
   EXPECT_DOUBLE_EQ(sensor.latency_s, 8e-6);
   EXPECT_EQ(sensor.u_latency_s, 2e-6);
@@ -113,7 +113,7 @@ TEST_F(CanKeys, LeaveWhatIsNotSaidToTheDriver) {
   EXPECT_FALSE(sensor.u_latency_s);
   EXPECT_FALSE(sensor.u_utc_s);
   EXPECT_TRUE(sensor.correct_frame_duration);
-  EXPECT_EQ(sensor.hardware_stamp_point, CanStampPoint::unknown);
+  EXPECT_EQ(sensor.hardware_stamp_point, drivers::can::StampPoint::unknown);
   EXPECT_EQ(sensor.sync_id, 0x80U);
   EXPECT_EQ(source.time_base, drivers::TimeBase::local);
 }

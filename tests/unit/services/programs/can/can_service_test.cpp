@@ -229,7 +229,7 @@ TEST_F(CanService, SaysThatFramesAreShorterThanTheDbcFileOrAreNoneOfTheSensors) 
   can.counter.clear();
   std::ofstream(folder / "drive.log") << "(1.000000) can0 123#0102\n(1.001000) can0 123#01\n";
   can.log = folder / "drive.log";
-  can.bit_rate_per_s = 500e3;
+  can.bit_rates.nominal_per_s = 500e3;
   settings.channels = {{"x", "x"}};
   EXPECT_TRUE(CanSource::prepare(settings));
   std::ofstream(folder / "drive.log") << "(1.000000) can0 124#0102\n";
@@ -259,7 +259,7 @@ TEST_F(CanService, PlaysARecordedLogWithTheMeansAndGapsThatItIsKnownToHave) {
   can.dbc = data / "css-gnss.dbc";
   can.messages = {"0x019"};
   can.nominal_rate_hz = 1.0 / 0.102;
-  can.bit_rate_per_s = 500e3;
+  can.bit_rates.nominal_per_s = 500e3;
   auto source = CanSource::prepare(settings);
   ASSERT_TRUE(source) << source.error().message;
   auto publisher = service->add(options_of(bench, settings));

@@ -101,7 +101,7 @@ TEST_F(FileInputTest, TakesALogOfCanFrames) {
   can.messages = {"Sample"};
   can.counter = "count";
   can.nominal_rate_hz = 1000.0;
-  can.bit_rate_per_s = 500e3;
+  can.bit_rates.nominal_per_s = 500e3;
   source.channels = {{"z", "acceleration"}};
   source.driver = can;
   const auto input = FileInput::open(source);
