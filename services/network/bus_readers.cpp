@@ -8,23 +8,19 @@ Expected<BusReaders> BusReaders::open(bus::Participant& participant, const std::
                                       const ProgramIdentity& own, bus::Clock& clock,
                                       const std::shared_ptr<bus::WakeUp>& wake_up) {
   namespace topics = bus::topics;
-  auto descriptions = participant.reader(topics::source_description, bench, wake_up);
-  auto sources = participant.reader(topics::source_status, bench, wake_up);
-  auto measurements = participant.reader(topics::measurement, bench, wake_up);
-  auto excitation = participant.reader(topics::excitation, bench, wake_up);
-  auto services = participant.reader(topics::service_status, bench, wake_up);
-  auto results = participant.reader(topics::calibration_result, bench, wake_up);
-  auto functions = participant.reader(topics::transfer_function, bench, wake_up);
-  auto clocks = participant.reader(topics::sample_clock_report, bench, wake_up);
-  auto asker = ClockAsker::open(participant, own, clock, wake_up);
-  if (const auto error = first_error(descriptions, sources, measurements, excitation, services,
-                                     results, functions, clocks, asker)) {
-    return fail(*error);
-  }
-  return BusReaders(Readers{std::move(*descriptions), std::move(*sources), std::move(*measurements),
-                            std::move(*excitation), std::move(*services), std::move(*results),
-                            std::move(*functions), std::move(*clocks)},
-                    std::move(*asker));
+  DYNCAL_TRY(auto descriptions, participant.reader(topics::source_description, bench, wake_up));
+  DYNCAL_TRY(auto sources, participant.reader(topics::source_status, bench, wake_up));
+  DYNCAL_TRY(auto measurements, participant.reader(topics::measurement, bench, wake_up));
+  DYNCAL_TRY(auto excitation, participant.reader(topics::excitation, bench, wake_up));
+  DYNCAL_TRY(auto services, participant.reader(topics::service_status, bench, wake_up));
+  DYNCAL_TRY(auto results, participant.reader(topics::calibration_result, bench, wake_up));
+  DYNCAL_TRY(auto functions, participant.reader(topics::transfer_function, bench, wake_up));
+  DYNCAL_TRY(auto clocks, participant.reader(topics::sample_clock_report, bench, wake_up));
+  DYNCAL_TRY(auto asker, ClockAsker::open(participant, own, clock, wake_up));
+  return BusReaders(Readers{std::move(descriptions), std::move(sources), std::move(measurements),
+                            std::move(excitation), std::move(services), std::move(results),
+                            std::move(functions), std::move(clocks)},
+                    std::move(asker));
 }
 
 void BusReaders::work(BusState& state) {

@@ -26,19 +26,16 @@ Expected<RunMessages> RunMessages::open(bus::Participant& participant, bus::Cloc
                                         std::string generator,
                                         const std::shared_ptr<bus::WakeUp>& wake_up) {
   namespace topics = bus::topics;
-  auto measurement = participant.writer(topics::measurement, bench);
-  auto excitation = participant.writer(topics::excitation, bench);
-  auto status = participant.reader(topics::service_status, bench, wake_up);
-  auto published = open_readers(participant, bench, run, wake_up);
-  auto sources = participant.reader(topics::source_description, bench, wake_up);
-  if (auto error = first_error(measurement, excitation, status, published, sources)) {
-    return fail(*error);
-  }
+  DYNCAL_TRY(auto measurement, participant.writer(topics::measurement, bench));
+  DYNCAL_TRY(auto excitation, participant.writer(topics::excitation, bench));
+  DYNCAL_TRY(auto status, participant.reader(topics::service_status, bench, wake_up));
+  DYNCAL_TRY(auto published, open_readers(participant, bench, run, wake_up));
+  DYNCAL_TRY(auto sources, participant.reader(topics::source_description, bench, wake_up));
   return RunMessages(participant, clock, GuardWatch(bench, std::move(generator), clock.now()),
                      bench, std::move(run), wake_up,
-                     Endpoints{std::move(*measurement), std::move(*excitation), std::move(*status),
-                               std::move(*sources)},
-                     std::move(*published));
+                     Endpoints{std::move(measurement), std::move(excitation), std::move(status),
+                               std::move(sources)},
+                     std::move(published));
 }
 
 Expected<RunMessages::ResultReaders>
@@ -50,13 +47,10 @@ RunMessages::open_readers(bus::Participant& participant, const std::string& benc
     return run ? participant.reader_of_run(topic, bench, *run, wake_up)
                : participant.reader(topic, bench, wake_up);
   };
-  auto results = reader(topics::calibration_result);
-  auto transfer = reader(topics::transfer_function);
-  auto clocks = reader(topics::sample_clock_report);
-  if (auto error = first_error(results, transfer, clocks)) {
-    return fail(*error);
-  }
-  return ResultReaders{std::move(*results), std::move(*transfer), std::move(*clocks)};
+  DYNCAL_TRY(auto results, reader(topics::calibration_result));
+  DYNCAL_TRY(auto transfer, reader(topics::transfer_function));
+  DYNCAL_TRY(auto clocks, reader(topics::sample_clock_report));
+  return ResultReaders{std::move(results), std::move(transfer), std::move(clocks)};
 }
 
 void RunMessages::collect_again() {
@@ -129,15 +123,15 @@ bool is_older(const StepResult& result, const StepResult& known) {
 bool has_channel(const Recipe& recipe, const std::string& name) {
   const std::vector<ChannelName> channels = recipe.channels();
   const std::vector<std::string> sources = recipe.sources();
-  return std::any_of(channels.begin(), channels.end(),
-                     [&](const ChannelName& channel) { return channel.text() == name; }) ||
-         (recipe.dut().empty() &&
-          std::any_of(sources.begin(), sources.end(),
-                      [&](const std::string& source) { return name.starts_with(source + "/"); }));
+  return std::ranges::any_of(channels,
+                             [&](const ChannelName& channel) { return channel.text() == name; }) ||
+         (recipe.dut().empty() && std::ranges::any_of(sources, [&](const std::string& source) {
+            return name.starts_with(source + "/");
+          }));
 }
 bool is_planned(const StepResult& result, const Recipe& recipe) {
   return has_channel(recipe, result.channel) &&
-         std::any_of(recipe.steps.begin(), recipe.steps.end(), [&](const RecipeStep& step) {
+         std::ranges::any_of(recipe.steps, [&](const RecipeStep& step) {
            return step.step == result.step && step.repetition == result.repetition;
          });
 }
@@ -146,7 +140,7 @@ bool is_planned(const TransferFunction& function, const Recipe& recipe) {
 }
 bool is_planned(const ClockReport& report, const Recipe& recipe) {
   const std::vector<std::string> sources = recipe.sources();
-  return std::find(sources.begin(), sources.end(), report.source) != sources.end();
+  return std::ranges::find(sources, report.source) != sources.end();
 }
 
 bool is_of_other_recipe(const wire::CalibrationResult& result, const std::string& sha256) {
@@ -182,8 +176,8 @@ std::size_t RunMessages::take_newest(bus::Reader<Message>& reader, std::vector<R
       return;
     }
     ++taken;
-    const auto known = std::find_if(all.begin(), all.end(),
-                                    [&](const Result& other) { return same_key(other, result); });
+    const auto known =
+        std::ranges::find_if(all, [&](const Result& other) { return same_key(other, result); });
     if (known == all.end()) {
       all.push_back(std::move(result));
     } else if (!is_older(result, *known)) {
@@ -210,9 +204,7 @@ bool RunMessages::was_excited(const StepResult& result,
 
 void RunMessages::take_source(RunSource source, std::vector<RunSource>& sources) {
   described_.insert(source.source);
-  const auto known = std::find_if(sources.begin(), sources.end(), [&](const RunSource& other) {
-    return other.source == source.source;
-  });
+  const auto known = std::ranges::find(sources, source.source, &RunSource::source);
   if (known == sources.end()) {
     sources.push_back(std::move(source));
     return;
@@ -233,7 +225,7 @@ void RunMessages::take_sources(RunOutcome& outcome) {
   endpoints_.sources.take([&](const wire::SourceDescription& message) {
     RunSource source{message.source().to_string(), from_wire(message.kind()), message.software(),
                      from_message(message)};
-    if (std::find(of_run.begin(), of_run.end(), source.source) == of_run.end()) {
+    if (std::ranges::find(of_run, source.source) == of_run.end()) {
       return;
     }
     take_source(std::move(source), outcome.sources);

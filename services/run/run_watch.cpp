@@ -22,18 +22,17 @@ Expected<std::unique_ptr<RunWatch>> RunWatch::open(bus::Participant& participant
                                                    RunOutcome& outcome, ShowProgress show) {
   const std::string bench = measurement.bench().to_string();
   const std::string run = measurement.run().to_string();
-  auto messages = RunMessages::open(participant, clock, bench, run, std::move(generator), wake_up);
+  DYNCAL_TRY(auto messages,
+             RunMessages::open(participant, clock, bench, run, std::move(generator), wake_up));
   std::set<std::uint32_t> steps;
   for (const wire::PlannedStep& step : measurement.steps()) {
     steps.insert(step.step());
   }
-  auto commands = RunCommands::open(participant, clock, bench, run, std::move(steps), wake_up);
-  if (auto error = first_error(messages, commands)) {
-    return fail(*error);
-  }
+  DYNCAL_TRY(auto commands,
+             RunCommands::open(participant, clock, bench, run, std::move(steps), wake_up));
   return std::unique_ptr<RunWatch>(new RunWatch(clock, std::move(measurement), wake_up, outcome,
-                                                std::move(show), std::move(*messages),
-                                                std::move(*commands)));
+                                                std::move(show), std::move(messages),
+                                                std::move(commands)));
 }
 
 RunWatch::RunWatch(bus::Clock& clock, wire::Measurement measurement,

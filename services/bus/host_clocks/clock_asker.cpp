@@ -26,12 +26,10 @@ Expected<ClockAsker> ClockAsker::open(bus::Participant& participant,
                                       const ProgramIdentity& identity, bus::Clock& clock,
                                       const std::shared_ptr<bus::WakeUp>& wake_up,
                                       AskingPace pace) {
-  auto requests = participant.writer(bus::topics::clock_request, all_benches_partition);
-  auto answers = participant.reader(bus::topics::clock_answer, all_benches_partition, wake_up);
-  if (const auto error = first_error(requests, answers)) {
-    return fail(*error);
-  }
-  return ClockAsker(identity, clock, pace, std::move(*requests), std::move(*answers));
+  DYNCAL_TRY(auto requests, participant.writer(bus::topics::clock_request, all_benches_partition));
+  DYNCAL_TRY(auto answers,
+             participant.reader(bus::topics::clock_answer, all_benches_partition, wake_up));
+  return ClockAsker(identity, clock, pace, std::move(requests), std::move(answers));
 }
 
 void ClockAsker::work() {
@@ -65,8 +63,7 @@ void ClockAsker::ask() {
 void ClockAsker::take(const wire::ClockAnswer& answer) {
   const Instant now = clock_->now();
   const std::int64_t received_utc_ns = clock_->utc_now_ns();
-  const auto request = std::ranges::find_if(
-      sent_, [&](const Request& one) { return one.number == answer.number(); });
+  const auto request = std::ranges::find(sent_, answer.number(), &Request::number);
   const std::string service = answer.service().to_string();
   const bool for_us = answer.asker() == name_ && request != sent_.end() && service != name_;
   if (!for_us || (!heard_.contains(service) && heard_.size() >= max_programs)) {

@@ -12,16 +12,15 @@ constexpr std::chrono::seconds max_wait{10};
 Expected<std::unique_ptr<ClockResponder>>
 ClockResponder::open(bus::Participant& participant, ProgramIdentity identity, bus::Clock& clock) {
   auto wake_up = std::make_shared<bus::WakeUp>();
-  auto answers = participant.writer(bus::topics::clock_answer, all_benches_partition);
-  auto requests = participant.reader(bus::topics::clock_request, all_benches_partition, wake_up);
-  auto echoes = participant.writer(bus::topics::link_echo, all_benches_partition);
-  auto probes = participant.reader(bus::topics::link_probe, all_benches_partition, wake_up);
-  if (const auto error = first_error(answers, requests, echoes, probes)) {
-    return fail(*error);
-  }
+  DYNCAL_TRY(auto answers, participant.writer(bus::topics::clock_answer, all_benches_partition));
+  DYNCAL_TRY(auto requests,
+             participant.reader(bus::topics::clock_request, all_benches_partition, wake_up));
+  DYNCAL_TRY(auto echoes, participant.writer(bus::topics::link_echo, all_benches_partition));
+  DYNCAL_TRY(auto probes,
+             participant.reader(bus::topics::link_probe, all_benches_partition, wake_up));
   return std::unique_ptr<ClockResponder>(new ClockResponder(
       std::move(identity), clock, std::move(wake_up),
-      {std::move(*requests), std::move(*answers), std::move(*probes), std::move(*echoes)},
+      {std::move(requests), std::move(answers), std::move(probes), std::move(echoes)},
       participant.refused_packets()));
 }
 

@@ -27,12 +27,10 @@ LinkMeter::LinkMeter(std::string name, bus::Clock& clock, bus::Writer<wire::Link
 Expected<LinkMeter> LinkMeter::open(bus::Participant& participant, const ProgramIdentity& identity,
                                     bus::Clock& clock,
                                     const std::shared_ptr<bus::WakeUp>& wake_up) {
-  auto probes = participant.writer(bus::topics::link_probe, all_benches_partition);
-  auto echoes = participant.reader(bus::topics::link_echo, all_benches_partition, wake_up);
-  if (const auto error = first_error(probes, echoes)) {
-    return fail(*error);
-  }
-  return LinkMeter(service_name(identity), clock, std::move(*probes), std::move(*echoes));
+  DYNCAL_TRY(auto probes, participant.writer(bus::topics::link_probe, all_benches_partition));
+  DYNCAL_TRY(auto echoes,
+             participant.reader(bus::topics::link_echo, all_benches_partition, wake_up));
+  return LinkMeter(service_name(identity), clock, std::move(probes), std::move(echoes));
 }
 
 void LinkMeter::work(std::size_t programs) {

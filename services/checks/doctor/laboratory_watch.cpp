@@ -16,19 +16,17 @@ Expected<std::unique_ptr<LaboratoryWatch>> LaboratoryWatch::open(bus::Participan
                                                                  const ProgramIdentity& own,
                                                                  bus::Clock& clock) {
   auto wake_up = std::make_shared<bus::WakeUp>();
-  auto descriptions = participant.reader(bus::topics::source_description, all_benches, wake_up);
-  auto statuses = participant.reader(bus::topics::source_status, all_benches, wake_up);
-  auto services = participant.reader(bus::topics::service_status, all_benches, wake_up);
+  DYNCAL_TRY(auto descriptions,
+             participant.reader(bus::topics::source_description, all_benches, wake_up));
+  DYNCAL_TRY(auto statuses, participant.reader(bus::topics::source_status, all_benches, wake_up));
+  DYNCAL_TRY(auto services, participant.reader(bus::topics::service_status, all_benches, wake_up));
   const AskingPace always_quick{.quick_requests = 1'000'000};
-  auto asker = ClockAsker::open(participant, own, clock, wake_up, always_quick);
-  auto meter = LinkMeter::open(participant, own, clock, wake_up);
-  if (const auto error = first_error(descriptions, statuses, services, asker, meter)) {
-    return fail(*error);
-  }
+  DYNCAL_TRY(auto asker, ClockAsker::open(participant, own, clock, wake_up, always_quick));
+  DYNCAL_TRY(auto meter, LinkMeter::open(participant, own, clock, wake_up));
   return std::unique_ptr<LaboratoryWatch>(new LaboratoryWatch(
       participant, own, clock, std::move(wake_up),
-      Readers{std::move(*descriptions), std::move(*statuses), std::move(*services)},
-      std::move(*asker), std::move(*meter)));
+      Readers{std::move(descriptions), std::move(statuses), std::move(services)}, std::move(asker),
+      std::move(meter)));
 }
 
 void LaboratoryWatch::work() {

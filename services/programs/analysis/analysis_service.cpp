@@ -25,7 +25,7 @@ AnalysisService::AnalysisService(bus::Participant participant, AnalysisIdentity 
                                                      std::make_shared<bus::WakeUp>(),
                                                      std::move(identity)},
       benches_({[this](const std::string& bench) {
-                  return std::any_of(runs_.begin(), runs_.end(), [&](const auto& run) {
+                  return std::ranges::any_of(runs_, [&](const auto& run) {
                     return run.first.first == bench && lives(run);
                   });
                 },
@@ -47,27 +47,21 @@ Expected<std::unique_ptr<AnalysisService>> AnalysisService::create(bus::Particip
 
 Expected<void> AnalysisService::open_readers() {
   const auto& bell = context_.wake_up;
-  auto measurement = participant_.reader(bus::topics::measurement, all_benches, bell);
-  auto excitation = participant_.reader(bus::topics::excitation, all_benches, bell);
-  auto sources = open_source_readers(all_benches);
-  auto analyses = participant_.reader(bus::topics::service_status, all_benches, bell);
-  if (auto error = first_error(measurement, excitation, sources, analyses)) {
-    return fail(*error);
-  }
-  readers_ = std::make_unique<Readers>(Readers{std::move(*measurement), std::move(*excitation),
-                                               std::move(*sources), std::move(*analyses)});
+  DYNCAL_TRY(auto measurement, participant_.reader(bus::topics::measurement, all_benches, bell));
+  DYNCAL_TRY(auto excitation, participant_.reader(bus::topics::excitation, all_benches, bell));
+  DYNCAL_TRY(auto sources, open_source_readers(all_benches));
+  DYNCAL_TRY(auto analyses, participant_.reader(bus::topics::service_status, all_benches, bell));
+  readers_ = std::make_unique<Readers>(Readers{std::move(measurement), std::move(excitation),
+                                               std::move(sources), std::move(analyses)});
   return {};
 }
 
 Expected<AnalysisService::SourceReaders>
 AnalysisService::open_source_readers(const std::string& bench) {
   const auto& bell = context_.wake_up;
-  auto description = participant_.reader(bus::topics::source_description, bench, bell);
-  auto status = participant_.reader(bus::topics::source_status, bench, bell);
-  if (auto error = first_error(description, status)) {
-    return fail(*error);
-  }
-  return SourceReaders{std::move(*description), std::move(*status)};
+  DYNCAL_TRY(auto description, participant_.reader(bus::topics::source_description, bench, bell));
+  DYNCAL_TRY(auto status, participant_.reader(bus::topics::source_status, bench, bell));
+  return SourceReaders{std::move(description), std::move(status)};
 }
 
 void AnalysisService::serve(const std::stop_token& stop,
@@ -181,7 +175,7 @@ void AnalysisService::read_sources_again(const std::string& bench) {
 
 void AnalysisService::leave_benches_without_run() {
   std::erase_if(again_, [this](const auto& one) {
-    return std::none_of(runs_.begin(), runs_.end(), [&](const auto& run) {
+    return std::ranges::none_of(runs_, [&](const auto& run) {
       return run.first.first == one.first && !run.second->finished();
     });
   });
@@ -284,12 +278,11 @@ bool AnalysisService::lives(const Runs::value_type& run) const {
   const auto is_its_source = [&session = *session](const auto& source) {
     return source.second.description && session.uses(source.first);
   };
-  return session->armed() ||
-         (!session->finished() && std::any_of(known.begin(), known.end(), is_its_source));
+  return session->armed() || (!session->finished() && std::ranges::any_of(known, is_its_source));
 }
 
 bool AnalysisService::is_used(const std::string& bench, const std::string& source) const {
-  return std::any_of(runs_.begin(), runs_.end(), [&](const auto& run) {
+  return std::ranges::any_of(runs_, [&](const auto& run) {
     return run.first.first == bench && !run.second->finished() && run.second->uses(source);
   });
 }
@@ -297,8 +290,8 @@ bool AnalysisService::is_used(const std::string& bench, const std::string& sourc
 bool AnalysisService::make_room(const std::string& bench) {
   const auto of_bench = [&](const RunKey& key) { return key.first == bench; };
   const auto kept = [&] {
-    return static_cast<std::size_t>(std::count_if(
-        runs_.begin(), runs_.end(), [&](const auto& run) { return of_bench(run.first); }));
+    return static_cast<std::size_t>(
+        std::ranges::count_if(runs_, [&](const auto& run) { return of_bench(run.first); }));
   };
   while (kept() >= kept_runs) {
     if (!drop_oldest(of_bench)) {
@@ -309,13 +302,12 @@ bool AnalysisService::make_room(const std::string& bench) {
 }
 
 bool AnalysisService::drop_oldest(const std::function<bool(const RunKey&)>& may_go) {
-  auto oldest = std::find_if(order_.begin(), order_.end(), [&](const Runs::iterator& run) {
+  auto oldest = std::ranges::find_if(order_, [&](const Runs::iterator& run) {
     return may_go(run->first) && run->second->finished();
   });
   if (oldest == order_.end()) {
-    oldest = std::find_if(order_.begin(), order_.end(), [&](const Runs::iterator& run) {
-      return may_go(run->first) && !lives(*run);
-    });
+    oldest = std::ranges::find_if(
+        order_, [&](const Runs::iterator& run) { return may_go(run->first) && !lives(*run); });
     if (oldest == order_.end()) {
       return false;
     }

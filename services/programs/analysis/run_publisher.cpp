@@ -20,16 +20,13 @@ Expected<RunPublisher> RunPublisher::open(bus::Participant& participant, bus::Cl
                                           AnalysisIdentity identity, std::string bench,
                                           std::string run) {
   namespace topics = bus::topics;
-  auto status = participant.writer_of_run(topics::service_status, bench, run);
-  auto result = participant.writer_of_run(topics::calibration_result, bench, run);
-  auto transfer = participant.writer_of_run(topics::transfer_function, bench, run);
-  auto report = participant.writer_of_run(topics::sample_clock_report, bench, run);
-  if (auto error = first_error(status, result, transfer, report)) {
-    return fail(*error);
-  }
+  DYNCAL_TRY(auto status, participant.writer_of_run(topics::service_status, bench, run));
+  DYNCAL_TRY(auto result, participant.writer_of_run(topics::calibration_result, bench, run));
+  DYNCAL_TRY(auto transfer, participant.writer_of_run(topics::transfer_function, bench, run));
+  DYNCAL_TRY(auto report, participant.writer_of_run(topics::sample_clock_report, bench, run));
   return RunPublisher(
       clock, std::move(identity), std::move(bench), std::move(run),
-      Writers{std::move(*status), std::move(*result), std::move(*transfer), std::move(*report)});
+      Writers{std::move(status), std::move(result), std::move(transfer), std::move(report)});
 }
 
 void RunPublisher::publish(const RunState& state) {

@@ -16,13 +16,10 @@ constexpr std::chrono::milliseconds write_limit{50};
 
 Expected<std::shared_ptr<SourceRequests>>
 SourceRequests::open(bus::Participant& participant, std::string bench, std::string sender) {
-  auto command = participant.writer(bus::topics::command, bench);
-  auto catch_up = participant.writer(bus::topics::catch_up_request, bench);
-  if (auto error = first_error(command, catch_up)) {
-    return fail(*error);
-  }
+  DYNCAL_TRY(auto command, participant.writer(bus::topics::command, bench));
+  DYNCAL_TRY(auto catch_up, participant.writer(bus::topics::catch_up_request, bench));
   return std::shared_ptr<SourceRequests>(new SourceRequests(
-      std::move(bench), std::move(sender), std::move(*command), std::move(*catch_up)));
+      std::move(bench), std::move(sender), std::move(command), std::move(catch_up)));
 }
 
 void SourceRequests::ask_for_answer(const std::string& run, const std::string& source) {

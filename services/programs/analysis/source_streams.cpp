@@ -187,12 +187,9 @@ Expected<void> SourceStreams::open_reader(std::map<wire::SourceKind, bus::Reader
 }
 
 Expected<void> SourceStreams::open_answer_readers() {
-  auto blocks = participant_.reader(bus::topics::catch_up_samples, asker_, wake_up_);
-  auto records = participant_.reader(bus::topics::catch_up_records, asker_, wake_up_);
-  if (auto error = first_error(blocks, records)) {
-    return fail(*error);
-  }
-  answer_readers_.emplace(AnswerReaders{std::move(*blocks), std::move(*records)});
+  DYNCAL_TRY(auto blocks, participant_.reader(bus::topics::catch_up_samples, asker_, wake_up_));
+  DYNCAL_TRY(auto records, participant_.reader(bus::topics::catch_up_records, asker_, wake_up_));
+  answer_readers_.emplace(AnswerReaders{std::move(blocks), std::move(records)});
   return {};
 }
 

@@ -58,12 +58,10 @@ ExciterGuard::create(bus::Participant& participant, const ProgramIdentity& own,
                      std::unique_ptr<GuardedOutput> output, DrivenRecord record,
                      bus::Clock& clock) {
   auto wake_up = std::make_shared<bus::WakeUp>();
-  auto excitation = participant.reader(bus::topics::excitation, exciter.bench, wake_up);
-  auto measurement = participant.reader(bus::topics::measurement, exciter.bench, wake_up);
-  auto status = participant.writer(bus::topics::service_status, exciter.bench);
-  if (const auto error = first_error(excitation, measurement, status)) {
-    return fail(*error);
-  }
+  DYNCAL_TRY(auto excitation, participant.reader(bus::topics::excitation, exciter.bench, wake_up));
+  DYNCAL_TRY(auto measurement,
+             participant.reader(bus::topics::measurement, exciter.bench, wake_up));
+  DYNCAL_TRY(auto status, participant.writer(bus::topics::service_status, exciter.bench));
   ExciterWatch watch(unattended_limit, exciter.planned, record.read(), clock.now());
   if (!watch.run().run.empty()) {
     spdlog::info("bench {}: run {} drove the generator when this guard was last there",
@@ -82,7 +80,7 @@ ExciterGuard::create(bus::Participant& participant, const ProgramIdentity& own,
   return std::unique_ptr<ExciterGuard>(new ExciterGuard(
       status_of(own, exciter), exciter, std::move(watch), std::move(reference), std::move(output),
       std::move(record), clock,
-      {std::move(*excitation), std::move(*measurement), std::move(*status), std::move(wake_up)}));
+      {std::move(excitation), std::move(measurement), std::move(status), std::move(wake_up)}));
 }
 
 void ExciterGuard::serve(const std::stop_token& stop, const std::function<void()>& turned) {

@@ -30,15 +30,14 @@ Expected<std::unique_ptr<BenchRecordings>> BenchRecordings::create(bus::Particip
                                                  plan.folder.string(), problem.message()));
   }
   std::unique_ptr<BenchRecordings> all(new BenchRecordings(participant, std::move(plan)));
-  auto descriptions =
-      participant.reader(bus::topics::source_description, all_benches, all->wake_up_);
-  auto measurements = participant.reader(bus::topics::measurement, all_benches, all->wake_up_);
-  auto services = participant.reader(bus::topics::service_status, all_benches, all->wake_up_);
-  if (const auto error = first_error(descriptions, measurements, services)) {
-    return fail(*error);
-  }
+  DYNCAL_TRY(auto descriptions,
+             participant.reader(bus::topics::source_description, all_benches, all->wake_up_));
+  DYNCAL_TRY(auto measurements,
+             participant.reader(bus::topics::measurement, all_benches, all->wake_up_));
+  DYNCAL_TRY(auto services,
+             participant.reader(bus::topics::service_status, all_benches, all->wake_up_));
   all->readers_.emplace(
-      Readers{std::move(*descriptions), std::move(*measurements), std::move(*services)});
+      Readers{std::move(descriptions), std::move(measurements), std::move(services)});
   for (const std::string& bench : all->plan_.benches) {
     all->benches_.try_emplace(bench);
   }

@@ -250,12 +250,9 @@ bool BenchIntake::catches_up() const {
 }
 
 Expected<void> BenchIntake::open_answer_readers() {
-  auto blocks = participant_.reader(bus::topics::catch_up_samples, asker_, wake_up_);
-  auto records = participant_.reader(bus::topics::catch_up_records, asker_, wake_up_);
-  if (const auto error = base::first_error(blocks, records)) {
-    return fail(*error);
-  }
-  answers_.emplace(AnswerReaders{std::move(*blocks), std::move(*records)});
+  DYNCAL_TRY(auto blocks, participant_.reader(bus::topics::catch_up_samples, asker_, wake_up_));
+  DYNCAL_TRY(auto records, participant_.reader(bus::topics::catch_up_records, asker_, wake_up_));
+  answers_.emplace(AnswerReaders{std::move(blocks), std::move(records)});
   return {};
 }
 

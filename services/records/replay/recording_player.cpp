@@ -51,24 +51,22 @@ Expected<std::string> recorded_bench(recording::RecordingReader& reader) {
 Expected<std::optional<std::string>>
 live_sender(bus::Participant& participant, const std::string& bench, const std::stop_token& stop) {
   const auto wake_up = std::make_shared<bus::WakeUp>();
-  auto descriptions = participant.reader(bus::topics::source_description, bench, wake_up);
-  auto states = participant.reader(bus::topics::source_status, bench, wake_up);
-  auto runs = participant.reader(bus::topics::measurement, bench, wake_up);
-  if (const auto error = first_error(descriptions, states, runs)) {
-    return fail(*error);
-  }
+  DYNCAL_TRY(auto descriptions,
+             participant.reader(bus::topics::source_description, bench, wake_up));
+  DYNCAL_TRY(auto states, participant.reader(bus::topics::source_status, bench, wake_up));
+  DYNCAL_TRY(auto runs, participant.reader(bus::topics::measurement, bench, wake_up));
   bus::Clock& clock = bus::system_clock();
   std::optional<std::string> heard;
   const auto deadline = clock.now() + listening_time;
   while (!heard && clock.now() < deadline && !stop.stop_requested()) {
     clock.wait(*wake_up, std::min(deadline, clock.now() + max_wait));
-    descriptions->take([&](const wire::SourceDescription& one) {
+    descriptions.take([&](const wire::SourceDescription& one) {
       heard = fmt::format("source '{}' on {}", one.source().c_str(), one.host());
     });
-    states->take([&](const wire::SourceStatus& one) {
+    states.take([&](const wire::SourceStatus& one) {
       heard = fmt::format("source '{}'", one.source().c_str());
     });
-    runs->take([&](const wire::Measurement& one) {
+    runs.take([&](const wire::Measurement& one) {
       heard = fmt::format("run '{}' of {}", one.run().c_str(), one.conductor());
     });
   }
