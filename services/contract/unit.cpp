@@ -48,14 +48,14 @@ bool is_exponent(std::string_view text) { // between the braces of \tothe{...}
   if (!text.empty() && (text.front() == '-' || text.front() == '+')) {
     text.remove_prefix(1);
   }
-  return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
+  return !text.empty() && std::ranges::all_of(text, [](unsigned char c) {
     return std::isdigit(c) != 0 || c == '.';
   });
 }
 
 template <class Words>
 bool contains(const Words& words, std::string_view word) {
-  return std::find(words.begin(), words.end(), word) != words.end();
+  return std::ranges::find(words, word) != words.end();
 }
 
 // D-SI: ([\prefix]\unit[\tothe{n}])+ with an optional leading \per or \per between.
@@ -68,8 +68,7 @@ bool is_d_si(std::string_view text) {
     }
     text.remove_prefix(1);
     const std::size_t length = static_cast<std::size_t>(
-        std::find_if_not(text.begin(), text.end(),
-                         [](unsigned char c) { return std::isalpha(c) != 0; }) -
+        std::ranges::find_if_not(text, [](unsigned char c) { return std::isalpha(c) != 0; }) -
         text.begin());
     const std::string_view word = text.substr(0, length);
     text.remove_prefix(length);

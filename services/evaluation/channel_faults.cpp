@@ -21,8 +21,7 @@ constexpr double least_excess = 2.0;            // of q / n
 constexpr double smallest_difference = 1e-4;    // as of one step
 
 bool has_flag(const StepResult& result, ResultFlag kind) {
-  return std::any_of(result.flags.begin(), result.flags.end(),
-                     [&](const Flag& flag) { return flag.kind == kind; });
+  return std::ranges::any_of(result.flags, [&](const Flag& flag) { return flag.kind == kind; });
 }
 
 // Below an eighth of the sensor's rate: above, filters and folding may hide what is lost.

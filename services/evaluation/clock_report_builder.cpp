@@ -24,9 +24,7 @@ void ClockReportBuilder::describe(const drivers::SourceDescription& description)
   }
   const auto& channels = description.channels;
   const auto found =
-      std::find_if(channels.begin(), channels.end(), [&](const drivers::ChannelDescription& one) {
-        return one.name == temperature_channel_;
-      });
+      std::ranges::find(channels, temperature_channel_, &drivers::ChannelDescription::name);
   if (found != channels.end()) {
     temperature_column_ = static_cast<std::size_t>(found - channels.begin());
   }
@@ -57,8 +55,8 @@ void ClockReportBuilder::add(const SourceBlock& block) {
     temperature = block.values.subspan(*temperature_column_ * block.samples, block.samples);
   }
   samples_ += block.samples;
-  not_trusted_ += static_cast<std::uint64_t>(std::count_if(
-      block.flags.begin(), block.flags.end(), [](std::uint8_t flag) { return flag != 0; }));
+  not_trusted_ += static_cast<std::uint64_t>(
+      std::ranges::count_if(block.flags, [](std::uint8_t flag) { return flag != 0; }));
   clock_->push(block.first_sample, stamps, block.flags, temperature);
 }
 

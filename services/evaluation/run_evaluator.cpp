@@ -308,11 +308,10 @@ void RunEvaluator::close(EvaluationOutput& output) const {
                            return records_.of(source).description().nominal_rate_hz;
                          }};
   for (StepResult& flagged : add_closures(run, summary_.results(), output.transfer_functions)) {
-    const auto earlier =
-        std::find_if(output.settled.begin(), output.settled.end(), [&](const StepResult& one) {
-          return one.channel == flagged.channel && one.step == flagged.step &&
-                 one.repetition == flagged.repetition;
-        });
+    const auto earlier = std::ranges::find_if(output.settled, [&](const StepResult& one) {
+      return one.channel == flagged.channel && one.step == flagged.step &&
+             one.repetition == flagged.repetition;
+    });
     if (earlier == output.settled.end()) {
       output.settled.push_back(std::move(flagged));
     } else {

@@ -19,9 +19,8 @@ namespace {
 // What was heard of longest ago makes way, if it is gone.
 template <class Held>
 bool drop_gone(std::map<std::string, Held>& held, bus::Clock::Instant now) {
-  const auto oldest = std::min_element(held.begin(), held.end(), [](const auto& a, const auto& b) {
-    return a.second.heard < b.second.heard;
-  });
+  const auto oldest = std::ranges::min_element(
+      held, [](const auto& a, const auto& b) { return a.second.heard < b.second.heard; });
   if (oldest == held.end() || now - oldest->second.heard <= gone_limit) {
     return false;
   }
@@ -360,8 +359,7 @@ void BusState::note(Bench& bench, const std::vector<Condition>& changes) {
 }
 
 std::optional<ClockOffset> BusState::clock_of(const std::string& host) const {
-  const auto found = std::find_if(clocks_.begin(), clocks_.end(),
-                                  [&](const HostClock& clock) { return clock.host == host; });
+  const auto found = std::ranges::find(clocks_, host, &HostClock::host);
   return found == clocks_.end() ? std::nullopt : std::optional(found->clock);
 }
 
@@ -387,8 +385,7 @@ std::vector<Event> BusState::events() const {
   for (const auto& [name, bench] : benches_) {
     all.insert(all.end(), bench.events.begin(), bench.events.end());
   }
-  std::stable_sort(all.begin(), all.end(),
-                   [](const Event& a, const Event& b) { return a.utc_ns < b.utc_ns; });
+  std::ranges::stable_sort(all, [](const Event& a, const Event& b) { return a.utc_ns < b.utc_ns; });
   if (all.size() > limits_.events) {
     all.erase(all.begin(), all.end() - static_cast<std::ptrdiff_t>(limits_.events));
   }

@@ -35,8 +35,7 @@ void RunCommands::answer(const wire::Command& command, bool excites) {
     static_cast<void>(obey(command, excites)); // who gives no id knows no answer
     return;
   }
-  const auto known = std::find_if(known_.begin(), known_.end(),
-                                  [&](const Answer& one) { return one.command == command.id(); });
+  const auto known = std::ranges::find(known_, command.id(), &Answer::command);
   if (known == known_.end()) {
     known_.push_back({command.id(), obey(command, excites)});
     answers_.push_back(known_.back());

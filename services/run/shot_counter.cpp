@@ -35,9 +35,8 @@ void ShotCounter::take(bus::Reader<wire::TriggeredRecord>& reader, Numbers& numb
 int ShotCounter::shots() {
   take(traces_, trace_numbers_);
   take(series_, series_numbers_);
-  return static_cast<int>(
-      std::count_if(trace_numbers_.begin(), trace_numbers_.end(),
-                    [&](const auto& number) { return series_numbers_.contains(number); }));
+  return static_cast<int>(std::ranges::count_if(
+      trace_numbers_, [&](const auto& number) { return series_numbers_.contains(number); }));
 }
 
 } // namespace dyncal::inline run

@@ -1,7 +1,6 @@
 #include "services/run/step_excitation.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/core.h>
 

@@ -1,6 +1,5 @@
 #include "services/bench/file/adc_file_writer.hpp"
 
-#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "services/base/json_text.hpp"

@@ -149,9 +149,7 @@ Expected<BenchFile> valid(BenchFileReading reading) {
 } // namespace
 
 const SourceSettings* BenchFile::source(const std::string& name) const {
-  const auto found =
-      std::find_if(sources.begin(), sources.end(),
-                   [&](const SourceSettings& settings) { return settings.name == name; });
+  const auto found = std::ranges::find(sources, name, &SourceSettings::name);
   return found == sources.end() ? nullptr : &*found;
 }
 

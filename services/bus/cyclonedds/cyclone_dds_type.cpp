@@ -1,7 +1,6 @@
 #include "services/bus/cyclonedds/cyclone_dds_type.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstdlib>
 #include <cstring>
 

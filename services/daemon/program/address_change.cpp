@@ -11,30 +11,28 @@ using bus::HostAddress;
 using Addresses = std::vector<HostAddress>;
 
 bool contains(const Addresses& addresses, const HostAddress& one) {
-  return std::find(addresses.begin(), addresses.end(), one) != addresses.end();
+  return std::ranges::find(addresses, one) != addresses.end();
 }
 
 Addresses without(const Addresses& all, const Addresses& others) {
   Addresses rest;
-  std::copy_if(all.begin(), all.end(), std::back_inserter(rest),
-               [&](const HostAddress& one) { return !contains(others, one); });
+  std::ranges::copy_if(all, std::back_inserter(rest),
+                       [&](const HostAddress& one) { return !contains(others, one); });
   return rest;
 }
 
 Addresses outer(const Addresses& all) {
   Addresses rest;
-  std::copy_if(all.begin(), all.end(), std::back_inserter(rest),
-               [](const HostAddress& one) { return !one.loopback && !one.inner; });
+  std::ranges::copy_if(all, std::back_inserter(rest),
+                       [](const HostAddress& one) { return !one.loopback && !one.inner; });
   return rest;
 }
 
 Addresses announced(const AddressesAtStart& start) {
   Addresses used;
-  std::copy_if(start.host.begin(), start.host.end(), std::back_inserter(used),
-               [&](const HostAddress& one) {
-                 return std::find(start.announced.begin(), start.announced.end(), one.address) !=
-                        start.announced.end();
-               });
+  std::ranges::copy_if(start.host, std::back_inserter(used), [&](const HostAddress& one) {
+    return std::ranges::find(start.announced, one.address) != start.announced.end();
+  });
   return outer(used);
 }
 
@@ -52,7 +50,7 @@ std::string what_deafens(const AddressesAtStart& start, const std::vector<bus::H
   }
   const Addresses gone = without(used, now);
   for (const HostAddress& one : gone) {
-    const auto instead = std::find_if(fresh.begin(), fresh.end(), [&](const HostAddress& other) {
+    const auto instead = std::ranges::find_if(fresh, [&](const HostAddress& other) {
       return gone.size() == used.size() || other.interface == one.interface;
     });
     if (instead == fresh.end()) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <condition_variable>
-#include <cstdlib>
 #include <utility>
 
 #include <fmt/format.h>
@@ -34,9 +33,7 @@ Addresses addresses_of(const std::string& interface_name) {
 // `name_or_address` as --interface has it.
 std::string interface_called(const std::string& name_or_address) {
   const Addresses addresses = bus::host_addresses().value_or(Addresses());
-  const auto found =
-      std::find_if(addresses.begin(), addresses.end(),
-                   [&](const bus::HostAddress& one) { return one.address == name_or_address; });
+  const auto found = std::ranges::find(addresses, name_or_address, &bus::HostAddress::address);
   return found == addresses.end() ? name_or_address : found->interface;
 }
 

@@ -19,8 +19,7 @@ bool is_common(const Count& count) {
 }
 
 bool carries(ResultFlag kind, const StepResult& result) {
-  return std::any_of(result.flags.begin(), result.flags.end(),
-                     [kind](const Flag& flag) { return flag.kind == kind; });
+  return std::ranges::any_of(result.flags, [kind](const Flag& flag) { return flag.kind == kind; });
 }
 
 } // namespace

@@ -1,7 +1,5 @@
 #include "services/evaluation/method/monte_carlo_check.hpp"
 
-#include <complex>
-
 #include "analysis/method/transfer_check.hpp"
 
 namespace dyncal::inline evaluation {

@@ -286,8 +286,8 @@ SeriesStepOutput evaluate_series_step(const SeriesStepInput& step) {
   const std::vector<std::size_t> columns = columns_of(step.sensor, roles.dut);
   const std::size_t sync = *step.oscilloscope.channel(roles.sync_dso.channel);
   std::vector<Flag> flags = step.task.flags;
-  const auto shots = shots_of_usual_length(
-      step.shots, *std::max_element(columns.begin(), columns.end()) + 1, sync + 1, flags);
+  const auto shots =
+      shots_of_usual_length(step.shots, *std::ranges::max_element(columns) + 1, sync + 1, flags);
   if (shots.empty()) {
     return without_result(step, "the records of the shots lack a channel that was described");
   }
@@ -308,10 +308,9 @@ SeriesStepOutput evaluate_series_step(const SeriesStepInput& step) {
 
 void add_shared_start(const analysis::SharedStartScatter& start, StepResult& result) {
   constexpr double microseconds = 1e6;
-  const bool undecided =
-      std::any_of(result.flags.begin(), result.flags.end(),
-                  [](const Flag& flag) { return flag.kind == ResultFlag::start_undecided; });
-  const auto row = std::find_if(result.budget.begin(), result.budget.end(), [](const auto& one) {
+  const bool undecided = std::ranges::any_of(
+      result.flags, [](const Flag& flag) { return flag.kind == ResultFlag::start_undecided; });
+  const auto row = std::ranges::find_if(result.budget, [](const auto& one) {
     return one.kind == analysis::ContributionKind::series_start;
   });
   if (undecided || row == result.budget.end()) {

@@ -13,11 +13,10 @@ bool is_stated(const Recipe& recipe, double analysis::SystematicUncertainty::*be
     return one.*of_contribution > 0.0;
   };
   return recipe.systematic.*beside > 0.0 ||
-         std::any_of(recipe.reference_calibration.begin(), recipe.reference_calibration.end(),
-                     [&](const analysis::ReferenceCalibrationPoint& point) {
-                       return std::any_of(point.contributions.begin(), point.contributions.end(),
-                                          is_above_0);
-                     });
+         std::ranges::any_of(recipe.reference_calibration,
+                             [&](const analysis::ReferenceCalibrationPoint& point) {
+                               return std::ranges::any_of(point.contributions, is_above_0);
+                             });
 }
 
 } // namespace

@@ -137,9 +137,8 @@ void ExcitationSurvey::keep(const Track& track, const analysis::ExcitationWindow
         {std::max(window.begin_ns, window.end_ns - last_ns), window.end_ns - 1}, track.frequency);
   }
   std::vector<FoundExcitation>& all = result_.found;
-  const auto rival = std::find_if(all.begin(), all.end(), [&](const FoundExcitation& other) {
-    return are_at_once(found, other);
-  });
+  const auto rival = std::ranges::find_if(
+      all, [&](const FoundExcitation& other) { return are_at_once(found, other); });
   if (rival == all.end()) {
     all.push_back(found);
   } else if (!is_better(*rival, found)) {
@@ -210,7 +209,7 @@ void ExcitationSurvey::note_cut_ends(std::vector<FoundExcitation>& found) const 
 RecordedExcitations ExcitationSurvey::result() const {
   RecordedExcitations result = result_;
   auto& found = result.found;
-  std::sort(found.begin(), found.end(), [](const FoundExcitation& a, const FoundExcitation& b) {
+  std::ranges::sort(found, [](const FoundExcitation& a, const FoundExcitation& b) {
     return a.begin_ns() < b.begin_ns();
   });
   double loudest = 0.0;

@@ -64,10 +64,9 @@ std::string cause(const RecordedExcitations& record, const TimeInterval& excited
   if (middle_ns > record.recorded.end_ns) {
     return fmt::format("the record of '{}' ends before it", record.source);
   }
-  const bool in_hole =
-      std::any_of(record.holes.begin(), record.holes.end(), [&](const TimeInterval& hole) {
-        return hole.begin_ns <= middle_ns && middle_ns <= hole.end_ns;
-      });
+  const bool in_hole = std::ranges::any_of(record.holes, [&](const TimeInterval& hole) {
+    return hole.begin_ns <= middle_ns && middle_ns <= hole.end_ns;
+  });
   return in_hole ? fmt::format("the record of '{}' has no samples there", record.source)
                  : fmt::format("'{}' recorded no such sine then", record.source);
 }
@@ -129,7 +128,7 @@ std::string why_missing(Plan plan, const std::vector<RecordedExcitations>& recor
   if (in_all) {
     return too_short(*plan[step], records, one);
   }
-  if (std::none_of(shown.begin(), shown.end(), shows_any)) {
+  if (std::ranges::none_of(shown, shows_any)) {
     return "";
   }
   const std::string& frequency = plan[step]->frequency_text_hz;

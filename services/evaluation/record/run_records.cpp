@@ -117,8 +117,7 @@ bool RunRecords::end_session(const std::string& source, std::size_t next_step) {
       search_one(search, expected);
       search.steps.end_session();
     }
-    const bool selects =
-        std::find(search.sources.begin(), search.sources.end(), source) != search.sources.end();
+    const bool selects = std::ranges::find(search.sources, source) != search.sources.end();
     is_needed = is_needed || (selects && search.steps.step() > next_step);
   }
   return is_needed;
@@ -127,9 +126,8 @@ bool RunRecords::end_session(const std::string& source, std::size_t next_step) {
 void RunRecords::search(std::size_t end_step) {
   follow_restarts();
   // Whether anything was excited at all, other channels tell once all of them have come.
-  const bool waits =
-      schedule_ && !schedule_->shows_any_step() && !excitation_.is_cut_short() &&
-      !std::all_of(records_.begin(), records_.end(), [](auto& one) { return one.second->ended(); });
+  const bool waits = schedule_ && !schedule_->shows_any_step() && !excitation_.is_cut_short() &&
+                     !std::ranges::all_of(records_, [](auto& one) { return one.second->ended(); });
   const std::size_t expected = waits ? 0 : std::min(steps_searched(), end_step);
   if (expected == 0) {
     return;
@@ -259,12 +257,12 @@ void RunRecords::pass_over(Search& search, std::size_t step, std::string when) {
 }
 
 bool RunRecords::is_searched(std::size_t step) const {
-  return std::all_of(searches_.begin(), searches_.end(),
-                     [&](const Search& search) { return search.steps.step() > step; });
+  return std::ranges::all_of(searches_,
+                             [&](const Search& search) { return search.steps.step() > step; });
 }
 
 bool RunRecords::is_expected(std::size_t step) const {
-  return std::all_of(searches_.begin(), searches_.end(), [&](const Search& search) {
+  return std::ranges::all_of(searches_, [&](const Search& search) {
     return search.steps.step() > step || search.steps.interval(step).has_value();
   });
 }
@@ -275,8 +273,8 @@ std::optional<TimeInterval> RunRecords::interval(std::size_t search, std::size_t
 
 std::vector<RunRecords::Search>::const_iterator
 RunRecords::search_of(const std::string& source) const {
-  return std::find_if(searches_.begin(), searches_.end(), [&](const Search& one) {
-    return std::find(one.sources.begin(), one.sources.end(), source) != one.sources.end();
+  return std::ranges::find_if(searches_, [&](const Search& one) {
+    return std::ranges::find(one.sources, source) != one.sources.end();
   });
 }
 
@@ -287,15 +285,14 @@ std::optional<TimeInterval> RunRecords::interval_in(const std::string& source,
 }
 
 bool RunRecords::agree_with_plan() const {
-  if (excitation_.order().size() > 1 &&
-      std::any_of(searches_.begin(), searches_.end(),
-                  [](const Search& search) { return search.steps.begins_within_step(); })) {
+  if (excitation_.order().size() > 1 && std::ranges::any_of(searches_, [](const Search& search) {
+        return search.steps.begins_within_step();
+      })) {
     return false;
   }
   for (std::size_t step = 0; step < excitation_.order().size(); ++step) {
-    const bool found = std::all_of(searches_.begin(), searches_.end(), [&](const Search& search) {
-      return search.steps.excitation(step) != nullptr;
-    });
+    const bool found = std::ranges::all_of(
+        searches_, [&](const Search& search) { return search.steps.excitation(step) != nullptr; });
     if (!found || !agree_with_step_before(step)) {
       return false;
     }

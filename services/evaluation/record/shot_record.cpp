@@ -10,8 +10,7 @@ bool is_usable(const TriggeredRecord& record) {
   const std::size_t expected = record.samples * record.channels;
   return expected > 0 && record.values.size() == expected && record.interval_s > 0.0 &&
          std::isfinite(record.first_sample_s) &&
-         std::all_of(record.values.begin(), record.values.end(),
-                     [](double value) { return std::isfinite(value); });
+         std::ranges::all_of(record.values, [](double value) { return std::isfinite(value); });
 }
 
 StepAttempt attempt_of(const TriggeredRecord& record) {

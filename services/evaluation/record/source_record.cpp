@@ -38,9 +38,7 @@ std::optional<std::size_t> SourceRecord::channel(const std::string& name) const 
     return std::nullopt;
   }
   const auto& channels = description_->channels;
-  const auto found =
-      std::find_if(channels.begin(), channels.end(),
-                   [&](const drivers::ChannelDescription& one) { return one.name == name; });
+  const auto found = std::ranges::find(channels, name, &drivers::ChannelDescription::name);
   return found == channels.end()
              ? std::nullopt
              : std::optional(static_cast<std::size_t>(found - channels.begin()));
@@ -185,8 +183,8 @@ std::span<const double> SourceRecord::column(std::size_t channel) const {
 void SourceRecord::forget_before(std::int64_t stamp_ns) {
   const auto stamps = stamps_ns();
   // Stamps of a faulty clock may step back, so the first one that is not earlier ends the search.
-  const auto keep = std::find_if(stamps.begin(), stamps.end(),
-                                 [&](std::int64_t stamp) { return stamp >= stamp_ns; });
+  const auto keep =
+      std::ranges::find_if(stamps, [&](std::int64_t stamp) { return stamp >= stamp_ns; });
   forget(static_cast<std::size_t>(keep - stamps.begin()));
   for (std::deque<Gap>* gaps : {&gaps_, &overflow_}) {
     while (!gaps->empty() && gaps->front().after_ns < stamp_ns) {
@@ -219,7 +217,7 @@ SourceRecord SourceRecord::part(const TimeInterval& interval) const {
   // Stamps of a faulty clock may step back: all that lies between the first one inside and the last
   // one is taken.
   const auto stamps = stamps_ns();
-  const auto first = std::find_if(stamps.begin(), stamps.end(), inside);
+  const auto first = std::ranges::find_if(stamps, inside);
   const auto behind =
       std::find_if(stamps.rbegin(), std::make_reverse_iterator(first), inside).base();
   const auto begin = static_cast<std::ptrdiff_t>(first_) + (first - stamps.begin());
@@ -285,8 +283,8 @@ SampleLoss SourceRecord::lost_in(const TimeInterval& interval) const {
       lost = sum(lost, gap.loss);
     }
   };
-  std::for_each(gaps_.begin(), gaps_.end(), count);
-  std::for_each(overflow_.begin(), overflow_.end(), count);
+  std::ranges::for_each(gaps_, count);
+  std::ranges::for_each(overflow_, count);
   if (const auto open = open_gap()) {
     count(*open);
   }

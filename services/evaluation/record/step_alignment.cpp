@@ -1,7 +1,6 @@
 #include "services/evaluation/record/step_alignment.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/core.h>
 
@@ -102,9 +101,8 @@ bool begins_late(const RecordedExcitations& record) {
 
 StepsInRecords placed(Plan plan, const std::vector<RecordedExcitations>& records,
                       const std::vector<JoinedExcitation>& joined) {
-  const auto in_both = std::find_if(joined.begin(), joined.end(), [](const JoinedExcitation& one) {
-    return one.first && one.second;
-  });
+  const auto in_both = std::ranges::find_if(
+      joined, [](const JoinedExcitation& one) { return one.first && one.second; });
   const std::int64_t offset_ns = in_both == joined.end()
                                      ? 0
                                      : records[1].found[*in_both->second].begin_ns() -
@@ -116,7 +114,7 @@ StepsInRecords placed(Plan plan, const std::vector<RecordedExcitations>& records
     excitations.push_back({&shown, shown.begin_ns() - (one.first ? 0 : offset_ns),
                            records.size() == 1 || (one.first && one.second)});
   }
-  const bool late = std::all_of(records.begin(), records.end(), begins_late);
+  const bool late = std::ranges::all_of(records, begins_late);
   const auto places = place_excitations(plan, excitations, late);
   const auto other_way = place_excitations(plan, excitations, !late);
   StepsInRecords steps{std::vector<JoinedExcitation>(plan.size()), std::vector<bool>(plan.size())};
@@ -186,7 +184,7 @@ RunSchedule align_steps(Plan plan, const std::vector<RecordedExcitations>& recor
   if (!steps) {
     const auto in_order = joined(plan, records);
     if (!in_order) {
-      std::fill(schedule.problems.begin(), schedule.problems.end(), nothing_tells(records));
+      std::ranges::fill(schedule.problems, nothing_tells(records));
       return schedule;
     }
     steps = placed(plan, records, *in_order);

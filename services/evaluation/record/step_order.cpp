@@ -16,8 +16,7 @@ std::uint32_t StepOrder::attempt(std::size_t place) const {
 }
 
 std::optional<std::size_t> StepOrder::index_of(std::uint32_t step) const {
-  const auto found = std::find_if(recipe_.steps.begin(), recipe_.steps.end(),
-                                  [&](const RecipeStep& one) { return one.step == step; });
+  const auto found = std::ranges::find(recipe_.steps, step, &RecipeStep::step);
   return found == recipe_.steps.end()
              ? std::nullopt
              : std::optional(static_cast<std::size_t>(found - recipe_.steps.begin()));
@@ -28,7 +27,7 @@ std::optional<std::size_t> StepOrder::find(std::uint32_t step, std::uint32_t att
   if (!index || attempt <= 1) {
     return index;
   }
-  const auto found = std::find_if(repeats_.begin(), repeats_.end(), [&](const Repeat& repeat) {
+  const auto found = std::ranges::find_if(repeats_, [&](const Repeat& repeat) {
     return repeat.index == *index && repeat.attempt == attempt;
   });
   return found == repeats_.end()

@@ -75,7 +75,7 @@ void StepSearch::advance(std::size_t last_step) {
 void StepSearch::take_whole_record(bool complete) {
   const auto stamps = record_.stamps_ns();
   if (complete && step_ == 0 && !stamps.empty()) {
-    const auto [first, last] = std::minmax_element(stamps.begin(), stamps.end());
+    const auto [first, last] = std::ranges::minmax_element(stamps);
     found_[0] = {{*first, *last}};
     step_ = 1;
   }
@@ -180,7 +180,7 @@ TimeInterval StepSearch::evaluated_part(const analysis::ExcitationWindow& window
 }
 
 bool StepSearch::begins_within_step() const {
-  return record_begin_ns_ && std::any_of(found_.begin(), found_.end(), [&](const auto& one) {
+  return record_begin_ns_ && std::ranges::any_of(found_, [&](const auto& one) {
            return begins_with_record(one.second.excitation, *record_begin_ns_);
          });
 }
@@ -289,9 +289,8 @@ void StepSearch::pass_over(std::size_t step) {
 }
 
 const StepSearch::Found* StepSearch::with_interval(const TimeInterval& interval) const {
-  const auto found = std::find_if(found_.begin(), found_.end(), [&](const auto& one) {
-    return one.second.interval.begin_ns == interval.begin_ns;
-  });
+  const auto found = std::ranges::find_if(
+      found_, [&](const auto& one) { return one.second.interval.begin_ns == interval.begin_ns; });
   if (found != found_.end()) {
     return &found->second;
   }

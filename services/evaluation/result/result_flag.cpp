@@ -189,8 +189,7 @@ std::string_view name_of(ResultFlag flag) {
 }
 
 ResultFlag parse_flag_name(std::string_view name) {
-  const auto found =
-      std::find_if(rows.begin(), rows.end(), [&](const Row& row) { return row.name == name; });
+  const auto found = std::ranges::find(rows, name, &Row::name);
   return found == rows.end() ? ResultFlag::from_message : found->kind;
 }
 
@@ -216,15 +215,15 @@ Flag flag_with_reason(ResultFlag kind, const std::string& reason) {
 
 std::vector<std::string> sentences_of(const std::vector<Flag>& flags) {
   std::vector<std::string> sentences;
-  std::transform(flags.begin(), flags.end(), std::back_inserter(sentences),
-                 [](const Flag& flag) { return flag.sentence; });
+  std::ranges::transform(flags, std::back_inserter(sentences),
+                         [](const Flag& flag) { return flag.sentence; });
   return sentences;
 }
 
 std::vector<std::string> names_of(const std::vector<Flag>& flags) {
   std::vector<std::string> names;
-  std::transform(flags.begin(), flags.end(), std::back_inserter(names),
-                 [](const Flag& flag) { return std::string(name_of(flag.kind)); });
+  std::ranges::transform(flags, std::back_inserter(names),
+                         [](const Flag& flag) { return std::string(name_of(flag.kind)); });
   return names;
 }
 

@@ -7,8 +7,7 @@ namespace dyncal::inline evaluation {
 
 void sort_outcome(RunOutcome& outcome) {
   const auto sort_by = [](auto& all, auto key) {
-    std::stable_sort(all.begin(), all.end(),
-                     [&](const auto& a, const auto& b) { return key(a) < key(b); });
+    std::ranges::stable_sort(all, [&](const auto& a, const auto& b) { return key(a) < key(b); });
   };
   sort_by(outcome.results, [](const StepResult& result) {
     return std::tie(result.step, result.repetition, result.channel);
@@ -19,7 +18,7 @@ void sort_outcome(RunOutcome& outcome) {
   if (outcome.recipe) {
     const std::vector<std::string> order = outcome.recipe->sources();
     sort_by(outcome.sources, [&](const RunSource& source) {
-      return std::find(order.begin(), order.end(), source.source) - order.begin();
+      return std::ranges::find(order, source.source) - order.begin();
     });
   }
 }

@@ -1,6 +1,5 @@
 #include "services/programs/analysis/known_benches.hpp"
 
-#include <algorithm>
 #include <numeric>
 
 namespace dyncal::inline programs {

@@ -1,7 +1,6 @@
 #include "services/records/capture/recorder.hpp"
 
 #include <atomic>
-#include <mutex>
 #include <thread>
 
 #include <fmt/core.h>

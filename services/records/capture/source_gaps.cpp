@@ -1,6 +1,5 @@
 #include "services/records/capture/source_gaps.hpp"
 
-#include <algorithm>
 #include <iterator>
 
 #include <fmt/core.h>

@@ -130,8 +130,8 @@ ExportedRecording::channels_of(const std::string& source, const RecordedSource& 
   for (std::size_t i = 0; i < count; ++i) {
     drivers::ChannelDescription channel;
     channel.name = names.size() == count ? names[i] : fmt::format("channel_{}", i + 1);
-    const auto same = std::find_if(described.begin(), described.end(),
-                                   [&](const auto& one) { return one.name == channel.name; });
+    const auto same =
+        std::ranges::find_if(described, [&](const auto& one) { return one.name == channel.name; });
     channels.push_back(same == described.end() ? channel : *same);
   }
   return channels;
@@ -241,9 +241,8 @@ template Expected<void> ExportedRecording::for_each<wire::TriggeredRecord>(
 
 Expected<void> ExportedRecording::add_source(const std::pair<std::string, std::string>& key,
                                              const RecordedSource& recorded) {
-  const bool several_benches =
-      std::any_of(contents_.sources.begin(), contents_.sources.end(),
-                  [&](const auto& one) { return one.first.first != key.first; });
+  const bool several_benches = std::ranges::any_of(
+      contents_.sources, [&](const auto& one) { return one.first.first != key.first; });
   const std::size_t first = sources_.size();
   auto added = recorded.triggered
                    ? add_parts<wire::TriggeredRecord>(key.first, key.second, recorded)

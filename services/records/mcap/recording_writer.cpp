@@ -12,8 +12,7 @@ using base::Expected;
 
 template <class Record>
 const Record& by_id(const std::vector<Record>& records, std::uint16_t id) {
-  return *std::find_if(records.begin(), records.end(),
-                       [&](const Record& one) { return one.id == id; });
+  return *std::ranges::find(records, id, &Record::id);
 }
 
 // The message indexes of a chunk whose record ends at `offset`.

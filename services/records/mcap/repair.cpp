@@ -1,7 +1,6 @@
 #include "services/records/mcap/repair.hpp"
 
 #include <map>
-#include <optional>
 
 #include <fmt/core.h>
 

@@ -29,11 +29,10 @@ void collect(const Recipe& recipe, EvaluationOutput output, RunOutcome& outcome)
   for (auto* results : {&output.results, &output.settled}) {
     for (const StepResult& evaluated : *results) {
       StepResult result = from_message(to_message(recipe, evaluated));
-      const auto known =
-          std::find_if(outcome.results.begin(), outcome.results.end(), [&](const StepResult& one) {
-            return one.step == result.step && one.repetition == result.repetition &&
-                   one.channel == result.channel;
-          });
+      const auto known = std::ranges::find_if(outcome.results, [&](const StepResult& one) {
+        return one.step == result.step && one.repetition == result.repetition &&
+               one.channel == result.channel;
+      });
       if (known == outcome.results.end()) {
         outcome.results.push_back(std::move(result));
       } else if (result.attempt >= known->attempt) {

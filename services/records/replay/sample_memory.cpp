@@ -3,7 +3,6 @@
 #include <cstdlib>
 #include <limits>
 #include <malloc.h>
-#include <memory>
 #include <sys/mman.h>
 
 namespace dyncal::inline records {

@@ -1,6 +1,5 @@
 #include "services/records/store/database.hpp"
 
-#include <cmath>
 #include <limits>
 #include <regex>
 

@@ -1,7 +1,5 @@
 #include "services/views/certificate/dcc.hpp"
 
-#include <fmt/core.h>
-
 namespace dyncal::inline views {
 
 std::string single_line(std::string_view text, std::string_view otherwise) {

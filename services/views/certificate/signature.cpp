@@ -146,7 +146,7 @@ bool is_signature_element(const XmlElement& element, std::string_view name) {
 
 template <class List>
 bool is_one_of(const List& list, const std::string& text) {
-  return std::find(list.begin(), list.end(), text) != list.end();
+  return std::ranges::find(list, text) != list.end();
 }
 
 // Children of a signature's element, which must be exactly these.
@@ -198,8 +198,7 @@ std::string problem_of_form(const XmlElement& signature, std::optional<XmlElemen
     return "it is not made with RSA or ECDSA and SHA-256 or better";
   }
   const std::vector<XmlElement> certificates = (*key)[0].children();
-  if (certificates.empty() ||
-      !std::all_of(certificates.begin(), certificates.end(), [](const XmlElement& one) {
+  if (certificates.empty() || !std::ranges::all_of(certificates, [](const XmlElement& one) {
         return is_signature_element(one, "X509Certificate");
       })) {
     return "it names its key by something else than X.509 certificates";

@@ -1,7 +1,5 @@
 #include "services/views/certificate/verification.hpp"
 
-#include <algorithm>
-
 #include <fmt/core.h>
 
 #include "services/base/whole_file.hpp"

@@ -37,8 +37,8 @@ std::string address_html(const std::vector<std::string>& lines) {
 
 std::string joined_texts(const std::vector<std::string>& texts) {
   std::vector<std::string> filled;
-  std::copy_if(texts.begin(), texts.end(), std::back_inserter(filled),
-               [](const std::string& text) { return !text.empty(); });
+  std::ranges::copy_if(texts, std::back_inserter(filled),
+                       [](const std::string& text) { return !text.empty(); });
   return fmt::format("{}", fmt::join(filled, ", "));
 }
 
@@ -155,11 +155,10 @@ std::string warnings(const ReportContents& contents) {
   for (const std::string& open : result.open_closures(contents.channels)) {
     html += element("p", "What must hold over the run does not: " + open);
   }
-  const auto invalid =
-      std::count_if(result.points.begin(), result.points.end(), [&](const StoredPoint& point) {
-        return !point.valid && std::find(contents.channels.begin(), contents.channels.end(),
-                                         point.channel) != contents.channels.end();
-      });
+  const auto invalid = std::ranges::count_if(result.points, [&](const StoredPoint& point) {
+    return !point.valid &&
+           std::ranges::find(contents.channels, point.channel) != contents.channels.end();
+  });
   if (invalid > 0) {
     html += element("p", fmt::format("{} single results have no value; the reasons stand below "
                                      "the tables.",

@@ -66,8 +66,7 @@ Figure interval_over_temperature_figure(const PictureTitle& title,
           {bin.temperature_degc, 1e-3 * bin.mean_interval_ns, 1e-3 * bin.sd_interval_ns});
     }
   }
-  std::sort(means.points.begin(), means.points.end(),
-            [](const auto& a, const auto& b) { return a.x < b.x; });
+  std::ranges::sort(means.points, [](const auto& a, const auto& b) { return a.x < b.x; });
   panel.series.push_back(std::move(means));
 
   auto subtitle = title.subtitle;

@@ -95,10 +95,9 @@ std::string csv_of(const PictureTitle& title, const analysis::SampleClockStatist
 
 std::string subtitle_of(const PictureTitle& title, const analysis::SampleClockStatistics& clock,
                         const RegularIntervals& regular) {
-  const auto outside =
-      std::count_if(clock.over_time.begin(), clock.over_time.end(), [&](const auto& bucket) {
-        return !regular.contain(bucket.minimum_ns) || !regular.contain(bucket.maximum_ns);
-      });
+  const auto outside = std::ranges::count_if(clock.over_time, [&](const auto& bucket) {
+    return !regular.contain(bucket.minimum_ns) || !regular.contain(bucket.maximum_ns);
+  });
   if (outside == 0) {
     return title.subtitle;
   }

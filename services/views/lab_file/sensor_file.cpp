@@ -1,6 +1,5 @@
 #include "services/views/lab_file/sensor_file.hpp"
 
-#include <fmt/core.h>
 #include <toml++/toml.h>
 
 #include "services/base/whole_file.hpp"

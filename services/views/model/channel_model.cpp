@@ -17,7 +17,7 @@ constexpr double significant = 0.01;
 std::string files_of(const MeasuredResponse& measured) {
   std::vector<std::string> files;
   const auto add = [&](const std::string& file) {
-    if (std::find(files.begin(), files.end(), file) == files.end()) {
+    if (std::ranges::find(files, file) == files.end()) {
       files.push_back(file);
     }
   };
@@ -87,9 +87,8 @@ void warn_of_other_delays(ChannelModel& model) {
   if (others.empty()) {
     return;
   }
-  const auto nearest = std::min_element(others.begin(), others.end(), [](const auto& a, auto& b) {
-    return std::abs(a.delay_s) < std::abs(b.delay_s);
-  });
+  const auto nearest = std::ranges::min_element(
+      others, [](const auto& a, auto& b) { return std::abs(a.delay_s) < std::abs(b.delay_s); });
   model.warnings.push_back(fmt::format(
       "whole turns of the phase are ambiguous: a delay of {:.6g} ms{} fits about as well "
       "(chi-squared {:+.2g}); measure at frequencies closer together",
@@ -107,7 +106,7 @@ void warn_of_values(ChannelModel& model) {
   std::set<std::string> missing, kept;
   for (const MeasuredValue& value : model.measured.values) {
     for (const std::string& flag : value.flag_names) {
-      if (std::find(incomplete.begin(), incomplete.end(), flag) != incomplete.end()) {
+      if (std::ranges::find(incomplete, flag) != incomplete.end()) {
         missing.insert(flag);
       } else if (makes_unusable(flag)) {
         kept.insert(flag);

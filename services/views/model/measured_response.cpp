@@ -5,7 +5,6 @@
 #include <cmath>
 #include <complex>
 #include <limits>
-#include <map>
 #include <optional>
 #include <set>
 
@@ -175,8 +174,8 @@ void divide_phases(std::vector<RawValue>& raw, MeasuredResponse& response) {
 }
 
 void divide_uncertainties(std::vector<RawValue>& raw, MeasuredResponse& response) {
-  response.has_budgets = std::all_of(raw.begin(), raw.end(),
-                                     [](const RawValue& one) { return !one.repetitions.empty(); });
+  response.has_budgets =
+      std::ranges::all_of(raw, [](const RawValue& one) { return !one.repetitions.empty(); });
   if (response.has_budgets) {
     divide_magnitudes(raw, response);
     divide_phases(raw, response);
@@ -246,8 +245,7 @@ std::vector<std::string> channels_of(const std::vector<StoredResult>& files) {
   std::vector<std::string> channels;
   for (const StoredResult& contents : files) {
     for (const StoredChannel& one : contents.channels) {
-      if (one.responds &&
-          std::find(channels.begin(), channels.end(), one.channel) == channels.end()) {
+      if (one.responds && std::ranges::find(channels, one.channel) == channels.end()) {
         channels.push_back(one.channel);
       }
     }
@@ -257,8 +255,8 @@ std::vector<std::string> channels_of(const std::vector<StoredResult>& files) {
 
 std::string file_names(const std::vector<StoredResult>& files) {
   std::vector<std::string> names;
-  std::transform(files.begin(), files.end(), std::back_inserter(names),
-                 [](const StoredResult& contents) { return contents.file.string(); });
+  std::ranges::transform(files, std::back_inserter(names),
+                         [](const StoredResult& contents) { return contents.file.string(); });
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
@@ -267,13 +265,13 @@ Expected<void> check_channels(const std::vector<StoredResult>& files,
   std::vector<std::string> known;
   for (const StoredResult& contents : files) {
     for (const StoredValue& value : contents.values) {
-      if (std::find(known.begin(), known.end(), value.channel) == known.end()) {
+      if (std::ranges::find(known, value.channel) == known.end()) {
         known.push_back(value.channel);
       }
     }
   }
   for (const std::string& channel : asked) {
-    if (std::find(known.begin(), known.end(), channel) == known.end()) {
+    if (std::ranges::find(known, channel) == known.end()) {
       return fail(ErrorCode::bad_argument,
                   fmt::format("{}: there is no channel '{}'; the channels are: {}",
                               file_names(files), channel, fmt::join(known, ", ")));
@@ -286,8 +284,8 @@ Expected<void> check_channels(const std::vector<StoredResult>& files,
 
 std::vector<analysis::ResponsePoint> MeasuredResponse::points() const {
   std::vector<analysis::ResponsePoint> result;
-  std::transform(values.begin(), values.end(), std::back_inserter(result),
-                 [](const MeasuredValue& value) { return value.point; });
+  std::ranges::transform(values, std::back_inserter(result),
+                         [](const MeasuredValue& value) { return value.point; });
   return result;
 }
 
@@ -318,7 +316,7 @@ bool makes_unusable(const std::string& flag_name) {
                               "acs_delay_not_stated",
                               "group_delay_ambiguous",
                               "group_delay_not_constant"};
-  return std::find(usable.begin(), usable.end(), flag_name) == usable.end();
+  return std::ranges::find(usable, flag_name) == usable.end();
 }
 
 Expected<std::vector<MeasuredResponse>>

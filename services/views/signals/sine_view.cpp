@@ -21,9 +21,8 @@ std::vector<TraceColumn> columns_of(std::span<const Sample> samples, std::size_t
   const std::size_t together = std::max<std::size_t>(1, (samples.size() + count - 1) / count);
   for (std::size_t first = 0; first < samples.size(); first += together) {
     const auto part = samples.subspan(first, std::min(together, samples.size() - first));
-    const auto [low, high] =
-        std::minmax_element(part.begin(), part.end(),
-                            [](const Sample& a, const Sample& b) { return a.value < b.value; });
+    const auto [low, high] = std::ranges::minmax_element(
+        part, [](const Sample& a, const Sample& b) { return a.value < b.value; });
     const auto since_ns = static_cast<double>(part.front().stamp_ns - samples.front().stamp_ns);
     columns.push_back({since_ns * 1e-9, low->value, high->value});
   }
@@ -69,7 +68,7 @@ Expected<SineView> view_sine(const SettledSamples& settled, std::size_t columns)
   view.residual_rms = std::sqrt(view.fit.rss / static_cast<double>(fitted.size()));
   view.residuals = columns_of(residuals, columns);
   const auto shown_ns = static_cast<std::int64_t>(shown_periods * 1e9 / frequency.hz());
-  const auto shown = std::find_if(fitted.begin(), fitted.end(), [&](const Sample& sample) {
+  const auto shown = std::ranges::find_if(fitted, [&](const Sample& sample) {
     return sample.stamp_ns >= fitted.back().stamp_ns - shown_ns;
   });
   view.columns = columns_of(std::span(shown, fitted.end()), columns);
