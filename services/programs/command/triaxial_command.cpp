@@ -29,6 +29,7 @@
 
 #include "analysis/response/triaxial.hpp"
 #include "services/base/json_text.hpp"
+#include "services/programs/command/axis_results.hpp"
 #include "services/programs/command/command.hpp"
 #include "services/programs/command/work_progress.hpp"
 #include "services/views/report/result_file.hpp"
@@ -72,9 +73,7 @@ void add_triaxial(CLI::App& command, TriaxialOptions& triaxial) {
 }
 
 using Json = nlohmann::ordered_json;
-using Names = std::array<std::string, 3>;
-
-constexpr std::array axis_names{'x', 'y', 'z'};
+using Names = AxisChannels;
 
 struct Direction { // one excitation
   std::size_t axis = 0;
@@ -101,26 +100,6 @@ tl::unexpected<Error> bad(std::string message) {
   return fail(ErrorCode::bad_argument, std::move(message));
 }
 
-// The names that end with "_x", "_y", "_z" after the same beginning, when there is one such
-// beginning.
-Expected<Names> find_channels(const std::set<std::string>& names, const std::string& option) {
-  std::set<std::string> beginnings;
-  for (const std::string& name : names) {
-    for (const char axis : axis_names) {
-      if (name.ends_with(std::string("_") + axis)) {
-        beginnings.insert(name.substr(0, name.size() - 1));
-      }
-    }
-  }
-  if (beginnings.size() != 1) {
-    return bad(fmt::format("the channels of the axes cannot be found by their names (_x, _y, _z at "
-                           "the end); name them: {} X Y Z",
-                           option));
-  }
-  const std::string& beginning = *beginnings.begin();
-  return Names{beginning + "x", beginning + "y", beginning + "z"};
-}
-
 Expected<Names> channels_of(const std::vector<std::string>& named,
                             const std::vector<Direction>& directions,
                             ResultPoints Direction::*points, const std::string& option) {
@@ -137,28 +116,6 @@ Expected<Names> channels_of(const std::vector<std::string>& named,
     }
   }
   return find_channels(like_the_reference.empty() ? others : like_the_reference, option);
-}
-
-// Without the excited axis, which is that of the direction; a file that states another is refused.
-Expected<ResultPoints> read_points(const std::filesystem::path& path, char along,
-                                   ByteCount& bytes) {
-  DYNCAL_TRY(const auto result, read_values(path, bytes));
-  ResultPoints points;
-  for (const auto& [place, point] : means_of(result)) {
-    const bool is_other =
-        place.axis.size() == 1 && place.axis.front() != along &&
-        std::find(axis_names.begin(), axis_names.end(), place.axis.front()) != axis_names.end();
-    if (is_other) {
-      return fail(ErrorCode::bad_file,
-                  fmt::format("{} was excited along {} (excitation.axis of its bench file), but is "
-                              "given for {}",
-                              path.string(), place.axis, along));
-    }
-    PointIdentity named = place;
-    named.axis.clear();
-    points.emplace(std::move(named), point);
-  }
-  return points;
 }
 
 Expected<Measured> read(const TriaxialOptions& command, const SharedWorkCount& count) {

@@ -318,11 +318,8 @@ Expected<std::vector<OpenClosure>> Store::open_closures_of(const std::string& re
                                                  {result_sha256, source}));
   std::vector<OpenClosure> all;
   for (const DatabaseRow& row : rows) {
-    const auto kind = parse_closure_kind(text_of(row[1]));
-    const Closure closure{.kind = kind.value_or(ClosureKind::clock_rate),
-                          .verdict = Verdict::open,
-                          .sentence = text_of(row[2])};
-    if (kind && casts_doubt(closure)) {
+    if (const auto kind = parse_closure_kind(text_of(row[1]))) {
+      const Closure closure{.kind = *kind, .verdict = Verdict::open, .sentence = text_of(row[2])};
       all.push_back({text_of(row[0]), closure_line(text_of(row[0]), closure)});
     }
   }
