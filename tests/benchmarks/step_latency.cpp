@@ -60,9 +60,13 @@ Recipe recipe_of(const Case& one) {
                                      .adc_calibration = {},
                                      .u_adc_delay_s = 1e-7};
   for (std::uint32_t step = 1; step <= 2; ++step) {
-    recipe.steps.push_back({step, 1, fmt::format("{}", one.frequency_hz),
-                            analysis::Frequency::from_hz(one.frequency_hz), 10.0, settling_s,
-                            one.duration_s});
+    recipe.steps.push_back({.step = step,
+                            .repetition = 1,
+                            .frequency_text_hz = fmt::format("{}", one.frequency_hz),
+                            .frequency = analysis::Frequency::from_hz(one.frequency_hz),
+                            .level_m_s2 = 10.0,
+                            .settling_s = settling_s,
+                            .duration_s = one.duration_s});
   }
   return recipe;
 }
