@@ -16,22 +16,37 @@ constexpr const char* one_kind = R"(\one)";
 constexpr const char* no_delay =
     R"(the bench file says that the phase is not that of a delay (dut_phase = "any"))";
 
-Closure line(const analysis::GroupDelay& delay) {
+// How much larger u of the phases is than the part that the line was weighted with: what all
+// frequencies share, as the reference's phase, may still be another at each of them.
+double whole_u_over_independent(const ChannelRun& run) {
+  double squares = 0.0;
+  std::size_t count = 0;
+  for (const FrequencyPoint& point : run.function.points) {
+    if (point.mean.u_independent_phase_rad > 0.0) {
+      squares += std::pow(point.mean.u_phase_rad / point.mean.u_independent_phase_rad, 2);
+      ++count;
+    }
+  }
+  return count == 0 ? 1.0 : std::max(1.0, std::sqrt(squares / static_cast<double>(count)));
+}
+
+Closure line(const ChannelRun& run, const analysis::GroupDelay& delay) {
   if (!(delay.degrees_of_freedom > 0.0)) {
     return not_possible(ClosureKind::delay_fit, "", "two frequencies always lie on a line");
   }
-  const double birge = std::sqrt(delay.chi_squared / delay.degrees_of_freedom);
+  const double beside =
+      std::sqrt(delay.chi_squared / delay.degrees_of_freedom) / whole_u_over_independent(run);
   const double by_chance = std::sqrt(chi_squared_by_chance(1, delay.degrees_of_freedom));
   const double limit = std::max(most_birge, by_chance);
-  return judged(ClosureKind::delay_fit, "", birge, 0.0, limit, "1",
-                fmt::format("the phases lie {:.3g} of their u beside a line with the delay {:.6g} "
-                            "ms (chi-squared {:.4g} of {:.0f}){}",
-                            birge, 1e3 * delay.delay_s, delay.chi_squared, delay.degrees_of_freedom,
-                            birge > limit
-                                ? ": single phases are wrong, or the sensor has no constant delay "
-                                  "here, as near a resonance or a filter's edge: say so by "
-                                  "dut_phase = \"any\" in [method]"
-                                : ""));
+  return judged(
+      ClosureKind::delay_fit, "", beside, 0.0, limit, "1",
+      fmt::format("the phases lie {:.3g} of their u beside a line with the delay {:.6g} "
+                  "ms (chi-squared {:.4g} of {:.0f}){}",
+                  beside, 1e3 * delay.delay_s, delay.chi_squared, delay.degrees_of_freedom,
+                  beside > limit ? ": single phases are wrong, or the sensor has no constant delay "
+                                   "here, as near a resonance or a filter's edge: say so by "
+                                   "dut_phase = \"any\" in [method]"
+                                 : ""));
 }
 
 // An alternative makes no phase wrong, but which delay it is nobody can tell.
@@ -120,7 +135,7 @@ std::vector<Closure> phase_closures(const ChannelRun& run) {
             not_possible(ClosureKind::phase_at_zero, "", why)};
   }
   const analysis::GroupDelay& delay = *run.function.group_delay;
-  const Closure fit = line(delay);
+  const Closure fit = line(run, delay);
   return {fit, alternatives(delay), at_zero(run, delay, !is_open(fit))};
 }
 

@@ -2,8 +2,8 @@
 // which other slopes the frequencies leave open, whether that line begins at 0 or pi, and whether
 // channels of one kind have one delay.
 //
-//   sqrt(chi^2 / nu)                 residuals from the line, over their u; up to 3 the u of the
-//                                    delay carries them (group_delay.hpp)
+//   sqrt(chi^2 / nu) / q             residuals from the line, over the whole u of the phases, which
+//                                    is q times the part that the line was weighted with
 //   psi_0 modulo pi                  against u(psi_0); not possible where sensor and reference are
 //                                    of two kinds, as a coil beside a displacement
 //   dtau = -sum w_f dpsi_f / u_f^2 / sum w_f^2 / u_f^2     dpsi: of two channels in one step, in
