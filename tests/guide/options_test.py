@@ -84,7 +84,11 @@ def main():
     commands = Commands(options.bin)
     wrong = []
 
-    listed = {pages.code_in(row["command"])[0] for row in pages.rows_of(PAGE.read_text())}
+    listed = {
+        pages.code_in(row["command"])[0]
+        for row in pages.rows_of(PAGE.read_text())
+        if "command" in row
+    }
     ends = {
         command
         for command in commands.options

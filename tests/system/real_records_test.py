@@ -58,7 +58,7 @@ class RealRecords(unittest.TestCase):
         """Closures by kind, and the result, of the only channel."""
         (self.folder / "bench.toml").write_text(bench)
         made = subprocess.run(
-            [DYNCAL, "analyse", "bench.toml", "--json", "result.json"],
+            [DYNCAL, "analyse", "bench.toml", "--output", "result.json"],
             cwd=self.folder,
             capture_output=True,
             text=True,

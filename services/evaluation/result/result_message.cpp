@@ -41,7 +41,6 @@ void message_members(auto& visit, Either<SourceSamples> auto& samples, auto& mes
   visit(samples.not_measured, message.not_measured());
   visit(samples.first_stamp_ns, message.first_stamp_ns());
   visit(samples.last_stamp_ns, message.last_stamp_ns());
-  visit(samples.cut_out, message.cut_out());
 }
 
 void message_members(auto& visit, Either<ChannelSignal> auto& signal, auto& message) {
@@ -156,6 +155,12 @@ wire::CalibrationResult to_message(const Recipe& recipe, const StepResult& resul
   for (const analysis::Contribution& row : result.budget) {
     message.budget().push_back(to_message(row));
   }
+  if (std::any_of(result.samples.begin(), result.samples.end(),
+                  [](const SourceSamples& one) { return one.cut_out > 0; })) {
+    for (const SourceSamples& one : result.samples) {
+      message.cut_out().push_back(one.cut_out);
+    }
+  }
   if (result.series) {
     message_members(writer, *result.series, message);
   }
@@ -173,6 +178,9 @@ StepResult from_message(const wire::CalibrationResult& message) {
   message_members(reader, result, message);
   result.attempt = std::max(result.attempt, 1U);
   read_fits(message, result);
+  for (std::size_t i = 0; i < std::min(result.samples.size(), message.cut_out().size()); ++i) {
+    result.samples[i].cut_out = message.cut_out()[i];
+  }
   for (const wire::BudgetContribution& row : message.budget()) {
     result.budget.push_back(from_message(row));
   }

@@ -28,7 +28,25 @@ struct RawValue {
   std::vector<const StoredPoint*> repetitions;
 };
 
-std::optional<std::string> reason_to_leave_out(const StoredValue& value,
+// A model is fitted to just those phases that lie on no line from 0 or 180 degrees at 0 Hz.
+bool describes_all_that_is_open(const StoredResult& contents, const std::string& channel) {
+  const std::vector<Closure> closures = contents.closures_of(channel);
+  return std::all_of(closures.begin(), closures.end(), [](const Closure& one) {
+    return !is_open(one) || one.kind == ClosureKind::delay_fit ||
+           one.kind == ClosureKind::phase_at_zero;
+  });
+}
+
+std::vector<std::string> flags_for_a_model(const StoredResult& contents, const StoredValue& value) {
+  std::vector<std::string> flags = value.flag_names;
+  if (describes_all_that_is_open(contents, value.channel)) {
+    std::erase(flags, "closure_open");
+  }
+  return flags;
+}
+
+std::optional<std::string> reason_to_leave_out(const StoredResult& contents,
+                                               const StoredValue& value,
                                                const ResponseSelection& selection) {
   if (!std::isfinite(value.magnitude) || !std::isfinite(value.phase_rad) ||
       !(value.magnitude > 0.0)) {
@@ -39,7 +57,7 @@ std::optional<std::string> reason_to_leave_out(const StoredValue& value,
     return "its u is too large to be of use";
   }
   if (!selection.include_flagged) {
-    for (const std::string& flag : value.flag_names) {
+    for (const std::string& flag : flags_for_a_model(contents, value)) {
       if (makes_unusable(flag)) {
         return fmt::format("flag {}", flag);
       }
@@ -68,15 +86,6 @@ Expected<void> check_uncertainty(const StoredResult& contents, const StoredValue
   return {};
 }
 
-// A model is fitted to just those phases that lie on no line from 0 or 180 degrees at 0 Hz.
-bool describes_all_that_is_open(const StoredResult& contents, const std::string& channel) {
-  const std::vector<Closure> closures = contents.closures_of(channel);
-  return std::all_of(closures.begin(), closures.end(), [](const Closure& one) {
-    return !is_open(one) || one.kind == ClosureKind::delay_fit ||
-           one.kind == ClosureKind::phase_at_zero;
-  });
-}
-
 RawValue raw_value(const StoredResult& contents, const StoredValue& transfer) {
   RawValue raw;
   raw.transfer = &transfer;
@@ -86,10 +95,7 @@ RawValue raw_value(const StoredResult& contents, const StoredValue& transfer) {
   raw.value.point.h = std::polar(transfer.magnitude, transfer.phase_rad);
   raw.value.u_magnitude_rel = 0.5 * transfer.of_magnitude.expanded / transfer.magnitude;
   raw.value.u_phase_rad = 0.5 * transfer.of_phase.expanded;
-  raw.value.flag_names = transfer.flag_names;
-  if (describes_all_that_is_open(contents, transfer.channel)) {
-    std::erase(raw.value.flag_names, "closure_open");
-  }
+  raw.value.flag_names = flags_for_a_model(contents, transfer);
   for (const StoredPoint& point : contents.points) {
     if (point.valid && point.channel == transfer.channel &&
         point.frequency_hz == transfer.frequency_hz && point.level_m_s2 == transfer.level_m_s2 &&
@@ -221,7 +227,7 @@ Expected<MeasuredResponse> read_channel(const std::vector<StoredResult>& files,
         response.unit = value.unit;
       }
       DYNCAL_TRY(check_units(response, first->file.string(), contents, value));
-      if (const auto reason = reason_to_leave_out(value, selection)) {
+      if (const auto reason = reason_to_leave_out(contents, value, selection)) {
         response.left_out.push_back({contents.file.string(), value.frequency_text_hz, *reason});
         continue;
       }

@@ -33,6 +33,7 @@ analysis::ChannelFit channel(const std::string& name, double error) {
 StepResult result(double u_magnitude) {
   StepResult made;
   made.valid = true;
+  made.unit = R"(\one)";
   made.magnitude = 1.0;
   made.u_magnitude = u_magnitude;
   made.u_phase_rad = 1e-3;

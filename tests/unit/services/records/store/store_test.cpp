@@ -168,12 +168,12 @@ TEST_P(StoreTest, KeepsLevelsAxisAttemptAndClosures) {
                         .limit = 0.1,
                         .unit = "1",
                         .sentence = "the level is off"},
-                       {.kind = ClosureKind::delay_fit, // which makes no value wrong
-                        .verdict = Verdict::open,
-                        .value = 5.0,
+                       {.kind = ClosureKind::delay_fit,
+                        .verdict = Verdict::closes,
+                        .value = 1.0,
                         .limit = 3.0,
                         .unit = "1",
-                        .sentence = "phases are on no line"},
+                        .sentence = "phases are on a line"},
                        {.kind = ClosureKind::first_repeated, .sentence = "not planned"}};
   ASSERT_TRUE(add(outcome));
   const auto calibrations = store_->calibrations("mpu-7");

@@ -16,6 +16,7 @@ StoredValue value_at(const std::string& frequency) {
   StoredValue value;
   value.channel = channel;
   value.frequency_text_hz = frequency;
+  value.frequency_hz = std::stod(frequency);
   value.magnitude = 1.0;
   value.of_magnitude = {.u = 0.001, .k = 2.0, .expanded = 0.002};
   value.of_phase = {.u = 0.001, .k = 2.0, .expanded = 0.002};
@@ -28,6 +29,7 @@ StoredPoint point_at(const std::string& frequency, unsigned step) {
   StoredPoint point;
   point.channel = channel;
   point.frequency_text_hz = frequency;
+  point.frequency_hz = std::stod(frequency);
   point.step = step;
   point.repetition = 1;
   point.valid = true;
