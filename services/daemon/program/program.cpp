@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <atomic>
 #include <condition_variable>
 #include <csignal>
 #include <mutex>
@@ -77,6 +78,32 @@ Expected<bus::Participant> join_network(const NetworkOptions& options, const std
   return bus::Participant::create(participant);
 }
 
+namespace {
+
+std::atomic<pthread_t> waiting_thread;
+
+void hand_to_waiting_thread(int signal) {
+  pthread_kill(waiting_thread.load(), signal);
+}
+
+// Libraries may have threads of their own before main() begins, as OpenBLAS has, which block
+// nothing: a signal that one of them is given would end the program at once.
+void take_from_foreign_threads(const sigset_t& signals) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction before {};
+    struct sigaction now {};
+    now.sa_handler = hand_to_waiting_thread;
+    now.sa_flags = SA_RESTART;
+    sigemptyset(&now.sa_mask);
+    if (sigismember(&signals, signal) == 1 && sigaction(signal, nullptr, &before) == 0 &&
+        before.sa_handler == SIG_DFL) {
+      sigaction(signal, &now, nullptr);
+    }
+  }
+}
+
+} // namespace
+
 std::stop_token stop_on_signals() {
   sigset_t asks_again;
   sigemptyset(&asks_again);
@@ -88,14 +115,17 @@ std::stop_token stop_on_signals() {
   }
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   std::stop_source stop;
-  std::thread([signals, asks_again, stop]() mutable {
+  std::thread waiting([signals, asks_again, stop]() mutable {
     int signal = 0;
     sigwait(&signals, &signal);
     stop.request_stop();
     // A terminal that is closed says so more than once.
     sigwait(&asks_again, &signal);
     _exit(interrupted_status);
-  }).detach();
+  });
+  waiting_thread = waiting.native_handle();
+  waiting.detach();
+  take_from_foreign_threads(signals);
   return stop.get_token();
 }
 
