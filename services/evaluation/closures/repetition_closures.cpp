@@ -144,7 +144,9 @@ void add_off(const PointRepetitions& point, std::size_t repetition, std::size_t 
 // All of a repetition at another level than the others: open, with all of its results.
 bool add_mounting_that_is_off(const ChannelRun& run, const Mountings& mountings,
                               RepetitionClosures& result) {
-  const auto [repetition, mounting] = mountings.farthest();
+  const auto farthest = mountings.farthest();
+  const std::uint32_t repetition = farthest.first;
+  const Mounting& mounting = farthest.second;
   const double limit = mounting_tolerance + limit_by_chance(1) * mounting.u_magnitude_rel;
   if (std::abs(mounting.magnitude_log) <= limit) {
     return false;
