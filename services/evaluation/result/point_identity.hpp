@@ -25,6 +25,7 @@ struct PointIdentity {
   std::uint32_t repetition = 0; // 0: mean over all
   std::uint32_t attempt = 0;    // the excitation of the step; 0: of a mean
 
+  // NOLINTNEXTLINE(modernize-use-nullptr): clang-tidy 14 finds a 0 in what is generated
   auto operator<=>(const PointIdentity&) const = default;
 };
 
