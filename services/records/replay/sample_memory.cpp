@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <limits>
 #include <malloc.h>
+#include <memory>
 #include <sys/mman.h>
 
 namespace dyncal::inline records {
