@@ -18,7 +18,6 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr double weakest_phase_rad = 0.5; // a point less certain than this does not count
 constexpr std::size_t min_to_search = 6;
-constexpr double most_birge = 3.0; // residuals over u: above, no straight line describes the phase
 
 std::string hertz(double value) {
   std::string text = std::to_string(value);
@@ -280,7 +279,6 @@ Expected<GroupDelay> evaluate_group_delay(std::span<const PhasePoint> points,
       ratio > chi_squared_limit(std::max(1.0, result.degrees_of_freedom), once_in_a_thousand)
           ? ratio
           : 1.0;
-  result.is_constant = std::sqrt(birge) <= most_birge;
   LineScatter scatter = scatter_of_line(counted, line);
   if (birge > 1.0) {
     scatter = {{birge * line.variance_delay, result.degrees_of_freedom},

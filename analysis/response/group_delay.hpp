@@ -22,8 +22,7 @@
 // independent of it (coverage.hpp).
 //
 // When the residuals are larger than u allows once in a thousand (chi-squared), that part grows by
-// the Birge ratio, of n - 2 degrees of freedom: the phase is then not a straight line, and above
-// 3 u not `is_constant`.
+// the Birge ratio, of n - 2 degrees of freedom: the phase is then not a straight line.
 //
 // Fails: invalid_argument (frequencies not rising, u not positive), too_few_samples (fewer than two
 // points that count), not_converged (cannot be unwrapped; the message says where). Any thread.
@@ -63,7 +62,6 @@ struct GroupDelay {
   CombinedUncertainty of_intercept{};
   double cov_delay_intercept = 0.0; // s rad, as of U / 2
   bool polarity_inverted = false;
-  bool is_constant = true;            // a straight line describes the phase
   std::vector<double> alternatives_s; // delays that a sensor may have and that fit as well
   double chi_squared = 0.0;
   double degrees_of_freedom = 0.0;

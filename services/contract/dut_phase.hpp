@@ -3,7 +3,8 @@
 // A sensor with a delay alone has phases on a straight line, and that line begins at 0 or, where
 // sensor and reference point in opposite directions, at 180 degrees. Who knows the polarity says
 // which; who calibrates near a resonance, or a sensor with a high-pass filter, says that it is
-// neither. The closures of the phase ask for it; no value depends on it. Any thread.
+// neither, and no group delay is stated then. The closures of the phase ask for it; no value at a
+// frequency depends on it. Any thread.
 #pragma once
 
 #include <optional>

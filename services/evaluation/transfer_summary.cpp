@@ -192,20 +192,23 @@ void TransferSummary::add_group_delay(const std::vector<const StepResult*>& resu
     function.group_delay_problem = delay.error().message;
     return;
   }
+  place_phases(chosen, delay->unwrapped_rad, function.points);
+  if (recipe_.dut_phase == DutPhase::any) {
+    function.group_delay_problem =
+        R"(the bench file says that the phase is not that of a delay (dut_phase = "any"))";
+    return;
+  }
   if (!delay->alternatives_s.empty()) {
     function.flags.push_back(ambiguous_delay(*delay));
   }
-  if (!delay->is_constant) {
-    function.flags.push_back(make_flag(ResultFlag::group_delay_not_constant));
-  }
-  const bool is_opposite = std::abs(delay->intercept_rad) > opposite_from_rad;
+  const bool is_opposite = std::abs(delay->intercept_rad) > opposite_from_rad &&
+                           recipe_.dut_phase != DutPhase::delay_from_180;
   if (is_opposite && !opposite_repetitions(function.points)) {
     function.flags.push_back(make_flag(ResultFlag::polarity_inverted));
   }
   if (delay->delay_s < -before_excitation * delay->u_delay_s()) {
     function.flags.push_back(make_flag(ResultFlag::answers_before_excitation));
   }
-  place_phases(chosen, delay->unwrapped_rad, function.points);
   function.group_delay = std::move(*delay);
 }
 

@@ -148,8 +148,10 @@ dut = ["dau/coil"]
 
     def test_its_resonance_stated(self):
         method = self.ONE + 'dut_phase = "any"\n'
-        closures, _ = self.evaluated(self.bench(seismometer_steps(), method))
+        closures, result = self.evaluated(self.bench(seismometer_steps(), method))
         self.assert_verdicts(closures, closing=("excitation_frequency", "samples_counted"))
+        self.assertEqual(result["group_delay"], [])
+        self.assertIn("not that of a delay", result["channels"][0]["group_delay_problem"])
 
     def test_from_1_to_4_hz_where_it_has_a_delay(self):
         steps = [s for s in seismometer_steps() if s[0] in ("1.0", "2.0", "3.0", "4.0")]

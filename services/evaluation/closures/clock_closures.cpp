@@ -70,7 +70,8 @@ Closure rate(const std::string& clocks, const std::vector<Ratio>& ratios, double
 }
 
 // The step that differs most from all others, in what chance leaves it.
-Closure in_each_step(const std::string& clocks, const std::vector<Ratio>& ratios) {
+Closure in_each_step(const ChannelRun& run, const std::string& clocks,
+                     const std::vector<Ratio>& ratios) {
   if (ratios.size() < least_steps) {
     return not_possible(
         ClosureKind::clock_ratio, clocks,
@@ -88,9 +89,9 @@ Closure in_each_step(const std::string& clocks, const std::vector<Ratio>& ratios
     if (!worst || std::abs(off) / limit > std::abs(worst->value) / worst->limit) {
       const StepResult& step = *ratios[i].step;
       worst = judged(ClosureKind::clock_ratio, clocks, off, u, limit, "1",
-                     fmt::format("{}: of all steps that at {} Hz (repetition {}) is off most, by "
+                     fmt::format("{}: of all steps that at {} (repetition {}) is off most, by "
                                  "{:.3g} ppm",
-                                 clocks, step.frequency_text_hz, step.repetition, 1e6 * off));
+                                 clocks, run.place_of(step), step.repetition, 1e6 * off));
     }
   }
   if (is_open(*worst)) {
@@ -112,10 +113,9 @@ Closure asked_frequency(const ChannelRun& run) {
     const double limit =
         2.0 * run.recipe.clock_tolerance_rel + limit_by_chance(run.results.size()) * u;
     if (!worst || std::abs(off) / limit > std::abs(worst->value) / worst->limit) {
-      worst = judged(ClosureKind::excitation_frequency, result->frequency_text_hz + " Hz", off, u,
-                     limit, "1",
-                     fmt::format("the excitation at {} Hz is off most, by {:.4g} ppm",
-                                 result->frequency_text_hz, 1e6 * off));
+      worst = judged(ClosureKind::excitation_frequency, run.place_of(*result), off, u, limit, "1",
+                     fmt::format("the excitation at {} is off most, by {:.4g} ppm",
+                                 run.place_of(*result), 1e6 * off));
     }
   }
   if (is_open(*worst)) {
@@ -158,7 +158,7 @@ std::vector<Closure> clock_closures(const ChannelRun& run) {
     const auto& roles = std::get<SampleStampingRoles>(run.recipe.roles);
     const std::string clocks = roles.sync_acs.source + " and " + roles.sync_dau.source;
     all.push_back(rate(clocks, ratios, run.recipe.clock_tolerance_rel));
-    all.push_back(in_each_step(clocks, ratios));
+    all.push_back(in_each_step(run, clocks, ratios));
   } else {
     const std::string why = method == EvaluationMethod::analogue
                                 ? "sensor and reference have one clock"
@@ -187,8 +187,8 @@ Closure clocks_of_channels(const ChannelRun& one, const ChannelRun& other) {
     const double limit = limit_by_chance(one.results.size()) * u;
     if (!worst || std::abs(off) * worst->limit > std::abs(worst->value) * limit) {
       worst = judged(kind, subject, off, u, limit, "1",
-                     fmt::format("{}: of all steps their rates differ most at {} Hz, by {:.3g} ppm",
-                                 subject, a->frequency_text_hz, 1e6 * off));
+                     fmt::format("{}: of all steps their rates differ most at {}, by {:.3g} ppm",
+                                 subject, one.place_of(*a), 1e6 * off));
     }
   }
   if (!worst) {

@@ -42,6 +42,9 @@ void add_flag(const std::vector<Closure>& closures, std::vector<Flag>& flags) {
   for (const Closure& closure : closures) {
     if (is_open(closure)) {
       flags.push_back(flag_with_reason(ResultFlag::closure_open, closure.sentence));
+      if (closure.kind == ClosureKind::delay_fit) {
+        flags.push_back(make_flag(ResultFlag::group_delay_not_constant));
+      }
     }
   }
 }

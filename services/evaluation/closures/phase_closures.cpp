@@ -11,10 +11,8 @@
 namespace dyncal::inline evaluation {
 namespace {
 
-constexpr double most_birge = 3.0; // as GroupDelay::is_constant
+constexpr double most_beside = 3.0; // u of the phases
 constexpr const char* one_kind = R"(\one)";
-constexpr const char* no_delay =
-    R"(the bench file says that the phase is not that of a delay (dut_phase = "any"))";
 
 // How much larger u of the phases is than the part that the line was weighted with: what all
 // frequencies share, as the reference's phase, may still be another at each of them.
@@ -37,7 +35,7 @@ Closure line(const ChannelRun& run, const analysis::GroupDelay& delay) {
   const double beside =
       std::sqrt(delay.chi_squared / delay.degrees_of_freedom) / whole_u_over_independent(run);
   const double by_chance = std::sqrt(chi_squared_by_chance(1, delay.degrees_of_freedom));
-  const double limit = std::max(most_birge, by_chance);
+  const double limit = std::max(most_beside, by_chance);
   return judged(
       ClosureKind::delay_fit, "", beside, 0.0, limit, "1",
       fmt::format("the phases lie {:.3g} of their u beside a line with the delay {:.6g} "
@@ -125,10 +123,8 @@ double step_u_phase(const StepResult& result) {
 } // namespace
 
 std::vector<Closure> phase_closures(const ChannelRun& run) {
-  const bool has_delay = run.recipe.dut_phase != DutPhase::any;
-  if (!run.moves() || !has_delay || !run.function.group_delay) {
+  if (!run.moves() || !run.function.group_delay) {
     const std::string why = !run.moves() ? "the channel hardly follows the excitation"
-                            : !has_delay ? no_delay
                                          : run.function.group_delay_problem;
     return {not_possible(ClosureKind::delay_fit, "", why),
             not_possible(ClosureKind::delay_alternatives, "", why),
@@ -143,7 +139,7 @@ Closure delays_of_channels(const ChannelRun& one, const ChannelRun& other) {
   constexpr auto kind = ClosureKind::channel_delays;
   const std::string subject = one.function.channel + " and " + other.function.channel;
   if (one.recipe.dut_phase == DutPhase::any) {
-    return not_possible(kind, subject, no_delay);
+    return not_possible(kind, subject, one.function.group_delay_problem);
   }
   if (!one.moves() || !other.moves()) {
     return not_possible(kind, subject, "one of them hardly follows the excitation");

@@ -31,9 +31,9 @@ Closure level(const ChannelRun& run) {
     if (!worst || std::abs(off) > std::abs(worst->value)) {
       worst = judged(ClosureKind::level, run.place_of(*result), off, 0.0,
                      run.recipe.level_deviation_rel, "1",
-                     fmt::format("at {} Hz (repetition {}) the level is off most: {:.4g} m/s^2 in "
+                     fmt::format("at {} (repetition {}) the level is off most: {:.4g} m/s^2 in "
                                  "place of {:.4g} m/s^2",
-                                 result->frequency_text_hz, result->repetition, measured_m_s2,
+                                 run.place_of(*result), result->repetition, measured_m_s2,
                                  result->level_m_s2));
     }
   }
