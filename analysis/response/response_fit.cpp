@@ -258,6 +258,49 @@ std::vector<ResponseResidual> residuals_of(const ResponseParameters& parameters,
   return residuals;
 }
 
+// The point that a row of residuals is of states how well its u is known.
+double degrees_of_freedom(std::span<const ResponsePoint> points, Eigen::Index row) {
+  const auto i = static_cast<std::size_t>(row);
+  return i < points.size() ? points[i].magnitude_degrees_of_freedom
+                           : points[i - points.size()].phase_degrees_of_freedom;
+}
+
+// From the share of each point's own variance in that of each parameter.
+std::vector<CombinedUncertainty> uncertainties_of(const FittedResponse& fit,
+                                                  std::span<const ResponsePoint> points,
+                                                  const ResponseWeights& weights) {
+  const auto n = static_cast<Eigen::Index>(points.size());
+  const auto p = static_cast<Eigen::Index>(fit.values.size());
+  Eigen::MatrixXd slopes(2 * n, p);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto of_point =
+        log_slopes(fit.kind, fit.parameters, points[static_cast<std::size_t>(i)].frequency_hz);
+    for (Eigen::Index k = 0; k < p; ++k) {
+      slopes(i, k) = of_point[static_cast<std::size_t>(k)].real();
+      slopes(n + i, k) = of_point[static_cast<std::size_t>(k)].imag();
+    }
+  }
+  const Eigen::Map<const Eigen::MatrixXd> covariance(fit.covariance.data(), p, p);
+  const Eigen::MatrixXd moves =
+      covariance * (weights.whitening * slopes).transpose() * weights.whitening;
+  std::vector<CombinedUncertainty> all;
+  for (Eigen::Index k = 0; k < p; ++k) {
+    double over_roots = 0.0;
+    for (Eigen::Index row = 0; row < 2 * n; ++row) {
+      over_roots += moves(k, row) * moves(k, row) * weights.own_variance(row) /
+                    std::sqrt(degrees_of_freedom(points, row));
+    }
+    CombinedUncertainty of_value;
+    if (over_roots > 0.0) {
+      of_value.degrees_of_freedom = std::pow(covariance(k, k) / over_roots, 2);
+      of_value.k = coverage_factor(of_value.degrees_of_freedom);
+    }
+    of_value.u = 2.0 * std::sqrt(covariance(k, k)) / of_value.k;
+    all.push_back(of_value);
+  }
+  return all;
+}
+
 void find_undetermined(const Layout& layout, const LeastSquaresSolution& solution,
                        FittedResponse& result) {
   for (std::size_t k = layout.first(); k < layout.size(); ++k) {
@@ -298,7 +341,6 @@ FittedResponse describe(const Layout& layout, bool inverted, const LeastSquaresS
     for (std::size_t b = 0; b < x.size(); ++b) {
       result.covariance.push_back(slopes[a] * slopes[b] * solution.covariance_of(a, b));
     }
-    result.u.push_back(std::abs(slopes[a]) * solution.u(a));
   }
   result.chi_squared = solution.rss;
   result.degrees_of_freedom = solution.degrees_of_freedom;
@@ -356,6 +398,7 @@ Expected<FittedResponse> fit_response(ResponseKind kind, std::span<const Respons
   const std::size_t chosen = preferred(minima);
   const Minimum& best = minima[chosen];
   FittedResponse result = describe(layout, best.inverted, best.solution);
+  result.of_values = uncertainties_of(result, rising, weights);
   find_undetermined(layout, best.solution, result);
   for (std::size_t i = 0; i < minima.size(); ++i) {
     const Minimum& other = minima[i];

@@ -8,8 +8,10 @@
 //
 // so that chi_squared is a generalised least squares': what is common does not count as evidence
 // against a model, and goes in full into the parameters that it moves. Nothing is enlarged by the
-// scatter. response_start.hpp says how whole turns of the phase are told from a delay; other delays
-// that fit about as well are stated.
+// scatter. u of points and covariance are of U / 2, so that the factor 2 covers; a parameter is
+// known with nu = (u^2 / sum(v_i / sqrt(nu_i)))^2, v_i the share of a point in its variance, as of
+// points whose u is known from the same scatter. response_start.hpp says how whole turns of the
+// phase are told from a delay; other delays that fit about as well are stated.
 //
 // Fails as least_squares.hpp does; invalid_argument (frequencies, magnitudes or uncertainties not
 // positive), too_few_samples. A robust loss refuses common parts. Any thread.
@@ -23,6 +25,7 @@
 #include "analysis/base/error.hpp"
 #include "analysis/response/least_squares.hpp"
 #include "analysis/response/response_model.hpp"
+#include "analysis/uncertainty/coverage.hpp"
 
 namespace dyncal::analysis {
 
@@ -50,8 +53,8 @@ struct FittedResponse {
   ResponseParameters parameters;
   std::vector<std::string> names; // of the free parameters, in the order of the covariance
   std::vector<double> values;
-  std::vector<double> u;
-  std::vector<double> covariance; // row by row, common parts included
+  std::vector<CombinedUncertainty> of_values;
+  std::vector<double> covariance; // of U / 2, row by row, common parts included
   double chi_squared = 0.0;
   double degrees_of_freedom = 0.0;
   std::vector<ResponseResidual> residuals; // of each point
@@ -59,7 +62,7 @@ struct FittedResponse {
   std::vector<OtherDelay> other_delays;    // by chi_squared
 };
 
-struct ResponseUncertainty { // of the fitted model
+struct ResponseUncertainty { // U / 2 of the fitted model
   double magnitude_rel = 0.0;
   double phase_rad = 0.0;
 };

@@ -14,6 +14,8 @@
 #include <string_view>
 #include <vector>
 
+#include "analysis/uncertainty/contribution.hpp"
+
 namespace dyncal::analysis {
 
 enum class ResponseKind { // in the order of their number of parameters
@@ -44,8 +46,10 @@ inline constexpr std::array all_response_kinds{ResponseKind::gain,
 struct ResponsePoint {
   double frequency_hz = 0.0;
   std::complex<double> h;
-  double u_magnitude_rel = 0.0; // independent from point to point
+  double u_magnitude_rel = 0.0; // U / 2, independent from point to point
   double u_phase_rad = 0.0;
+  double magnitude_degrees_of_freedom = infinite_degrees_of_freedom;
+  double phase_degrees_of_freedom = infinite_degrees_of_freedom;
 };
 
 struct ResponseParameters {

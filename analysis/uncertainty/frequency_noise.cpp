@@ -11,6 +11,7 @@
 
 #include "analysis/base/chi_squared_limit.hpp"
 #include "analysis/uncertainty/mean_error.hpp"
+#include "analysis/uncertainty/noise_memories.hpp"
 
 namespace dyncal::analysis {
 namespace {
@@ -19,8 +20,6 @@ constexpr std::size_t min_blocks = 4;
 constexpr std::size_t max_orders = 17; // of the polynomials, from 0 on
 constexpr std::size_t slope = 1;
 constexpr std::size_t first_of_phase = 2, first_of_magnitude = 1; // that the fit has not taken
-constexpr double prior_of_white = 0.7;
-constexpr double prior_of_together = 0.9;  // of magnitude and phase, to each by itself
 constexpr double larger_quantile = 2.326;  // once in a hundred, for each of four bands
 constexpr double smaller_quantile = -3.09; // once in a thousand
 constexpr double next_strength = 1.5;
@@ -28,14 +27,6 @@ constexpr double weakest = 0.1;     // times the mean of C_n
 constexpr double strongest = 30.0;  // times their largest
 constexpr double negligible = 1e-9; // weight
 
-struct Memory {
-  double forgets; // a T
-  double weight;  // of the prior, as in narrow_band_noise.hpp
-};
-constexpr std::array memories{Memory{0.75, 2.0}, Memory{1.5, 2.0},  Memory{3.0, 1.5},
-                              Memory{6.0, 1.0},  Memory{12.0, 1.0}, Memory{25.0, 1.0},
-                              Memory{50.0, 1.0}};
-constexpr std::array offsets{0.0, 0.7, 1.4, 2.8, 5.6, 11.0}; // d T
 constexpr double weight_of_flat = 10.0;
 
 using Powers = std::array<double, max_orders>;
@@ -103,8 +94,8 @@ std::vector<Shape> make_shapes() {
   std::vector<Shape> all{{weight_of_flat, {}}};
   all.front().g.fill(1.0);
   double weights = weight_of_flat;
-  for (const Memory& memory : memories) {
-    for (const double offset : offsets) {
+  for (const NoiseMemory& memory : noise_memories) {
+    for (const double offset : noise_offsets) {
       all.push_back({memory.weight, powers_of(memory.forgets, offset)});
       weights += memory.weight;
     }
@@ -232,7 +223,7 @@ void add_strengths(std::span<const Evidence> all, const Shape& shape, double whi
   const double first = weakest * std::max(white, sum / count) / peak_of_shape;
   const double last = strongest * peak / peak_of_shape;
   const double steps = std::ceil(std::log(last / first) / std::log(next_strength));
-  const double prior = std::log(0.5 * (1.0 - prior_of_white) * shape.weight / steps);
+  const double prior = std::log(0.5 * (1.0 - prior_of_white_noise) * shape.weight / steps);
   for (double strength = first; strength < last; strength *= next_strength) {
     double log_weight = prior;
     for (const Evidence& one : all) {
@@ -243,7 +234,7 @@ void add_strengths(std::span<const Evidence> all, const Shape& shape, double whi
 }
 
 std::vector<Hypothesis> hypotheses_of(std::span<const Evidence> all) {
-  double log_white = std::log(prior_of_white);
+  double log_white = std::log(prior_of_white_noise);
   for (const Evidence& one : all) {
     log_white += log_likelihood(one, all_shapes().front().g, 1.0, 0.0);
   }
@@ -290,7 +281,7 @@ double factor_of_frequency_noise(std::span<const PhasorBlock> blocks, const Sine
                         Evidence{powers.magnitude, first_of_magnitude}};
   std::vector<Hypothesis> hypotheses = hypotheses_of(both);
   const std::vector<Hypothesis> phase = hypotheses_of(std::span(both).first(1));
-  const double apart = std::log((1.0 - prior_of_together) / prior_of_together) +
+  const double apart = std::log((1.0 - prior_of_noise_together) / prior_of_noise_together) +
                        log_evidence(hypotheses_of(std::span(both).last(1)));
   for (const Hypothesis& one : phase) {
     hypotheses.push_back({one.log_weight + apart, one.variance});

@@ -9,6 +9,7 @@
 
 #include "analysis/base/chi_squared_limit.hpp"
 #include "analysis/uncertainty/coverage.hpp"
+#include "analysis/uncertainty/noise_memories.hpp"
 
 namespace dyncal::analysis {
 namespace {
@@ -16,24 +17,11 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr std::size_t min_values = 4;
-constexpr std::size_t max_lines = 16; // to either side
-constexpr double prior_of_white = 0.7;
-// Of magnitude and phase together, to each by itself: of few pieces of noise one of the two may
-// look white by chance.
-constexpr double prior_of_together = 0.9;
+constexpr std::size_t max_lines = 16;       // to either side
 constexpr double looked_at_quantile = 2.05; // once in 50 for each of five bands
 constexpr double next_strength = 3.0;
 constexpr double largest_strength = 30.0; // times what the largest line shows
 constexpr double strengths = 16.0;        // as many as prior weights are divided by
-
-struct Memory {
-  double forgets; // a T
-  double weight;  // of the prior: what a short record hardly shows counts more
-};
-constexpr std::array memories{Memory{0.75, 2.0}, Memory{1.5, 2.0},  Memory{3.0, 1.5},
-                              Memory{6.0, 1.0},  Memory{12.0, 1.0}, Memory{25.0, 1.0},
-                              Memory{50.0, 1.0}};
-constexpr std::array offsets{0.0, 0.7, 1.4, 2.8, 5.6, 11.0}; // d T, to either side
 
 // g_j of one memory and offset.
 struct Shape {
@@ -63,13 +51,13 @@ Shape make_shape(double forgets, double offset) {
 std::vector<Shape> make_shapes() {
   std::vector<Shape> all;
   double weights = 0.0;
-  const auto add = [&](const Memory& memory, double offset) {
+  const auto add = [&](const NoiseMemory& memory, double offset) {
     all.push_back(make_shape(memory.forgets, offset));
     all.back().weight = memory.weight;
     weights += memory.weight;
   };
-  for (const Memory& memory : memories) {
-    for (const double offset : offsets) {
+  for (const NoiseMemory& memory : noise_memories) {
+    for (const double offset : noise_offsets) {
       add(memory, offset);
       if (offset > 0.0) {
         add(memory, -offset);
@@ -250,7 +238,7 @@ private:
       shape_peak = std::max(shape_peak, below[j]);
       line_peak = std::max(line_peak, lines_below[j]);
     }
-    const double prior = std::log((1.0 - prior_of_white) * shape.weight / strengths);
+    const double prior = std::log((1.0 - prior_of_white_noise) * shape.weight / strengths);
     for (double peak = 1.0 / std::sqrt(next_strength); peak < largest_strength * line_peak;
          peak *= next_strength) {
       const double strength = peak / shape_peak;
@@ -261,7 +249,7 @@ private:
   }
 
   void add_white(double log_likelihood) {
-    all_.push_back({std::log(prior_of_white) + log_likelihood, 1.0});
+    all_.push_back({std::log(prior_of_white_noise) + log_likelihood, 1.0});
   }
 
   [[nodiscard]] double largest_log() const {
@@ -289,7 +277,7 @@ MeanFactor factor_of_narrow_band_noise(std::span<const Complex> values, double v
   const Hypotheses phase = Hypotheses::by_itself(lines.phase);
   Hypotheses of_magnitude = Hypotheses::together(lines);
   Hypotheses of_phase = of_magnitude;
-  const double apart = std::log((1.0 - prior_of_together) / prior_of_together);
+  const double apart = std::log((1.0 - prior_of_noise_together) / prior_of_noise_together);
   of_magnitude.append(magnitude, apart + phase.log_evidence());
   of_phase.append(phase, apart + magnitude.log_evidence());
   return {of_magnitude.half_width(), of_phase.half_width()};

@@ -175,6 +175,9 @@ TEST_F(FileCommands, CompareGivesTheNormalisedErrorOfTwoResults) {
   EXPECT_NEAR(point["en_phase"], (6.28 - 2.0 * std::numbers::pi) / (2.0 * 0.004 * std::sqrt(2.0)),
               1e-12);
   EXPECT_FALSE(point["agrees"]);
+  EXPECT_NEAR(point["U_magnitude_difference"], 2.0 * 0.003 * std::sqrt(2.0), 1e-12);
+  EXPECT_NEAR(point["k_magnitude_difference"], 2.0, 1e-12);
+  EXPECT_NEAR(point["u_phase_difference_rad"], 0.004 * std::sqrt(2.0), 1e-12);
   const auto shared = json_of({"compare", a, b, "--common-magnitude", "0.002", "--json"}, 3);
   EXPECT_NEAR(shared["points"][0]["en_magnitude"],
               0.01 / (2.0 * std::sqrt(2.0 * 9e-6 - 2.0 * 4e-6 * 1.01)), 1e-12);

@@ -4,9 +4,10 @@
 // Compares the transfer functions (means over repetitions) of two result files of dyncal, or their
 // single results (--single); |E_n| <= 1, each U at its own k, means that they agree. Points are
 // partners as paired_points.hpp says; those without a partner are named, and so are open closures
-// of the channels. What both have in common, such as the reference, can be taken out of the
-// uncertainties of the difference by its relative standard uncertainty (--common-magnitude,
-// --common-phase); without that E_n is too kind to two results that share a reference.
+// of the channels. Group delays are compared as well (compared_delays.hpp). What both have in
+// common, such as the reference, can be taken out of the uncertainties of the difference by its
+// relative standard uncertainty (--common-magnitude, --common-phase); without that E_n is too kind
+// to two results that share a reference.
 //
 // Prints a table, or JSON. Exit status 0: every point has a partner and agrees with it; 3: not so;
 // 1 and one line when a file is not a result or the two have no point in common. Belongs to one
@@ -14,7 +15,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 #include <optional>
 #include <set>
 #include <vector>
@@ -26,8 +26,11 @@
 #include "analysis/response/comparison.hpp"
 #include "services/base/json_text.hpp"
 #include "services/base/printable_text.hpp"
+#include "services/base/rounding.hpp"
 #include "services/programs/command/command.hpp"
 #include "services/programs/command/work_progress.hpp"
+#include "services/views/report/compared_delays.hpp"
+#include "services/views/report/json_number.hpp"
 #include "services/views/report/paired_points.hpp"
 
 namespace dyncal::inline programs {
@@ -77,6 +80,7 @@ struct ComparedPoint : PointPair {
 
 struct ComparedResults {
   std::vector<ComparedPoint> points;
+  std::vector<ComparedDelay> delays; // of channels whose frequencies are the same and tell one
   PairedPoints paired;
   std::vector<std::string> first_open; // closures of the channels that are compared
   std::vector<std::string> second_open;
@@ -156,6 +160,9 @@ Expected<ComparedResults> compare(const CompareOptions& command, const StoredRes
   if (compared.points.empty()) {
     return fail(nothing_in_common(command, compared.paired));
   }
+  if (!command.single) {
+    compared.delays = compare_delays(first, second, compared.paired);
+  }
   compared.first_open = open_closures(first, compared.paired, &PointPair::first_identity);
   compared.second_open = open_closures(second, compared.paired, &PointPair::second_identity);
   return compared;
@@ -171,14 +178,26 @@ Expected<ComparedResults> read_and_compare(const CompareOptions& command) {
   return compare(command, first, second);
 }
 
-double phase_difference_rad(const ComparedPoint& point) {
-  return std::remainder(point.first.value.phase_rad - point.second.value.phase_rad,
-                        2.0 * std::numbers::pi);
+bool agrees(const analysis::Difference& difference) {
+  return std::abs(difference.normalised_error()) <= 1.0;
 }
 
 bool agrees(const ComparedPoint& point) {
-  return std::abs(point.comparison.en_magnitude) <= 1.0 &&
-         std::abs(point.comparison.en_phase) <= 1.0;
+  return agrees(point.comparison.magnitude) && agrees(point.comparison.phase);
+}
+
+bool agrees(const ComparedDelay& delay) {
+  return agrees(delay.difference);
+}
+
+auto agreeing(const auto& all) {
+  return std::count_if(all.begin(), all.end(), [](const auto& one) { return agrees(one); });
+}
+
+bool all_agree(const ComparedResults& compared) {
+  return agreeing(compared.points) == std::ssize(compared.points) &&
+         agreeing(compared.delays) == std::ssize(compared.delays) &&
+         compared.paired.only_first.empty() && compared.paired.only_second.empty();
 }
 
 Json json_of(const PointIdentity& point) {
@@ -202,6 +221,14 @@ Json json_of(const std::vector<PointIdentity>& points) {
   return json;
 }
 
+void add_uncertainty(const std::string& of, const analysis::CombinedUncertainty& uncertainty,
+                     Json& json) {
+  json["u_" + of] = uncertainty.u;
+  json["k_" + of] = uncertainty.k;
+  json["U_" + of] = uncertainty.expanded();
+  json["nu_eff_" + of] = json_number(uncertainty.degrees_of_freedom);
+}
+
 void print_json(const ComparedResults& compared) {
   Json json{{"points", Json::array()}};
   for (const ComparedPoint& point : compared.points) {
@@ -212,14 +239,27 @@ void print_json(const ComparedResults& compared) {
       one["attempt"] = point.first.attempt;
       one["other_attempt"] = point.second.attempt;
     }
-    one["magnitude_difference"] = point.first.value.magnitude - point.second.value.magnitude;
-    one["phase_difference_rad"] = phase_difference_rad(point);
-    one["en_magnitude"] = point.comparison.en_magnitude;
-    one["en_phase"] = point.comparison.en_phase;
+    const auto& [magnitude, phase, chi_squared, probability] = point.comparison;
+    one["magnitude_difference"] = magnitude.value;
+    add_uncertainty("magnitude_difference", magnitude.of_value, one);
+    one["phase_difference_rad"] = phase.value;
+    add_uncertainty("phase_difference_rad", phase.of_value, one);
+    one["en_magnitude"] = magnitude.normalised_error();
+    one["en_phase"] = phase.normalised_error();
     one["agrees"] = agrees(point);
     json["points"].push_back(std::move(one));
   }
-  json["agreeing"] = std::count_if(compared.points.begin(), compared.points.end(), agrees);
+  json["agreeing"] = agreeing(compared.points);
+  json["group_delays"] = Json::array();
+  for (const ComparedDelay& delay : compared.delays) {
+    Json one{{"channel", delay.channel},
+             {"other_channel", delay.other_channel},
+             {"difference_s", delay.difference.value}};
+    add_uncertainty("difference_s", delay.difference.of_value, one);
+    one["en"] = delay.difference.normalised_error();
+    one["agrees"] = agrees(delay);
+    json["group_delays"].push_back(std::move(one));
+  }
   json["only_first"] = json_of(compared.paired.only_first);
   json["only_second"] = json_of(compared.paired.only_second);
   json["assumed_axis"] =
@@ -260,8 +300,22 @@ void print_rows(const ComparedResults& compared, bool single) {
     fmt::print(
         "{:>12g}{} {:>14.3e} {:>9.2f} {:>16.3e} {:>9.2f}{}\n", place.frequency_hz,
         optional_columns(fmt::format("{}", place.level_m_s2), std::to_string(place.repetition)),
-        point.first.value.magnitude - point.second.value.magnitude, point.comparison.en_magnitude,
-        phase_difference_rad(point), point.comparison.en_phase, agrees(point) ? "" : "  disagree");
+        point.comparison.magnitude.value, point.comparison.magnitude.normalised_error(),
+        point.comparison.phase.value, point.comparison.phase.normalised_error(),
+        agrees(point) ? "" : "  disagree");
+  }
+}
+
+void print_delays(const std::vector<ComparedDelay>& delays) {
+  for (const ComparedDelay& one : delays) {
+    fmt::print(
+        "group delay of {}: {} ms and {} ms, E_n {:.2f}{}\n",
+        one_line(one.channel == one.other_channel ? one.channel
+                                                  : one.channel + " and " + one.other_channel),
+        round_by_uncertainty(1e3 * one.delay_s, 1e3 * one.difference.of_value.expanded()).value,
+        round_by_uncertainty(1e3 * one.other_delay_s, 1e3 * one.difference.of_value.expanded())
+            .value,
+        one.difference.normalised_error(), agrees(one) ? "" : "  disagree");
   }
 }
 
@@ -288,8 +342,8 @@ void print_table(const CompareOptions& command, const ComparedResults& compared)
   const PairedPoints& paired = compared.paired;
   print_rows(compared, command.single);
   fmt::print("\n{} of {} points agree (|E_n| <= 1 in magnitude and phase, each U at its own k)\n",
-             std::count_if(compared.points.begin(), compared.points.end(), agrees),
-             compared.points.size());
+             agreeing(compared.points), compared.points.size());
+  print_delays(compared.delays);
   if (const std::size_t alone = paired.only_first.size() + paired.only_second.size(); alone > 0) {
     fmt::print("{} point{} no partner and {} not compared:\n", alone,
                alone == 1 ? " has" : "s have", alone == 1 ? "is" : "are");
@@ -313,9 +367,7 @@ void print_table(const CompareOptions& command, const ComparedResults& compared)
 Expected<int> run_compare(const CompareOptions& command) {
   DYNCAL_TRY(const auto compared, read_and_compare(command));
   command.json ? print_json(compared) : print_table(command, compared);
-  const bool all_agree = std::all_of(compared.points.begin(), compared.points.end(), agrees) &&
-                         compared.paired.only_first.empty() && compared.paired.only_second.empty();
-  return all_agree ? 0 : problems_found;
+  return all_agree(compared) ? 0 : problems_found;
 }
 
 const Command compare_command{

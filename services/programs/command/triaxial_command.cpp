@@ -178,7 +178,8 @@ std::optional<AxesAndUncertainty> axes_at(const ResultPoints& points, const Name
     }
     const analysis::ComparedResult& value = found->second.value;
     axes.values[i] = std::polar(value.magnitude, value.phase_rad);
-    axes.u[i] = std::max(value.u_magnitude, value.magnitude * value.u_phase_rad);
+    axes.u[i] =
+        0.5 * std::max(value.of_magnitude.expanded(), value.magnitude * value.of_phase.expanded());
   }
   return axes;
 }

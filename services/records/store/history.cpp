@@ -47,8 +47,8 @@ void compare(const HistoryLine& line, const std::vector<Calibration>& calibratio
   const auto comparison =
       analysis::compare_transfer(comparable(value.point), comparable(before.point));
   if (comparison) {
-    value.en_magnitude = comparison->en_magnitude;
-    value.en_phase = comparison->en_phase;
+    value.en_magnitude = comparison->magnitude.normalised_error();
+    value.en_phase = comparison->phase.normalised_error();
   }
 }
 

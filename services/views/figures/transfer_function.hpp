@@ -19,7 +19,6 @@
 #include <string>
 #include <vector>
 
-#include "analysis/response/comparison.hpp"
 #include "analysis/response/group_delay.hpp"
 #include "services/views/figures/figure.hpp"
 
@@ -33,11 +32,18 @@ enum class ErrorBars {
 // "U"; of none it is empty.
 [[nodiscard]] const char* symbol_of(ErrorBars bars);
 
+struct ComplexValue { // with standard uncertainties
+  double magnitude = 0.0;
+  double u_magnitude = 0.0;
+  double phase_rad = 0.0;
+  double u_phase_rad = 0.0;
+};
+
 struct ValueOverFrequency {
   double frequency_hz = 0.0;
-  double level_m_s2 = 0.0;          // as planned
-  analysis::ComparedResult value{}; // with standard uncertainties
-  std::string flags{};              // names, separated by spaces
+  double level_m_s2 = 0.0; // as planned
+  ComplexValue value{};
+  std::string flags{}; // names, separated by spaces
   // U: of means; of repetitions only while there are plain means.
   double expanded_magnitude = 0.0;
   double expanded_phase_rad = 0.0;

@@ -70,7 +70,8 @@ void warn_of_fit(const ModelRequest& request, ChannelModel& model) {
                     parameters_of(best.fit->undetermined)));
   }
   const std::size_t last = best.fit->values.size() - 1;
-  if (has_second_order(best.kind) && best.fit->values[last] < -2.0 * best.fit->u[last]) {
+  if (has_second_order(best.kind) &&
+      best.fit->values[last] < -best.fit->of_values[last].expanded()) {
     model.warnings.emplace_back("the damping is below 0 by more than 2 u, which no passive sensor "
                                 "has: the model is not the sensor's");
   }

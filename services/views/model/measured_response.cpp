@@ -179,6 +179,11 @@ void divide_phases(std::vector<RawValue>& raw, MeasuredResponse& response) {
   }
 }
 
+// Of the part `u_own` of u: what else there is in u is known well (GUM G.4).
+double own_degrees_of_freedom(double degrees_of_freedom, double u_own, double u) {
+  return std::max(1.0, degrees_of_freedom * std::pow(std::min(1.0, u_own / u), 4));
+}
+
 void divide_uncertainties(std::vector<RawValue>& raw, MeasuredResponse& response) {
   response.has_budgets =
       std::ranges::all_of(raw, [](const RawValue& one) { return !one.repetitions.empty(); });
@@ -194,6 +199,10 @@ void divide_uncertainties(std::vector<RawValue>& raw, MeasuredResponse& response
     if (!(point.u_phase_rad > 0.0)) {
       point.u_phase_rad = one.value.u_phase_rad;
     }
+    point.magnitude_degrees_of_freedom = own_degrees_of_freedom(
+        one.transfer->of_magnitude.nu_eff, point.u_magnitude_rel, one.value.u_magnitude_rel);
+    point.phase_degrees_of_freedom = own_degrees_of_freedom(
+        one.transfer->of_phase.nu_eff, point.u_phase_rad, one.value.u_phase_rad);
     response.values.push_back(std::move(one.value));
   }
 }

@@ -17,8 +17,8 @@ figures::Figure model_figure(const ChannelModel& model) {
       "chi-squared {:.4g} for {} degrees of freedom, {}{}", fit.chi_squared, fit.degrees_of_freedom,
       probability_text(model.choice.best().probability), model.choice.fits ? "" : ": does not fit");
   for (std::size_t k = 0; k < fit.names.size(); ++k) {
-    const RoundedValue rounded = round_by_uncertainty(fit.values[k], fit.u[k]);
-    data.comments.push_back(fmt::format("{} = {}, u = {}", fit.names[k], rounded.value, rounded.u));
+    const RoundedValue rounded = round_by_uncertainty(fit.values[k], fit.of_values[k].expanded());
+    data.comments.push_back(fmt::format("{} = {}, U = {}", fit.names[k], rounded.value, rounded.u));
   }
   data.comments.insert(data.comments.end(), model.warnings.begin(), model.warnings.end());
   for (std::size_t i = 0; i < fit.residuals.size(); ++i) {

@@ -43,11 +43,14 @@ const char* unit_of(const std::string& parameter) {
 Json parameters_json(const analysis::FittedResponse& fit) {
   Json parameters = Json::array();
   for (std::size_t k = 0; k < fit.names.size(); ++k) {
-    parameters.push_back({{"name", fit.names[k]},
-                          {"in", unit_of(fit.names[k])},
-                          {"value", json_number(fit.values[k])},
-                          {"u", json_number(fit.u[k])},
-                          {"U", json_number(2.0 * fit.u[k])}});
+    parameters.push_back(
+        {{"name", fit.names[k]},
+         {"in", unit_of(fit.names[k])},
+         {"value", json_number(fit.values[k])},
+         {"u", json_number(fit.of_values[k].u)},
+         {"k", json_number(fit.of_values[k].k)},
+         {"U", json_number(fit.of_values[k].expanded())},
+         {"degrees_of_freedom", json_number(fit.of_values[k].degrees_of_freedom)}});
   }
   return parameters;
 }
@@ -177,8 +180,8 @@ nlohmann::ordered_json model_json(const std::vector<std::string>& files,
   Json json{{"schema", {{"name", "dyncal-model"}, {"version", model_schema_version}}},
             {"software", software_version()},
             {"phase_convention",
-             "lead: arg H in rad, a delay is negative; u are standard uncertainties (k = 1), U = 2 "
-             "u expanded ones (95.45 %)"},
+             "lead: arg H in rad, a delay is negative; u of parameters are standard uncertainties, "
+             "U = k u expanded ones (95.45 %); other u are U / 2"},
             {"results", files},
             {"models", Json::array()}};
   for (const ChannelModel& model : models) {

@@ -88,13 +88,14 @@ Shown shown(const std::string& parameter, const std::string& unit) {
 
 std::string parameters(const ChannelModel& model) {
   const analysis::FittedResponse& fit = model.fit();
-  std::string text = fmt::format("  {:<30} {:>14} {:>10}\n", "parameter", "value", "u");
+  std::string text = fmt::format("  {:<30} {:>14} {:>10} {:>6}\n", "parameter", "value", "U", "k");
   for (std::size_t k = 0; k < fit.names.size(); ++k) {
     const Shown name = shown(fit.names[k], model.measured.unit);
+    const analysis::CombinedUncertainty& of_value = fit.of_values[k];
     const RoundedValue rounded =
-        round_by_uncertainty(fit.values[k] * name.factor, fit.u[k] * name.factor);
-    text +=
-        fmt::format("  {:<30} {:>14} {:>10}\n", one_line(name.name, 64), rounded.value, rounded.u);
+        round_by_uncertainty(fit.values[k] * name.factor, of_value.expanded() * name.factor);
+    text += fmt::format("  {:<30} {:>14} {:>10} {:>6.2f}\n", one_line(name.name, 64), rounded.value,
+                        rounded.u, of_value.k);
   }
   return text;
 }

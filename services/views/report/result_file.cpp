@@ -9,6 +9,11 @@ double known_level(double level_m_s2) {
   return std::isnan(level_m_s2) ? 0.0 : level_m_s2;
 }
 
+// With the U that was stated, whatever its u.
+analysis::CombinedUncertainty combined(const ExpandedUncertainty& stated) {
+  return {stated.expanded / stated.k, stated.nu_eff, stated.k};
+}
+
 bool has_value(double magnitude, double phase_rad) {
   return !std::isnan(magnitude) && !std::isnan(phase_rad);
 }
@@ -23,8 +28,7 @@ PointIdentity identity_of(const StoredValue& value) {
 }
 
 analysis::ComparedResult comparable(const StoredValue& value) {
-  return {value.magnitude, 0.5 * value.of_magnitude.expanded, value.phase_rad,
-          0.5 * value.of_phase.expanded};
+  return {value.magnitude, combined(value.of_magnitude), value.phase_rad, combined(value.of_phase)};
 }
 
 ResultPoints means_of(const StoredResult& result) {
@@ -47,8 +51,8 @@ ResultPoints repetitions_of(const StoredResult& result) {
     identity.level_m_s2 = known_level(identity.level_m_s2);
     identity.attempt = 0;
     points.emplace(std::move(identity), ResultPoint{one.unit,
-                                                    {one.magnitude, 0.5 * one.of_magnitude.expanded,
-                                                     one.phase_rad, 0.5 * one.of_phase.expanded},
+                                                    {one.magnitude, combined(one.of_magnitude),
+                                                     one.phase_rad, combined(one.of_phase)},
                                                     one.attempt});
   }
   return points;

@@ -24,7 +24,6 @@ using ResultPoints = std::multimap<PointIdentity, ResultPoint>;
 
 [[nodiscard]] PointIdentity identity_of(const StoredValue& value);
 
-// So that its factor 2 gives the U that was stated.
 [[nodiscard]] analysis::ComparedResult comparable(const StoredValue& value);
 
 [[nodiscard]] ResultPoints means_of(const StoredResult& result);

@@ -117,7 +117,8 @@ TEST(ResponseFit, UCoversTheScatterOfTheParameters) {
       ASSERT_TRUE(fit.has_value()) << fit.error().message;
       chi_squared += fit->chi_squared / runs;
       for (std::size_t k = 0; k < 4; ++k) {
-        covered[k] += std::abs(fit->values[k] - truth[k]) <= 2.0 * fit->u[k];
+        covered[k] +=
+            std::abs(fit->values[k] - truth[k]) <= 2.0 * 0.5 * fit->of_values[k].expanded();
       }
     }
     for (const int count : covered) {
@@ -137,7 +138,8 @@ TEST(ResponseFit, WholeTurnsBetweenDistantFrequenciesDoNotFoolIt) {
       const auto fit = fit_response(ResponseKind::second_order_with_delay,
                                     measured_response(truth, 2e-3, seed, distant));
       ASSERT_TRUE(fit.has_value()) << fit.error().message;
-      EXPECT_NEAR(fit->parameters.delay_s, delay_s, 5.0 * fit->u[1]) << seed;
+      EXPECT_NEAR(fit->parameters.delay_s, delay_s, 5.0 * 0.5 * fit->of_values[1].expanded())
+          << seed;
       EXPECT_TRUE(fit->other_delays.empty());
     }
   }
@@ -199,9 +201,29 @@ TEST(ResponseFit, ACommonGainGoesInFullIntoTheGain) {
   const auto common = fit_response(ResponseKind::second_order_with_delay, points,
                                    {.gain_rel = 1e-3, .delay_s = 1e-6, .phase_rad = 0.0});
   ASSERT_TRUE(alone && common);
-  EXPECT_NEAR(common->u[0], std::hypot(alone->u[0], 1e-3 * mems.gain), 1e-9);
-  EXPECT_NEAR(common->u[1], std::hypot(alone->u[1], 1e-6), 1e-12);
-  EXPECT_NEAR(common->u[2], alone->u[2], 1e-6 * alone->u[2]);
+  EXPECT_NEAR(0.5 * common->of_values[0].expanded(),
+              std::hypot(0.5 * alone->of_values[0].expanded(), 1e-3 * mems.gain), 1e-9);
+  EXPECT_NEAR(0.5 * common->of_values[1].expanded(),
+              std::hypot(0.5 * alone->of_values[1].expanded(), 1e-6), 1e-12);
+  EXPECT_NEAR(0.5 * common->of_values[2].expanded(), 0.5 * alone->of_values[2].expanded(),
+              1e-6 * 0.5 * alone->of_values[2].expanded());
+}
+
+// u of every point from one scatter: the gain is known no better than each of them, and U is as if
+// they were known well, for u of the points is U / 2.
+TEST(ResponseFit, AParameterIsKnownAsWellAsItsPoints) {
+  auto points = measured_response(mems, 1e-4, 0);
+  const auto well = fit_response(ResponseKind::gain, points);
+  for (ResponsePoint& point : points) {
+    point.magnitude_degrees_of_freedom = point.phase_degrees_of_freedom = 3.0;
+  }
+  const auto few = fit_response(ResponseKind::gain, points);
+  ASSERT_TRUE(well && few);
+  EXPECT_EQ(well->of_values[0].k, 2.0);
+  EXPECT_NEAR(few->of_values[0].degrees_of_freedom, 3.0, 1e-9);
+  EXPECT_NEAR(few->of_values[0].k, coverage_factor(3.0), 1e-9);
+  EXPECT_NEAR(few->of_values[0].expanded(), well->of_values[0].expanded(),
+              1e-9 * well->of_values[0].expanded());
 }
 
 TEST(ResponseFit, ARobustGroupDelayDisregardsAWrongPoint) {
@@ -212,8 +234,9 @@ TEST(ResponseFit, ARobustGroupDelayDisregardsAWrongPoint) {
   const auto plain = fit_response(ResponseKind::delay, points);
   const auto robust = fit_response(ResponseKind::delay, points, {}, Loss::tukey);
   ASSERT_TRUE(plain && robust);
-  EXPECT_GT(std::abs(plain->parameters.delay_s - 8.1e-3), 10.0 * plain->u[1]);
-  EXPECT_NEAR(robust->parameters.delay_s, 8.1e-3, 4.0 * robust->u[1]);
+  EXPECT_GT(std::abs(plain->parameters.delay_s - 8.1e-3),
+            10.0 * 0.5 * plain->of_values[1].expanded());
+  EXPECT_NEAR(robust->parameters.delay_s, 8.1e-3, 4.0 * 0.5 * robust->of_values[1].expanded());
 }
 
 TEST(ResponseFit, SaysSoWhenTheModelIsNotTheSensors) {

@@ -11,7 +11,7 @@ ResultPoints points_at(const std::vector<double>& levels_m_s2, const std::string
   for (const double level : levels_m_s2) {
     points.emplace(
         PointIdentity{.channel = channel, .frequency_hz = 80.0, .level_m_s2 = level, .axis = axis},
-        ResultPoint{R"(\one)", {level, 0.01, 0.0, 0.01}});
+        ResultPoint{R"(\one)", {level, {.u = 0.01}, 0.0, {.u = 0.01}}});
   }
   return points;
 }

@@ -27,8 +27,8 @@ TEST(ResultFile, TwiceItsUncertaintyIsTheExpandedOne) {
       points.find({.channel = "dau/acceleration_z", .frequency_hz = 10.0, .level_m_s2 = 2.75});
   ASSERT_NE(found, points.end());
   const ResultPoint& point = found->second;
-  EXPECT_DOUBLE_EQ(point.value.u_magnitude, 3e-3);
-  EXPECT_DOUBLE_EQ(point.value.u_phase_rad, 2e-3);
+  EXPECT_DOUBLE_EQ(point.value.of_magnitude.expanded(), 6e-3);
+  EXPECT_DOUBLE_EQ(point.value.of_phase.expanded(), 4e-3);
   EXPECT_EQ(point.unit, R"(\one)");
 }
 
@@ -63,7 +63,7 @@ TEST(ResultFile, GivesSingleResultsByTheirRepetitionWhateverTheAttempt) {
   EXPECT_EQ(to_string(identity), "dau/acceleration_z at 10 Hz, 2.75 m/s^2, axis z, repetition 1");
   EXPECT_EQ(point.attempt, 2U);
   EXPECT_EQ(point.value.magnitude, 1.0);
-  EXPECT_GT(point.value.u_magnitude, 0.0);
+  EXPECT_GT(point.value.of_magnitude.u, 0.0);
 }
 
 } // namespace
