@@ -33,29 +33,33 @@ bool is_same_u(double u, double other) {
          std::abs(u - other) <= agreement_u_rel * larger(u, other);
 }
 
+struct KnownNumber {
+  double value = 0.0;
+  double u = 0.0;
+};
+
 // Of a magnitude, a phase or a delay; empty: it agrees.
-std::string number_difference(const char* name, double published, double again, double difference,
-                              double u, double u_again, bool with_u) {
-  if (std::isnan(published) && std::isnan(again)) {
+std::string number_difference(const char* name, const KnownNumber& published,
+                              const KnownNumber& again, double difference, bool with_u) {
+  if (std::isnan(published.value) && std::isnan(again.value)) {
     return "";
   }
-  if (distance_u(difference, u, u_again) > agreement_u) {
-    return fmt::format("{} {:.6g}, not {:.6g} ({:.2g} u)", name, published, again,
-                       distance_u(difference, u, u_again));
+  if (const double far = distance_u(difference, published.u, again.u); far > agreement_u) {
+    return fmt::format("{} {:.6g}, not {:.6g} ({:.2g} u)", name, published.value, again.value, far);
   }
-  return !with_u || is_same_u(u, u_again)
+  return !with_u || is_same_u(published.u, again.u)
              ? ""
-             : fmt::format("u of {} {:.3g}, not {:.3g}", name, u, u_again);
+             : fmt::format("u of {} {:.3g}, not {:.3g}", name, published.u, again.u);
 }
 
 std::string value_difference(const StepResult& published, const StepResult& again, bool with_u) {
-  std::string difference = number_difference("|H|", published.magnitude, again.magnitude,
-                                             published.magnitude - again.magnitude,
-                                             published.u_magnitude, again.u_magnitude, with_u);
+  std::string difference = number_difference("|H|", {published.magnitude, published.u_magnitude},
+                                             {again.magnitude, again.u_magnitude},
+                                             published.magnitude - again.magnitude, with_u);
   if (difference.empty()) {
-    difference = number_difference("phase", published.phase_rad, again.phase_rad,
-                                   phase_difference(published.phase_rad, again.phase_rad),
-                                   published.u_phase_rad, again.u_phase_rad, with_u);
+    difference = number_difference("phase", {published.phase_rad, published.u_phase_rad},
+                                   {again.phase_rad, again.u_phase_rad},
+                                   phase_difference(published.phase_rad, again.phase_rad), with_u);
   }
   return difference.empty() ? ""
                             : fmt::format("{} at {} Hz (step {}): {}", published.channel,
@@ -86,12 +90,12 @@ std::string point_difference(const FrequencyPoint& published, const FrequencyPoi
   const auto& a = published.mean;
   const auto& b = again.mean;
   std::string difference =
-      number_difference("mean |H|", a.magnitude, b.magnitude, a.magnitude - b.magnitude,
-                        a.u_magnitude, b.u_magnitude, true);
+      number_difference("mean |H|", {a.magnitude, a.u_magnitude}, {b.magnitude, b.u_magnitude},
+                        a.magnitude - b.magnitude, true);
   if (difference.empty()) {
-    difference = number_difference("mean phase", a.phase_rad, b.phase_rad,
-                                   phase_difference(a.phase_rad, b.phase_rad), a.u_phase_rad,
-                                   b.u_phase_rad, true);
+    difference =
+        number_difference("mean phase", {a.phase_rad, a.u_phase_rad}, {b.phase_rad, b.u_phase_rad},
+                          phase_difference(a.phase_rad, b.phase_rad), true);
   }
   return difference;
 }
@@ -105,8 +109,8 @@ std::string delay_difference(const TransferFunction& published, const TransferFu
   }
   const auto& a = *published.group_delay;
   const auto& b = *again.group_delay;
-  return number_difference("group delay", a.delay_s, b.delay_s, a.delay_s - b.delay_s,
-                           a.u_delay_s(), b.u_delay_s(), true);
+  return number_difference("group delay", {a.delay_s, a.u_delay_s()}, {b.delay_s, b.u_delay_s()},
+                           a.delay_s - b.delay_s, true);
 }
 
 } // namespace

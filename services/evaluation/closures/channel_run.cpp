@@ -83,15 +83,16 @@ Closure not_possible(ClosureKind kind, std::string subject, std::string why) {
   return {.kind = kind, .subject = std::move(subject), .sentence = std::move(why)};
 }
 
-Closure judged(ClosureKind kind, std::string subject, double value, double u, double limit,
-               std::string unit, std::string sentence) {
+Closure judged(ClosureKind kind, std::string subject, const Comparison& comparison,
+               std::string sentence) {
+  const auto& [value, u, limit, unit] = comparison;
   return {.kind = kind,
           .subject = std::move(subject),
           .verdict = std::abs(value) <= limit ? Verdict::closes : Verdict::open,
           .value = value,
           .u = u,
           .limit = limit,
-          .unit = std::move(unit),
+          .unit = unit,
           .sentence = std::move(sentence)};
 }
 

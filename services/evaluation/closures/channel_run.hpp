@@ -56,8 +56,14 @@ struct PointRepetitions { // of one frequency and level
 [[nodiscard]] analysis::Repetition repetition_of(const StepResult& result);
 
 [[nodiscard]] Closure not_possible(ClosureKind kind, std::string subject, std::string why);
-// closes where |value| <= limit.
-[[nodiscard]] Closure judged(ClosureKind kind, std::string subject, double value, double u,
-                             double limit, std::string unit, std::string sentence);
+
+struct Comparison {
+  double value = 0.0;
+  double u = 0.0;
+  double limit = 0.0; // closes where |value| is not above it
+  std::string unit;
+};
+[[nodiscard]] Closure judged(ClosureKind kind, std::string subject, const Comparison& comparison,
+                             std::string sentence);
 
 } // namespace dyncal::inline evaluation

@@ -61,7 +61,7 @@ Closure rate(const std::string& clocks, const std::vector<Ratio>& ratios, double
   const double limit = tolerance_rel + limit_by_chance(1) * u;
   const bool fits = std::abs(mean) <= limit;
   return judged(
-      ClosureKind::clock_rate, clocks, mean, u, limit, "1",
+      ClosureKind::clock_rate, clocks, {mean, u, limit, "1"},
       fmt::format("{}: the clocks differ by {:.4g} ppm{}", clocks, 1e6 * mean,
                   fits ? ""
                        : fmt::format(", more than crystals do ({:.4g} ppm): a rate is set wrong, "
@@ -88,7 +88,7 @@ Closure in_each_step(const ChannelRun& run, const std::string& clocks,
     const double off = ratios[i].rel - mean_of(others);
     if (!worst || std::abs(off) / limit > std::abs(worst->value) / worst->limit) {
       const StepResult& step = *ratios[i].step;
-      worst = judged(ClosureKind::clock_ratio, clocks, off, u, limit, "1",
+      worst = judged(ClosureKind::clock_ratio, clocks, {off, u, limit, "1"},
                      fmt::format("{}: of all steps that at {} (repetition {}) is off most, by "
                                  "{:.3g} ppm",
                                  clocks, run.place_of(step), step.repetition, 1e6 * off));
@@ -113,7 +113,7 @@ Closure asked_frequency(const ChannelRun& run) {
     const double limit =
         2.0 * run.recipe.clock_tolerance_rel + limit_by_chance(run.results.size()) * u;
     if (!worst || std::abs(off) / limit > std::abs(worst->value) / worst->limit) {
-      worst = judged(ClosureKind::excitation_frequency, run.place_of(*result), off, u, limit, "1",
+      worst = judged(ClosureKind::excitation_frequency, run.place_of(*result), {off, u, limit, "1"},
                      fmt::format("the excitation at {} is off most, by {:.4g} ppm",
                                  run.place_of(*result), 1e6 * off));
     }
@@ -136,7 +136,7 @@ Closure own_oscillator(const ChannelRun& run) {
   const double u = last.series->u_sample_rate_hz / run.nominal_rate_hz;
   const double limit = own_oscillator_rel + limit_by_chance(1) * u;
   const bool fits = std::abs(off) <= limit;
-  return judged(ClosureKind::clock_rate, source, off, u, limit, "1",
+  return judged(ClosureKind::clock_rate, source, {off, u, limit, "1"},
                 fmt::format("{} samples {:.4g} % faster than it states{}", source, 1e2 * off,
                             fits ? ""
                                  : ", more than oscillators of sensors do: look at the rate that "
@@ -186,7 +186,7 @@ Closure clocks_of_channels(const ChannelRun& one, const ChannelRun& other) {
                      a->series->sample_rate_hz;
     const double limit = limit_by_chance(one.results.size()) * u;
     if (!worst || std::abs(off) * worst->limit > std::abs(worst->value) * limit) {
-      worst = judged(kind, subject, off, u, limit, "1",
+      worst = judged(kind, subject, {off, u, limit, "1"},
                      fmt::format("{}: of all steps their rates differ most at {}, by {:.3g} ppm",
                                  subject, one.place_of(*a), 1e6 * off));
     }

@@ -37,7 +37,7 @@ Closure line(const ChannelRun& run, const analysis::GroupDelay& delay) {
   const double by_chance = std::sqrt(chi_squared_by_chance(1, delay.degrees_of_freedom));
   const double limit = std::max(most_beside, by_chance);
   return judged(
-      ClosureKind::delay_fit, "", beside, 0.0, limit, "1",
+      ClosureKind::delay_fit, "", {beside, 0.0, limit, "1"},
       fmt::format("the phases lie {:.3g} of their u beside a line with the delay {:.6g} "
                   "ms (chi-squared {:.4g} of {:.0f}){}",
                   beside, 1e3 * delay.delay_s, delay.chi_squared, delay.degrees_of_freedom,
@@ -55,7 +55,7 @@ Closure alternatives(const analysis::GroupDelay& delay) {
         return std::abs(a - delay.delay_s) < std::abs(b - delay.delay_s);
       });
   if (nearest == delay.alternatives_s.end()) {
-    return judged(kind, "", 0.0, 0.0, 0.0, "1",
+    return judged(kind, "", {0.0, 0.0, 0.0, "1"},
                   "no other delay that a sensor may have fits as well");
   }
   return not_possible(
@@ -88,7 +88,7 @@ Closure at_zero(const ChannelRun& run, const analysis::GroupDelay& delay, bool i
   }
   const double off = from_expected(run.recipe.dut_phase, delay.intercept_rad);
   const double limit = limit_by_chance(1) * delay.u_intercept_rad();
-  return judged(kind, "", off, delay.u_intercept_rad(), limit, "rad",
+  return judged(kind, "", {off, delay.u_intercept_rad(), limit, "rad"},
                 fmt::format("towards 0 Hz the phase tends to {:.4g} degrees (u {:.2g}){}",
                             degrees_of(delay.intercept_rad), degrees_of(delay.u_intercept_rad()),
                             std::abs(off) > limit
@@ -162,7 +162,7 @@ Closure delays_of_channels(const ChannelRun& one, const ChannelRun& other) {
   }
   const double later_s = -sum / weights, u_s = 1.0 / std::sqrt(weights);
   const double limit = half_interval_s(one) + limit_by_chance(1) * u_s;
-  return judged(kind, subject, later_s, u_s, limit, "s",
+  return judged(kind, subject, {later_s, u_s, limit, "s"},
                 fmt::format("{} is {:.4g} us later than {} (u {:.2g} us){}", other.function.channel,
                             1e6 * later_s, one.function.channel, 1e6 * u_s,
                             std::abs(later_s) > limit

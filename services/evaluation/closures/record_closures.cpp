@@ -29,8 +29,8 @@ Closure level(const ChannelRun& run) {
     const double measured_m_s2 = result->fits.front().fit.amplitude();
     const double off = measured_m_s2 / result->level_m_s2 - 1.0;
     if (!worst || std::abs(off) > std::abs(worst->value)) {
-      worst = judged(ClosureKind::level, run.place_of(*result), off, 0.0,
-                     run.recipe.level_deviation_rel, "1",
+      worst = judged(ClosureKind::level, run.place_of(*result),
+                     {off, 0.0, run.recipe.level_deviation_rel, "1"},
                      fmt::format("at {} (repetition {}) the level is off most: {:.4g} m/s^2 in "
                                  "place of {:.4g} m/s^2",
                                  run.place_of(*result), result->repetition, measured_m_s2,
@@ -98,7 +98,7 @@ Closure counted(const ChannelRun& run, const std::string& source) {
       ends_samples, usual * limit_by_chance(counts.size(), static_cast<double>(counts.size() - 1)));
   const bool fits = std::abs(difference) <= limit;
   return judged(
-      ClosureKind::samples_counted, source, difference, 0.0, limit, "1",
+      ClosureKind::samples_counted, source, {difference, 0.0, limit, "1"},
       fmt::format("{}: at {} Hz (repetition {}) samples evaluated and lost are {:.1f} {} than the "
                   "time takes at the run's rate{}",
                   source, step.step->frequency_text_hz, step.step->repetition, std::abs(difference),

@@ -153,7 +153,7 @@ bool add_mounting_that_is_off(const ChannelRun& run, const Mountings& mountings,
   }
   result.closures.push_back(
       judged(ClosureKind::repetitions, fmt::format("repetition {}", repetition),
-             mounting.magnitude_log, mounting.u_magnitude_rel, limit, "1",
+             {mounting.magnitude_log, mounting.u_magnitude_rel, limit, "1"},
              fmt::format("all of repetition {} has {:.4g} times the magnitude of the others: look "
                          "at how the sensor was mounted, at ranges and supplies, and measure it "
                          "again",
@@ -188,8 +188,8 @@ void add_agreement(const ChannelRun& run, const Mountings& mountings,
     return;
   }
   result.closures.push_back(
-      judged(ClosureKind::repetitions, run.place_of(*worst->point->results.front()), largest, 1.0,
-             limit, "1",
+      judged(ClosureKind::repetitions, run.place_of(*worst->point->results.front()),
+             {largest, 1.0, limit, "1"},
              fmt::format("{}{}", what_is_off(run, *worst),
                          largest > limit
                              ? fmt::format(", {:.3g} times what repetitions usually differ by: "
@@ -249,8 +249,8 @@ Closure scatter(const ChannelRun& run, const std::vector<PointRepetitions>& poin
   const Excess& worse = by_phase ? phase : magnitude;
   const double limit = std::sqrt(chi_squared_by_chance(2, worse.freedom));
   const double value = of(worse, worse.chi_squared);
-  return judged(ClosureKind::repetition_scatter, by_phase ? "phase" : "magnitude", value, 0.0,
-                limit, "1",
+  return judged(ClosureKind::repetition_scatter, by_phase ? "phase" : "magnitude",
+                {value, 0.0, limit, "1"},
                 fmt::format("repetitions scatter {:.3g} times what single results state, and "
                             "{:.3g} times what the u of their means has{}",
                             of(worse, worse.stated), value,
@@ -282,7 +282,7 @@ Closure first_again(const ChannelRun& run, const Mountings& mountings,
   const double value = by_phase ? d.imag() : d.real();
   const double limit = chance_limit * u + s.beyond;
   return judged(
-      ClosureKind::first_repeated, run.place_of(first), value, u, limit, by_phase ? "rad" : "1",
+      ClosureKind::first_repeated, run.place_of(first), {value, u, limit, by_phase ? "rad" : "1"},
       fmt::format("from the first step to the last, {} Hz both, the {} changed by {:.3g}{}",
                   first.frequency_text_hz, by_phase ? "phase in rad" : "magnitude's part", value,
                   std::abs(value) > limit ? ": the sensor, its mounting or the reference drifts"
