@@ -30,7 +30,7 @@ bool leads(const Run& run, const Run& other) {
   return run.place > other.place;
 }
 
-void worsen_by_run(const Run& run, bus::Clock::Instant now, Condition& condition) {
+void raise_severity_by_run(const Run& run, bus::Clock::Instant now, Condition& condition) {
   if (run.is_left_alone(now)) {
     const std::string who = run.plan && !run.plan->conductor.empty()
                                 ? "the conductor " + run.plan->conductor
@@ -61,7 +61,8 @@ void worsen_by_run(const Run& run, bus::Clock::Instant now, Condition& condition
   }
 }
 
-void worsen_by_recorder(const Service& recorder, bus::Clock::Instant now, Condition& condition) {
+void raise_severity_by_recorder(const Service& recorder, bus::Clock::Instant now,
+                                Condition& condition) {
   if (now - recorder.heard > silence_limit) {
     return; // it ended with its run: whether it should have is not known here
   }
@@ -74,7 +75,7 @@ void worsen_by_recorder(const Service& recorder, bus::Clock::Instant now, Condit
   }
 }
 
-void worsen_by_guard(const Service& guard, bus::Clock::Instant now, Condition& condition) {
+void raise_severity_by_guard(const Service& guard, bus::Clock::Instant now, Condition& condition) {
   if (guard.health == Health::failed && now - guard.heard <= silence_limit) {
     condition.raise_severity(Severity::error, "guard: " + guard.message);
   }
@@ -165,14 +166,14 @@ Condition condition_of(const Bench& bench, bus::Clock::Instant now) {
     condition.raise_severity(of_source.severity, std::move(of_source.what));
   }
   if (const Run* run = bench.current_run()) {
-    worsen_by_run(*run, now, condition);
+    raise_severity_by_run(*run, now, condition);
   }
   if (const Service* recorder = bench.recorder()) {
-    worsen_by_recorder(*recorder, now, condition);
+    raise_severity_by_recorder(*recorder, now, condition);
   }
   for (const auto& [name, service] : bench.services) {
     if (service.is_guard()) {
-      worsen_by_guard(service, now, condition);
+      raise_severity_by_guard(service, now, condition);
     }
     if (bench.is_silent(service, now)) {
       condition.raise_severity(Severity::stale, fmt::format("{} has not been heard for {} s", name,

@@ -93,13 +93,13 @@ std::optional<std::string> GuardWatch::notice(Instant now) {
     return std::nullopt;
   }
   std::string sentence = lack(now);
-  if (sentence == told_) {
+  if (sentence == last_notice_) {
     return std::nullopt;
   }
-  told_ = std::move(sentence);
-  return told_.empty()
+  last_notice_ = std::move(sentence);
+  return last_notice_.empty()
              ? fmt::format("a dyncal-guard watches over the exciter of bench '{}' now", bench_)
-             : told_;
+             : last_notice_;
 }
 
 } // namespace dyncal::inline run

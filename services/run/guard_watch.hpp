@@ -59,7 +59,7 @@ private:
   std::string generator_;
   Instant since_;
   std::map<std::string, Guard> guards_; // by service
-  std::string told_;                    // the lack that was told last
+  std::string last_notice_;             // the lack that was told last
 };
 
 } // namespace dyncal::inline run

@@ -26,7 +26,8 @@ public:
   [[nodiscard]] static Expected<OutputGuard> start(const std::string& generator_address);
   // The output has confirmed that it is off: the guard ends.
   void dismiss();
-  ~OutputGuard() = default; // the pipe ends: without a farewell the guard sets to work
+  // Closes the pipe: unless dismissed, the guard switches the output off now.
+  ~OutputGuard() = default;
   OutputGuard(OutputGuard&&) noexcept = default;
   OutputGuard& operator=(OutputGuard&&) = delete;
   OutputGuard(const OutputGuard&) = delete;

@@ -113,7 +113,7 @@ Expected<RunOutcome> RunController::excite_and_collect(const std::stop_token& st
   }
   if (sequence_ && sequence_->output_may_be_on()) {
     outcome_.output_may_be_on = !sequence_->switch_off().value_or(false);
-    outcome_.output_is_guarded = bench_.generator.driver == GeneratorDriver::scpi;
+    outcome_.output_is_guarded = is_instrument(bench_.generator.driver);
   }
   outcome_.interrupted = outcome_.interrupted || stop.stop_requested();
   outcome_.ended_utc_ns = clock_.utc_now_ns();
@@ -196,7 +196,7 @@ RunController::open(const std::vector<analysis::AdcCalibrationPoint>& adc_calibr
   add_adc_file(adc_file_of(bench_), measurement);
   measurement.conductor(fmt::format("{}:{}", bus::host_name(), getpid()));
   outcome_ = outcome_of(recipe);
-  const bool is_guarded = bench_.generator.driver == GeneratorDriver::scpi;
+  const bool is_guarded = is_instrument(bench_.generator.driver);
   DYNCAL_TRY(watch_, RunWatch::open(environment_.participant, clock_, std::move(measurement),
                                     is_guarded ? bench_.generator.address : "", wake_up_, outcome_,
                                     show_progress_));

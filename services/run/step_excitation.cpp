@@ -106,7 +106,7 @@ void StepExcitation::end() {
 
 Error StepExcitation::reported(const drivers::Error& error) {
   using drivers::ErrorCode;
-  if (bench_.generator.driver != GeneratorDriver::scpi) {
+  if (!is_instrument(bench_.generator.driver)) {
     return device_error(error);
   }
   generator_away_ = generator_away_ || error.code == ErrorCode::timeout ||
@@ -158,7 +158,7 @@ Expected<bool> StepExcitation::switch_off() {
   const auto off =
       generator().set_output(false).and_then([&] { return generator().wait_for_effect(0ms); });
   if (!off) {
-    generator_away_ = bench_.generator.driver == GeneratorDriver::scpi;
+    generator_away_ = is_instrument(bench_.generator.driver);
     return fail(reported(off.error()));
   }
   output_may_be_on_ = output_may_be_on_ && !*off;

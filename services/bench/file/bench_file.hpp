@@ -51,6 +51,19 @@ struct ExcitationSettings {
 
 enum class GeneratorDriver { none, by_hand, scpi };
 
+// A program sets it and can switch it off, at an address of the network: what is asked of runs,
+// guards and checks.
+[[nodiscard]] constexpr bool is_instrument(GeneratorDriver driver) {
+  switch (driver) {
+  case GeneratorDriver::none:
+  case GeneratorDriver::by_hand:
+    return false;
+  case GeneratorDriver::scpi:
+    break;
+  }
+  return true;
+}
+
 struct GeneratorSettings {
   GeneratorDriver driver = GeneratorDriver::none;
   std::string address;

@@ -25,8 +25,8 @@ GeneratorSettings read_generator(TomlTable table, const ExcitationSettings& exci
                  "is missing: the level at the exciter in m/s^2 for one volt (amplitudes) of the "
                  "generator, which a measurement with a small voltage shows");
   }
-  generator.address = generator.driver == GeneratorDriver::scpi ? table.required_text("address")
-                                                                : table.text("address");
+  generator.address =
+      is_instrument(generator.driver) ? table.required_text("address") : table.text("address");
   if (generator.level_per_volt <= 0.0) {
     table.refuse("level_per_volt", "must be positive, in m/s^2 per V");
   }
@@ -39,7 +39,7 @@ GeneratorSettings read_generator(TomlTable table, const ExcitationSettings& exci
   read_limit("level_tolerance_rel", "parts of the level", generator.level_tolerance_rel);
   read_limit("maximum_voltage_v", "V, zero to peak", generator.maximum_voltage_v);
   read_limit("maximum_level_m_s2", "m/s^2", generator.maximum_level_m_s2);
-  if (generator.level_tolerance_rel && generator.driver != GeneratorDriver::scpi) {
+  if (generator.level_tolerance_rel && !is_instrument(generator.driver)) {
     table.refuse(
         "level_tolerance_rel",
         "needs driver = \"scpi\": a level is only brought to its value in time by an instrument");

@@ -85,7 +85,7 @@ void check_addresses(std::span<const BenchView> views, Findings& findings) {
   Claims instruments("an instrument serves one program; give this one its own address");
   for (const BenchView& view : views) {
     const std::string& generator = view.bench.generator.address;
-    if (view.bench.generator.driver == GeneratorDriver::scpi && !generator.empty()) {
+    if (is_instrument(view.bench.generator.driver) && !generator.empty()) {
       const KeyPath key{"generator", "address"};
       check_address(view, key, generator, findings);
       instruments.add(one_spelling(generator),

@@ -69,7 +69,7 @@ void check_limits(const BenchView& view, const PlannedLevel& planned, Findings& 
 
 void check_missing_limits(const BenchView& view, Findings& findings) {
   const GeneratorSettings& generator = view.bench.generator;
-  if (generator.driver != GeneratorDriver::scpi) {
+  if (!is_instrument(generator.driver)) {
     return;
   }
   std::string missing;

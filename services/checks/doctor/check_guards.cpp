@@ -17,7 +17,7 @@ Finding check_guard(const std::string& bench, const network::Service& guard) {
 }
 
 std::optional<Finding> check_against(const BenchFile& bench, const LaboratoryView& view) {
-  if (bench.generator.driver != GeneratorDriver::scpi) {
+  if (!is_instrument(bench.generator.driver)) {
     return std::nullopt;
   }
   std::string other_address;

@@ -49,7 +49,7 @@ Closure level(const ChannelRun& run) {
 struct Counted {
   const StepResult* step = nullptr;
   double samples = 0.0;  // from the first to the last one
-  double left_out = 0.0; // of them; or before the first or behind the last, nobody knows
+  double left_out = 0.0; // of them, or before the first or behind the last
   double seconds = 0.0;
 
   // Samples that nothing accounts for; < 0: too few.

@@ -10,8 +10,8 @@
 // other runs, is waited for up to `Arming::present_limit`. A live source that sent nothing for
 // `silence_limit`, or has ended, makes it WAITING for up to `patience`, then FAILED. Once the
 // excitation is over and nothing was published for `quiet_limit`, or nothing was heard of the run
-// for `runner_limit`, it ends with what there is. Time in which this process did not work itself
-// (stopped, or without the processor) counts for nobody's silence.
+// for `runner_limit`, it finishes with the results so far. Time in which this process did not work
+// itself (stopped, or without the processor) counts for nobody's silence.
 //
 // A session that begins in the middle of its run (the service was started late, or another one has
 // died) asks every source for what it has sent since its answer, and gives the results that the

@@ -94,7 +94,7 @@ void SourceStreams::take_description(Stream& stream, const wire::SourceDescripti
   replace_unfit(stream);
 }
 
-// Who comes late is sent the samples of a session whose description the source has replaced.
+// A late joiner is sent the samples of a session whose description the source has replaced.
 bool SourceStreams::is_described(const Stream& stream, std::uint64_t session) const {
   return stream.described.contains(session) || (begin_ == Begin::behind && stream.description);
 }

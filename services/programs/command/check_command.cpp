@@ -37,7 +37,7 @@ void add_check(CLI::App& command, CheckOptions& check) {
 // One of no known family may keep what another program left in it without a word.
 void ask_generator(const bench_check::BenchView& view, Findings& findings) {
   const GeneratorSettings& generator = view.bench.generator;
-  if (generator.driver != GeneratorDriver::scpi || view.refused("generator.address")) {
+  if (!is_instrument(generator.driver) || view.refused("generator.address")) {
     return;
   }
   const auto identity = drivers::generator::read_identity(generator.address);

@@ -9,9 +9,9 @@ int main(int argc, char** argv) { // NOLINT(bugprone-exception-escape): ends the
   using namespace dyncal;
   CLI::App app{"Dynamic calibration of mechanical sensors with digital output, carried by DDS.",
                "dyncal"};
-  app.footer(
-      "Exit status: 0 success, 1 failure, 2 wrong command line, 3 problems found by check, doctor "
-      "or recording check, 130 interrupted.");
+  app.footer("Exit status: 0 success, 1 failure, 2 wrong command line, 3 problems found by check, "
+             "compare, "
+             "doctor or recording check, 130 interrupted.");
   app.set_version_flag("--version", build_description());
   app.require_subcommand(1);
   Command::Action chosen;

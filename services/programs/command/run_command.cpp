@@ -190,7 +190,7 @@ void take_words_of_guards(bus::Reader<wire::ServiceStatus>& statuses, const Benc
   GuardWatch guards(bench.bench, bench.generator.address, now);
   statuses.take([&](const wire::ServiceStatus& status) { guards.take(status, now); });
   const std::string failure = guards.failure(now);
-  if (bench.generator.driver == GeneratorDriver::scpi && !failure.empty()) {
+  if (is_instrument(bench.generator.driver) && !failure.empty()) {
     outcome.output_may_be_on = true;
     outcome.problem += (outcome.problem.empty() ? "" : "; ") + one_line(failure);
   }

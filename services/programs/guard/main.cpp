@@ -44,7 +44,7 @@ Expected<void> serve(const std::vector<BenchFile>& benches, Daemon& daemon) {
   const std::stop_token stop = daemon.stop();
   std::vector<std::unique_ptr<ExciterGuard>> guards;
   for (const BenchFile& bench : benches) {
-    if (bench.generator.driver != GeneratorDriver::scpi) {
+    if (!is_instrument(bench.generator.driver)) {
       return fail(ErrorCode::bad_argument,
                   "bench '" + bench.bench +
                       "' has no generator that a program can switch off ([generator] driver): "

@@ -230,6 +230,24 @@ void draw_legend_sample(Svg& svg, const LegendEntry& entry, double x, double y) 
              {.colour = entry.look.colour, .width = 1.5});
 }
 
+// In rows below `above`. Returns the base line of the last one.
+double draw_legend(Svg& svg, const std::vector<LegendEntry>& entries, const Pixel& above,
+                   double right) {
+  double x = above.x;
+  double y = above.y + (entries.empty() ? 0 : 22);
+  for (const auto& entry : entries) {
+    const double entry_width = 30 + text_width(entry.label, 12) + 14;
+    if (x > above.x && x + entry_width > right) {
+      x = above.x;
+      y += 18;
+    }
+    draw_legend_sample(svg, entry, x, y - 4);
+    svg.text({x + 30, y}, entry.label, {.size = 12});
+    x += entry_width;
+  }
+  return y;
+}
+
 } // namespace
 
 Pixel Axes::pixel(double x_value, double y_value) const {
@@ -288,22 +306,7 @@ double draw_header(Svg& svg, const std::string& title, const std::string& subtit
     y += 20;
     svg.text({left, y}, subtitle, {.size = fitting(subtitle, 12), .colour = "#555555"});
   }
-  const auto entries = legend_of(panels);
-  double x = left;
-  if (!entries.empty()) {
-    y += 22;
-  }
-  for (const auto& entry : entries) {
-    const double entry_width = 30 + text_width(entry.label, 12) + 14;
-    if (x > left && x + entry_width > right) {
-      x = left;
-      y += 18;
-    }
-    draw_legend_sample(svg, entry, x, y - 4);
-    svg.text({x + 30, y}, entry.label, {.size = 12});
-    x += entry_width;
-  }
-  return y + 12;
+  return draw_legend(svg, legend_of(panels), {left, y}, right) + 12;
 }
 
 std::string series_colour(std::size_t index) {

@@ -170,7 +170,7 @@ std::string csv_of(const TransferFunctionData& data) {
   }
   csv += csv_comment("phase_rad of the means is continuous over frequency, of repetitions in (-pi, "
                      "pi]");
-  for (const std::string& line : data.legend) {
+  for (const std::string& line : data.flag_sentences) {
     csv += csv_comment("flag " + line);
   }
   csv += csv_comment("_text: as page, report and certificate show it: of repetitions rounded by u, "
@@ -286,7 +286,7 @@ const ValueOverFrequency* mean_of(const ValueOverFrequency& repetition,
 Figure transfer_function_figure(const TransferFunctionData& data, const std::string& name) {
   Picture picture{.title = {data.title, data.subtitle},
                   .panels = {quantity_panel(data, magnitude), quantity_panel(data, phase)},
-                  .below = data.legend,
+                  .below = data.flag_sentences,
                   .panel_height = panel_height};
   Panel& magnitudes = picture.panels.front();
   magnitudes.y_label =

@@ -5,7 +5,7 @@
 // Where a frequency was excited at several levels, every level has markers of its own and a line of
 // its means, and the legend names it.
 //
-// Means with a flag have a ring around them, and the legend below the panels explains each flag.
+// Means with a flag have a ring around them, and sentences below the panels explain each flag.
 // Points of repetitions carry their step.
 //
 // Phase is lead in radians (ISO 2041): a delay has negative phase and falls with frequency.
@@ -67,7 +67,7 @@ struct TransferFunctionData {
   std::vector<RepetitionPoint> repetitions{};
   std::vector<ValueOverFrequency> mean{}; // unwrapped phase
   std::optional<analysis::GroupDelay> group_delay{};
-  std::vector<std::string> legend{}; // one sentence for each flag, below the panels
+  std::vector<std::string> flag_sentences{}; // below the panels
   ErrorBars error_bars = ErrorBars::standard;
   // The run lasts: the means are plain ones of what there is, without uncertainty, and the bars are
   // those of the repetitions.

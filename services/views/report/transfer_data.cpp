@@ -61,7 +61,7 @@ figures::TransferFunctionData common_data(const RunOutcome& outcome,
     data.repetitions.push_back(repetition_of(*result));
   }
   for (const FlagMeaning& meaning : flag_legend(flags_of(outcome, function))) {
-    data.legend.push_back(legend_line(meaning));
+    data.flag_sentences.push_back(legend_line(meaning));
   }
   return data;
 }

@@ -197,7 +197,8 @@ TEST(TransferFunctionFigure, RingsMeansWithAFlagAndExplainsThemBelowThePanels) {
   EXPECT_THAT(texts_of(without.svg()), Not(Contains("flagged, see below")));
   data.mean[1].flags = "samples_lost";
   data.repetitions[4].point.flags = "samples_lost";
-  data.legend = {"samples_lost (dau: samples lost): " + std::string(200, 'a') + " and more"};
+  data.flag_sentences = {"samples_lost (dau: samples lost): " + std::string(200, 'a') +
+                         " and more"};
   const auto figure = transfer_function_figure(data, "tf");
   EXPECT_EQ(problem_of(figure.svg()), "");
   EXPECT_THAT(texts_of(figure.svg()), Contains("flagged, see below"));

@@ -55,8 +55,8 @@ TEST(TransferDataSoFar, AveragesValidRepetitionsOfAFrequencyInOneTurn) {
   EXPECT_EQ(data.mean[1].value.magnitude, 2.0);
   EXPECT_EQ(data.mean[1].flags, "");
   EXPECT_EQ(data.mean[0].expanded_magnitude, 0.0);
-  ASSERT_EQ(data.legend.size(), 1U);
-  EXPECT_EQ(data.legend[0].find("samples_lost (dau: samples lost)"), 0U);
+  ASSERT_EQ(data.flag_sentences.size(), 1U);
+  EXPECT_EQ(data.flag_sentences[0].find("samples_lost (dau: samples lost)"), 0U);
 }
 
 TEST(TransferDataSoFar, GoesOnInTheTurnOfTheFrequencyBefore) {
@@ -97,7 +97,7 @@ TEST(TransferData, HasTheMeansOfTheFunctionWithUAndItsExpandedValue) {
             magnitude_uncertainty(outcome.transfer_functions[0].points[0].mean).expanded);
   ASSERT_EQ(data.repetitions.size(), 1U); // the other one has no value
   EXPECT_EQ(data.repetitions[0].step, 1U);
-  EXPECT_EQ(data.legend.size(), 2U);
+  EXPECT_EQ(data.flag_sentences.size(), 2U);
   EXPECT_TRUE(data.group_delay);
 }
 
