@@ -116,8 +116,13 @@ foreach(door method.hpp sine.hpp)
 endforeach()
 function(dyncal_library target name)
   add_library(dyncal::${name} ALIAS ${target})
-  target_compile_features(${target} PUBLIC cxx_std_20)
-  target_include_directories(${target} PUBLIC
+  get_target_property(type ${target} TYPE)
+  set(scope PUBLIC)
+  if(type STREQUAL INTERFACE_LIBRARY)
+    set(scope INTERFACE)
+  endif()
+  target_compile_features(${target} ${scope} cxx_std_20)
+  target_include_directories(${target} ${scope}
     $<BUILD_INTERFACE:${dyncal_root}>
     $<BUILD_INTERFACE:${dyncal_include}>
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)

@@ -89,7 +89,6 @@ def check_files(options, prefix):
         "include/dyncal/services/bus/bus.hpp",
         "include/dyncal/idl/bounded_string.hpp",
         "include/dyncal/idl/dyncal.h",
-        "share/dyncal/idl/COPYRIGHT",
         "share/dyncal/idl/dyncal.idl",
         "share/doc/dyncal/LICENSE",
         "share/doc/dyncal/example-lab/documents/laboratory.toml",

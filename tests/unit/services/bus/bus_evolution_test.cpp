@@ -19,24 +19,27 @@ struct NewerCommand : wire::Command {
 
   [[nodiscard]] std::uint32_t checksum() const { return newer_checksum; }
   void checksum(std::uint32_t value) { newer_checksum = value; }
-  static std::size_t getCdrSerializedSize(const NewerCommand& sample) {
-    return Command::getCdrSerializedSize(sample) + 8 + sizeof(double) + 4 + sample.reason.size() +
-           1 + 3 + checksum_bytes;
-  }
-  void serialize(eprosima::fastcdr::Cdr& cdr) const {
-    Command::serialize(cdr);
-    cdr << at_utc_s << reason << newer_checksum;
-  }
-  void deserialize(eprosima::fastcdr::Cdr& cdr) {
-    Command::deserialize(cdr);
-    cdr >> at_utc_s >> reason >> newer_checksum;
+  template <class Message, class Visit>
+  static void visit_members(Message& message, Visit&& visit) {
+    Command::visit_members(message, visit);
+    visit(message.at_utc_s);
+    visit(message.reason);
+    visit(message.newer_checksum);
   }
 };
 
 // Its bytes end in the middle of a member.
 struct BrokenCommand : wire::Command {
-  void serialize(eprosima::fastcdr::Cdr& cdr) const {
-    cdr << std::string("bench") << std::string("broken") << std::uint32_t{0} << std::uint32_t{1000};
+  template <class Message, class Visit>
+  static void visit_members(Message& /*message*/, Visit&& visit) {
+    std::string bench = "bench";
+    std::string target = "broken";
+    std::uint32_t kind = 0;
+    std::uint32_t length_of_run = 1000;
+    visit(bench);
+    visit(target);
+    visit(kind);
+    visit(length_of_run);
   }
 };
 
@@ -45,15 +48,17 @@ struct ChangedCommand : wire::Command {};
 
 // Its key is longer than the contract allows.
 struct LongKeyCommand : wire::Command {
-  static std::size_t getCdrSerializedSize(const LongKeyCommand& sample) {
-    return Command::getCdrSerializedSize(sample) + 200;
-  }
-  void serialize(eprosima::fastcdr::Cdr& cdr) const {
-    cdr << std::string("b") << std::string(150, 'k') << std::uint32_t{0} << std::string("r")
-        << std::string("s");
-  }
-  void serializeKey(eprosima::fastcdr::Cdr& cdr) const {
-    cdr << std::string("b") << std::string(150, 'k');
+  template <class Message, class Visit>
+  static void visit_members(Message& /*message*/, Visit&& visit) {
+    std::string bench = "b";
+    std::string target(150, 'k');
+    std::uint32_t kind = 0;
+    std::string rest = "r";
+    visit(bench);
+    visit(target);
+    visit(kind);
+    visit(rest);
+    visit(rest);
   }
 };
 
