@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Installs what is missing of Debian 12's packages for the named purposes:
+# Installs what is missing of the packages of Debian 12 or 13 for the named purposes:
 #
-#   deploy/install-packages.sh [build] [run] [test]        (no name: build)
+#   deploy/install-packages.sh [build] [test] [package]        (no name: build)
 #
-#   build  compile dyncal
-#   run    only run programs that were built elsewhere
-#   test   what the tests need on top of `build`
+#   build    compile dyncal
+#   package  make Debian packages of it, on top of `build`
+#   test     what the tests need on top of `build`
 #
 # Looks first and calls apt-get only when something is missing; nothing that is installed is
 # upgraded or removed.
@@ -13,8 +13,9 @@ set -euo pipefail
 
 build_packages=(
   g++ cmake ninja-build ccache mold pkgconf
-  fastddsgen libfastrtps-dev libfastcdr-dev # Fast DDS and its IDL compiler, which needs Java
-  cyclonedds-dev cyclonedds-tools           # Cyclone DDS and its IDL compiler
+  python3-minimal # C++ types from the IDL
+  libfastrtps-dev # Fast DDS 2.9; on Debian 13 it brings version 3.1
+  cyclonedds-dev cyclonedds-tools
   libeigen3-dev libceres-dev
   libcli11-dev libtomlplusplus-dev libspdlog-dev libfmt-dev nlohmann-json3-dev libexpected-dev
   libprotobuf-dev protobuf-compiler libssl-dev libsndfile1-dev liblxi-dev libtirpc-dev
@@ -33,18 +34,10 @@ optional_build_packages=(
   help2man                   # manual pages
   libcpp-httplib-dev # dyncal-web
 )
-run_packages=(
-  libfastrtps2.9 libfastcdr1 libddsc0debian libceres3 libspdlog1.10 libfmt9 libtomlplusplus3
-  libssl3 libsndfile1 liblxi1 libtirpc3
-  libsystemd0 libprometheus-cpp-pull1.0 zlib1g libzstd1 liblz4-1
-  libsqlite3-0 libpqxx-6.4 libhdf5-103-1
-  libxml2 libxmlsec1 libxmlsec1-openssl
-  libcpp-httplib0.11 libjs-dygraphs # dyncal-web, and the charts of its page
-)
 test_packages=(
+  fastddsgen                                   # programs of others, made from the IDL
   libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev libtinyxml2-dev
-  clang-14 libclang-rt-14-dev                  # libFuzzer
-  clang-format-14 clang-tidy-14                # how the code is written
+  clang libclang-rt-dev                        # libFuzzer
   git python3
   nftables iproute2                            # packet loss between network namespaces
   faketime                                     # clocks of hosts that are wrong
@@ -52,13 +45,19 @@ test_packages=(
   python3-canmatrix                            # independent DBC decoder
   python3-jsonschema                           # results against their schema
   python3-h5py                                 # exports, read by others
-  postgresql-15                                # a server of the test's own, on a socket
+  postgresql                                   # a server of the test's own, on a socket
   libxml2-utils openssl                        # certificates: independent validator, keys
   man-db groff-base zsh fish                   # manual pages, completion of the command line
   weasyprint poppler-utils                     # reports as PDF, and their text
   chromium libjs-dygraphs                      # the page in a browser
   user-mode-linux busybox-static can-utils     # a kernel with CAN where this one has none
 )
+package_packages=(debhelper dpkg-dev fakeroot lintian)
+# How the code is written is looked at by one version, which Debian 12 alone has: elsewhere these
+# tests say that they are skipped.
+if grep -qsx 'VERSION_CODENAME=bookworm' /etc/os-release; then
+  test_packages+=(clang-format-14 clang-tidy-14)
+fi
 
 wanted=()
 optional=()
@@ -69,17 +68,17 @@ for purpose in "$@"; do
       wanted+=("${build_packages[@]}")
       optional+=("${optional_build_packages[@]}")
       ;;
-    run) wanted+=("${run_packages[@]}") ;;
     test) wanted+=("${test_packages[@]}") ;;
+    package) wanted+=("${package_packages[@]}") ;;
     *)
-      echo "install-packages.sh: '$purpose' is not one of build, run, test" >&2
+      echo "install-packages.sh: '$purpose' is not one of build, test, package" >&2
       exit 2
       ;;
   esac
 done
 
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
-  echo "install-packages.sh: this is not a Debian system; install by hand what these Debian 12" \
+  echo "install-packages.sh: this is not a Debian system; install by hand what these Debian" \
     "packages hold: ${wanted[*]}" >&2
   exit 1
 fi

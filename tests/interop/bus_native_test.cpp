@@ -32,7 +32,7 @@ std::vector<Native> natives() {
   std::vector<Native> programs;
 #ifdef DYNCAL_NATIVE_FAST_PEER
   programs.push_back({"fastddsgen", DYNCAL_NATIVE_FAST_PEER,
-                      "FASTRTPS_DEFAULT_PROFILES_FILE=" DYNCAL_PROFILES "/fast_dds.xml"});
+                      DYNCAL_FAST_DDS_SETTING "=" DYNCAL_PROFILES "/fast_dds.xml"});
 #endif
 #ifdef DYNCAL_NATIVE_CYCLONE_PEER
   programs.push_back({"idlc", DYNCAL_NATIVE_CYCLONE_PEER,

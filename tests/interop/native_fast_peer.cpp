@@ -17,12 +17,23 @@
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <thread>
 
+#if __has_include(<fastdds/LibrarySettings.hpp>)
+#define FAST_DDS_3
+#include "dyncalPubSubTypes.hpp"
+#else
 #include "dyncalPubSubTypes.h"
+#endif
 
 namespace {
 
 using namespace eprosima::fastdds::dds;
-using eprosima::fastrtps::types::ReturnCode_t;
+#ifdef FAST_DDS_3
+namespace rtps = eprosima::fastdds::rtps;
+constexpr ReturnCode_t ok = RETCODE_OK;
+#else
+namespace rtps = eprosima::fastrtps::rtps;
+constexpr auto ok = eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK;
+#endif
 
 template <class Thing>
 Thing* checked(Thing* thing, const char* what) {
@@ -46,17 +57,21 @@ Qos make_qos(History history) {
   qos.resource_limits().max_instances = 0;
   qos.resource_limits().max_samples_per_instance = history == History::keep_all ? 1500 : 1;
   qos.resource_limits().allocated_samples = 0;
-  qos.endpoint().history_memory_policy =
-      eprosima::fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+  qos.endpoint().history_memory_policy = rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
   qos.data_sharing().off();
+#ifdef FAST_DDS_3
+  qos.representation().m_value = {XCDR_DATA_REPRESENTATION};
+#endif
   return qos;
 }
 
 template <class PubSubType>
 Topic* make_topic(DomainParticipant* participant, const char* topic_name) {
   auto* type = new PubSubType;
+#ifndef FAST_DDS_3
   type->auto_fill_type_information(false);
   type->auto_fill_type_object(false);
+#endif
   TypeSupport support(type);
   support.register_type(participant);
   return checked(participant->create_topic(topic_name, support.get_type_name(), TOPIC_QOS_DEFAULT),
@@ -95,20 +110,26 @@ public:
     Publisher* publisher = checked(participant->create_publisher(writing), "publisher");
     auto qos = make_qos<DataWriterQos>(history);
     qos.publish_mode().kind = ASYNCHRONOUS_PUBLISH_MODE;
-    qos.reliable_writer_qos().times.heartbeatPeriod = {0, 10'000'000};
-    qos.reliable_writer_qos().times.nackResponseDelay = {0, 0};
+    auto& times = qos.reliable_writer_qos().times;
+#ifdef FAST_DDS_3
+    times.heartbeat_period = {0, 10'000'000};
+    times.nack_response_delay = {0, 0};
+#else
+    times.heartbeatPeriod = {0, 10'000'000};
+    times.nackResponseDelay = {0, 0};
+#endif
     qos.writer_data_lifecycle().autodispose_unregistered_instances = false;
     writer_ = checked(publisher->create_datawriter(topic, qos), "writer");
   }
 
   void run() {
     SampleInfo info;
-    while (reader_->take_next_sample(&sample_, &info) == ReturnCode_t::RETCODE_OK) {
+    while (reader_->take_next_sample(&sample_, &info) == ok) {
       if (!info.valid_data) {
         continue;
       }
       // It may give up before its time, so it is asked again.
-      while (!writer_->write(&sample_)) {
+      while (writer_->write(&sample_, HANDLE_NIL) != ok) {
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
       }
     }
@@ -131,6 +152,9 @@ int main(int argc, char** argv) {
   factory->load_profiles();
   DomainParticipantQos qos;
   factory->get_default_participant_qos(qos);
+#ifdef FAST_DDS_3
+  qos.properties().properties().emplace_back(parameter_policy_type_propagation, "disabled");
+#endif
   auto* participant =
       checked(factory->create_participant(static_cast<std::uint32_t>(std::atoi(argv[1])), qos),
               "participant");

@@ -30,7 +30,7 @@ const Json* member(const Json& object, const std::string& key) {
   return found == object.end() ? nullptr : &*found;
 }
 
-const Json& without_level(const Json& object, const std::string& key) {
+const Json& without_level(const Json& object, const char* key) {
   const Json* inner = member(object, key);
   return inner ? *inner : object;
 }

@@ -11,10 +11,9 @@
 #include <string>
 #include <vector>
 
-#include <toml++/impl/forward_declarations.h>
-
 #include "services/bench/file/asked_keys.hpp"
 #include "services/bench/file/bench_problem.hpp"
+#include "services/bench/file/toml_names.hpp"
 
 namespace dyncal::inline bench {
 

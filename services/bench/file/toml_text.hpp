@@ -9,9 +9,9 @@
 #include <string_view>
 
 #include <tl/expected.hpp>
-#include <toml++/impl/forward_declarations.h>
 
 #include "services/bench/file/bench_problem.hpp"
+#include "services/bench/file/toml_names.hpp"
 
 namespace dyncal::inline bench {
 

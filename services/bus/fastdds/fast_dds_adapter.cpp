@@ -1,4 +1,4 @@
-// The bus over Fast DDS 2.9. The settings differ from its defaults wherever those lose samples,
+// The bus over Fast DDS. The settings differ from its defaults wherever those lose samples,
 // wait for seconds or do not reach Cyclone DDS; a comment at each gives the reason.
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
@@ -17,6 +17,7 @@
 
 #include "services/bus/adapters.hpp"
 #include "services/bus/fastdds/fast_dds_discovery.hpp"
+#include "services/bus/fastdds/fast_dds_names.hpp"
 #include "services/bus/fastdds/fast_dds_participant_qos.hpp"
 #include "services/bus/fastdds/fast_dds_type.hpp"
 #include "services/bus/host_network.hpp"
@@ -28,11 +29,9 @@ namespace dyncal::bus {
 namespace {
 
 namespace dds = eprosima::fastdds::dds;
-namespace fastrtps = eprosima::fastrtps;
-using ReturnCode = eprosima::fastrtps::types::ReturnCode_t;
 
 template <class Rep, class Period>
-fastrtps::Duration_t duration(std::chrono::duration<Rep, Period> time) {
+fast_dds::Duration duration(std::chrono::duration<Rep, Period> time) {
   const auto seconds = std::chrono::floor<std::chrono::seconds>(time);
   const auto rest = std::chrono::duration_cast<std::chrono::nanoseconds>(time - seconds);
   return {static_cast<std::int32_t>(seconds.count()), static_cast<std::uint32_t>(rest.count())};
@@ -53,8 +52,11 @@ void set_common(const EndpointQos& wanted, Qos& qos) {
   qos.resource_limits().max_samples_per_instance = wanted.samples_per_key;
   qos.resource_limits().allocated_samples = 0;
   // The mode DYNAMIC_REUSABLE cannot deliver the end of an instance.
-  qos.endpoint().history_memory_policy = fastrtps::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+  qos.endpoint().history_memory_policy = fast_dds::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
   qos.data_sharing().off();
+#ifdef DYNCAL_FAST_DDS_3
+  qos.representation().m_value = {dds::XCDR_DATA_REPRESENTATION};
+#endif
 }
 
 dds::DataWriterQos writer_qos(const EndpointQos& wanted) {
@@ -63,9 +65,10 @@ dds::DataWriterQos writer_qos(const EndpointQos& wanted) {
   qos.reliability().max_blocking_time = duration(write_attempt);
   qos.writer_data_lifecycle().autodispose_unregistered_instances = false;
   qos.publish_mode().kind = dds::ASYNCHRONOUS_PUBLISH_MODE;
+  auto& times = qos.reliable_writer_qos().times;
   // 3 s by default: so long a lost last packet would stay unnoticed.
-  qos.reliable_writer_qos().times.heartbeatPeriod = duration(fast_dds_heartbeat);
-  qos.reliable_writer_qos().times.nackResponseDelay = duration(std::chrono::seconds(0));
+  fast_dds::heartbeat_period(times) = duration(fast_dds_heartbeat);
+  fast_dds::nack_response_delay(times) = duration(std::chrono::seconds(0));
   // With one in every packet, a Fast DDS reader asks hundreds of times a second for every sample
   // that is on the way: a link of 10 Mbit/s is then full of requests and of what they ask for.
   qos.reliable_writer_qos().disable_heartbeat_piggyback = true;
@@ -76,7 +79,8 @@ dds::DataReaderQos reader_qos(const EndpointQos& wanted) {
   dds::DataReaderQos qos;
   set_common(wanted, qos);
   // The default of 5 ms divides the rate from a Cyclone DDS writer by twenty.
-  qos.reliable_reader_qos().times.heartbeatResponseDelay = duration(std::chrono::seconds(0));
+  auto& times = qos.reliable_reader_qos().times;
+  fast_dds::heartbeat_response_delay(times) = duration(std::chrono::seconds(0));
   return qos;
 }
 
@@ -183,10 +187,10 @@ public:
     sample.encoded = message.get();
     sample.instance = instance.get();
     return write_within(limit, [&] {
-      const ReturnCode outcome = writer_->write(&sample, dds::InstanceHandle_t());
-      return outcome == ReturnCode::RETCODE_OK        ? WriteOutcome::written
-             : outcome == ReturnCode::RETCODE_TIMEOUT ? WriteOutcome::timed_out
-                                                      : WriteOutcome::failed;
+      const fast_dds::ReturnCode outcome = writer_->write(&sample, dds::InstanceHandle_t());
+      return outcome == fast_dds::ok          ? WriteOutcome::written
+             : outcome == fast_dds::timed_out ? WriteOutcome::timed_out
+                                              : WriteOutcome::failed;
     });
   }
 
@@ -197,7 +201,7 @@ public:
   }
 
   bool wait_for_acknowledgments(std::chrono::nanoseconds limit) override {
-    return writer_->wait_for_acknowledgments(duration(limit)) == ReturnCode::RETCODE_OK;
+    return writer_->wait_for_acknowledgments(duration(limit)) == fast_dds::ok;
   }
 
 private:
@@ -241,7 +245,7 @@ public:
   std::size_t take(const Consume& consume) override {
     std::size_t taken = 0;
     dds::SampleInfo info;
-    while (reader_->take_next_sample(&sample_, &info) == ReturnCode::RETCODE_OK) {
+    while (reader_->take_next_sample(&sample_, &info) == fast_dds::ok) {
       if (info.valid_data) {
         ++taken;
         consume(sample_.message, sample_.bytes);

@@ -6,7 +6,7 @@ namespace dyncal::bus {
 namespace {
 
 namespace dds = eprosima::fastdds::dds;
-namespace rtps = eprosima::fastrtps::rtps;
+namespace rtps = fast_dds::rtps;
 
 std::string prefix_of(const rtps::GUID_t& guid) {
   return hexadecimal(guid.guidPrefix.value, rtps::GuidPrefix_t::size);
@@ -16,33 +16,67 @@ std::string key_of(const rtps::GUID_t& guid) {
   return prefix_of(guid) + hexadecimal(guid.entityId.value, rtps::EntityId_t::size);
 }
 
-double seconds(const eprosima::fastrtps::Duration_t& duration) {
-  return duration.seconds == eprosima::fastrtps::c_TimeInfinite.seconds
+double seconds(const fast_dds::Duration& duration) {
+  return duration.seconds == fast_dds::infinite.seconds
              ? std::numeric_limits<double>::infinity()
              : duration.seconds + 1e-9 * duration.nanosec;
 }
 
+#ifdef DYNCAL_FAST_DDS_3
+template <class Data>
+const Data& policies_of(const Data& data) {
+  return data;
+}
+#else
+// Under the names of version 3.
+struct Policies {
+  const dds::PartitionQosPolicy& partition;
+  const dds::ReliabilityQosPolicy& reliability;
+  const dds::DurabilityQosPolicy& durability;
+  const dds::OwnershipQosPolicy& ownership;
+  const dds::DeadlineQosPolicy& deadline;
+  const dds::LatencyBudgetQosPolicy& latency_budget;
+  const dds::LivelinessQosPolicy& liveliness;
+  const dds::PresentationQosPolicy& presentation;
+  const dds::DestinationOrderQosPolicy& destination_order;
+  const dds::DataRepresentationQosPolicy& representation;
+  rtps::GUID_t guid;
+  eprosima::fastrtps::string_255 topic_name;
+  eprosima::fastrtps::string_255 type_name;
+};
+
+template <class Data>
+Policies policies_of(const Data& data) {
+  const auto& qos = data.m_qos;
+  return {qos.m_partition,        qos.m_reliability,   qos.m_durability, qos.m_ownership,
+          qos.m_deadline,         qos.m_latencyBudget, qos.m_liveliness, qos.m_presentation,
+          qos.m_destinationOrder, qos.representation,  data.guid(),      data.topicName(),
+          data.typeName()};
+}
+#endif
+
 template <class Data>
 DiscoveredEndpoint endpoint_of(const Data& data, EndpointKind kind) {
+  const auto& qos = policies_of(data);
   DiscoveredEndpoint endpoint{
-      .participant = prefix_of(data.guid()),
+      .participant = prefix_of(qos.guid),
       .kind = kind,
-      .topic = data.topicName().to_string(),
-      .type = data.typeName().to_string(),
-      .partitions = data.m_qos.m_partition.getNames(),
-      .reliable = data.m_qos.m_reliability.kind == dds::RELIABLE_RELIABILITY_QOS,
-      .transient_local = data.m_qos.m_durability.kind >= dds::TRANSIENT_LOCAL_DURABILITY_QOS,
-      .exclusive_ownership = data.m_qos.m_ownership.kind == dds::EXCLUSIVE_OWNERSHIP_QOS,
-      .deadline_s = seconds(data.m_qos.m_deadline.period),
-      .latency_budget_s = seconds(data.m_qos.m_latencyBudget.duration),
-      .liveliness = static_cast<Liveliness>(data.m_qos.m_liveliness.kind),
-      .lease_s = seconds(data.m_qos.m_liveliness.lease_duration),
-      .access_scope = static_cast<AccessScope>(data.m_qos.m_presentation.access_scope),
-      .coherent_access = data.m_qos.m_presentation.coherent_access,
-      .ordered_access = data.m_qos.m_presentation.ordered_access,
-      .destination_order = static_cast<DestinationOrder>(data.m_qos.m_destinationOrder.kind)};
-  endpoint.representations.assign(data.m_qos.representation.m_value.begin(),
-                                  data.m_qos.representation.m_value.end());
+      .topic = qos.topic_name.to_string(),
+      .type = qos.type_name.to_string(),
+      .partitions = qos.partition.getNames(),
+      .reliable = qos.reliability.kind == dds::RELIABLE_RELIABILITY_QOS,
+      .transient_local = qos.durability.kind >= dds::TRANSIENT_LOCAL_DURABILITY_QOS,
+      .exclusive_ownership = qos.ownership.kind == dds::EXCLUSIVE_OWNERSHIP_QOS,
+      .deadline_s = seconds(qos.deadline.period),
+      .latency_budget_s = seconds(qos.latency_budget.duration),
+      .liveliness = static_cast<Liveliness>(qos.liveliness.kind),
+      .lease_s = seconds(qos.liveliness.lease_duration),
+      .access_scope = static_cast<AccessScope>(qos.presentation.access_scope),
+      .coherent_access = qos.presentation.coherent_access,
+      .ordered_access = qos.presentation.ordered_access,
+      .destination_order = static_cast<DestinationOrder>(qos.destination_order.kind)};
+  endpoint.representations.assign(qos.representation.m_value.begin(),
+                                  qos.representation.m_value.end());
   if (endpoint.partitions.empty()) {
     endpoint.partitions.emplace_back();
   }
@@ -65,37 +99,92 @@ Discovery FastDdsDiscovery::discovered() const {
   return discovery;
 }
 
-void FastDdsDiscovery::on_participant_discovery(dds::DomainParticipant* /*participant*/,
+void FastDdsDiscovery::set(DiscoveredParticipant participant) {
+  const std::lock_guard lock(mutex_);
+  std::string id = participant.id;
+  participants_[std::move(id)] = std::move(participant);
+}
+
+void FastDdsDiscovery::remove_participant(const std::string& id) {
+  const std::lock_guard lock(mutex_);
+  participants_.erase(id);
+  std::erase_if(endpoints_, [&](const auto& one) { return one.second.participant == id; });
+}
+
+void FastDdsDiscovery::set(const std::string& guid, DiscoveredEndpoint endpoint) {
+  const std::lock_guard lock(mutex_);
+  endpoints_[guid] = std::move(endpoint);
+}
+
+void FastDdsDiscovery::remove_endpoint(const std::string& guid) {
+  const std::lock_guard lock(mutex_);
+  endpoints_.erase(guid);
+}
+
+#ifdef DYNCAL_FAST_DDS_3
+void FastDdsDiscovery::on_participant_discovery(VendorParticipant* /*participant*/,
+                                                rtps::ParticipantDiscoveryStatus status,
+                                                const rtps::ParticipantBuiltinTopicData& data,
+                                                bool& /*ignore*/) {
+  const std::string id = prefix_of(data.guid);
+  if (status == rtps::ParticipantDiscoveryStatus::REMOVED_PARTICIPANT ||
+      status == rtps::ParticipantDiscoveryStatus::DROPPED_PARTICIPANT) {
+    remove_participant(id);
+  } else {
+    set({id, data.participant_name.to_string(), vendor_of(id)});
+  }
+}
+
+void FastDdsDiscovery::on_data_writer_discovery(VendorParticipant* /*participant*/,
+                                                rtps::WriterDiscoveryStatus status,
+                                                const rtps::PublicationBuiltinTopicData& data,
+                                                bool& /*ignore*/) {
+  if (status == rtps::WriterDiscoveryStatus::REMOVED_WRITER) {
+    remove_endpoint(key_of(data.guid));
+  } else {
+    set(key_of(data.guid), endpoint_of(data, EndpointKind::writer));
+  }
+}
+
+void FastDdsDiscovery::on_data_reader_discovery(VendorParticipant* /*participant*/,
+                                                rtps::ReaderDiscoveryStatus status,
+                                                const rtps::SubscriptionBuiltinTopicData& data,
+                                                bool& /*ignore*/) {
+  if (status == rtps::ReaderDiscoveryStatus::REMOVED_READER) {
+    remove_endpoint(key_of(data.guid));
+  } else {
+    set(key_of(data.guid), endpoint_of(data, EndpointKind::reader));
+  }
+}
+#else
+void FastDdsDiscovery::on_participant_discovery(VendorParticipant* /*participant*/,
                                                 rtps::ParticipantDiscoveryInfo&& info) {
   const std::string id = prefix_of(info.info.m_guid);
-  const std::lock_guard lock(mutex_);
   if (info.status == rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT ||
       info.status == rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT) {
-    participants_.erase(id);
-    std::erase_if(endpoints_, [&](const auto& one) { return one.second.participant == id; });
+    remove_participant(id);
   } else {
-    participants_[id] = {id, info.info.m_participantName.to_string(), vendor_of(id)};
+    set({id, info.info.m_participantName.to_string(), vendor_of(id)});
   }
 }
 
-void FastDdsDiscovery::on_publisher_discovery(dds::DomainParticipant* /*participant*/,
+void FastDdsDiscovery::on_publisher_discovery(VendorParticipant* /*participant*/,
                                               rtps::WriterDiscoveryInfo&& info) {
-  const std::lock_guard lock(mutex_);
   if (info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER) {
-    endpoints_.erase(key_of(info.info.guid()));
+    remove_endpoint(key_of(info.info.guid()));
   } else {
-    endpoints_[key_of(info.info.guid())] = endpoint_of(info.info, EndpointKind::writer);
+    set(key_of(info.info.guid()), endpoint_of(info.info, EndpointKind::writer));
   }
 }
 
-void FastDdsDiscovery::on_subscriber_discovery(dds::DomainParticipant* /*participant*/,
+void FastDdsDiscovery::on_subscriber_discovery(VendorParticipant* /*participant*/,
                                                rtps::ReaderDiscoveryInfo&& info) {
-  const std::lock_guard lock(mutex_);
   if (info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER) {
-    endpoints_.erase(key_of(info.info.guid()));
+    remove_endpoint(key_of(info.info.guid()));
   } else {
-    endpoints_[key_of(info.info.guid())] = endpoint_of(info.info, EndpointKind::reader);
+    set(key_of(info.info.guid()), endpoint_of(info.info, EndpointKind::reader));
   }
 }
+#endif
 
 } // namespace dyncal::bus

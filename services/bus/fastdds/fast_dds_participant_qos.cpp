@@ -3,10 +3,19 @@
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/log/Log.hpp>
 #include <fastdds/dds/log/StdoutErrConsumer.hpp>
+
+#include "services/bus/fastdds/fast_dds_names.hpp"
+#ifdef DYNCAL_FAST_DDS_3
+#include <fastdds/LibrarySettings.hpp>
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.hpp>
+#include <fastdds/utils/IPLocator.hpp>
+#else
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
 #include <fastrtps/xmlparser/XMLProfileManager.h>
 
+#include "services/bus/fastdds/screen/screened_transport.hpp"
+#endif
 #include "services/bus/host_network.hpp"
 #include "services/bus/qos_profiles.hpp"
 
@@ -14,7 +23,7 @@ namespace dyncal::bus {
 namespace {
 
 namespace dds = eprosima::fastdds::dds;
-namespace rtps = eprosima::fastrtps::rtps;
+namespace rtps = fast_dds::rtps;
 
 constexpr const char* discovery_group = "239.255.0.1"; // DDSI-RTPS 9.6.1.4.1
 constexpr std::uint32_t discovery_port(int domain) {
@@ -50,9 +59,27 @@ void log_to_standard_error() {
 // Inside one process Fast DDS hands samples over directly by default, and a reader that has no room
 // then never gets them.
 void deliver_through_sockets_only() {
+#ifdef DYNCAL_FAST_DDS_3
+  eprosima::fastdds::LibrarySettings settings;
+  settings.intraprocess_delivery = eprosima::fastdds::INTRAPROCESS_OFF;
+  dds::DomainParticipantFactory::get_instance()->set_library_settings(settings);
+#else
   eprosima::fastrtps::LibrarySettingsAttributes settings;
   settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
   eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
+#endif
+}
+
+using Transport = std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface>;
+
+// What version 2.9 needs; newer ones take packets as they come.
+Transport with_screen(Transport transport, const std::shared_ptr<TransportState>& state) {
+#ifdef DYNCAL_FAST_DDS_3
+  static_cast<void>(state);
+  return transport;
+#else
+  return screened(std::move(transport), state);
+#endif
 }
 
 void set_transport(const std::string& address, const std::shared_ptr<TransportState>& state,
@@ -72,7 +99,7 @@ void set_transport(const std::string& address, const std::shared_ptr<TransportSt
   qos.transport().use_builtin_transports =
       false; // no shared memory: it throttles blocks and leaves files behind
   if (state) {
-    qos.transport().user_transports.push_back(screened(udp, state));
+    qos.transport().user_transports.push_back(with_screen(udp, state));
   } else {
     qos.transport().user_transports.push_back(udp);
   }
@@ -130,6 +157,10 @@ fast_dds_participant_qos(const ParticipantOptions& options,
   dds::DomainParticipantQos qos;
   factory->get_default_participant_qos(qos);
   qos.name(options.name);
+#ifdef DYNCAL_FAST_DDS_3
+  // Cyclone DDS refuses endpoints that carry information on their type.
+  qos.properties().properties().emplace_back(dds::parameter_policy_type_propagation, "disabled");
+#endif
   if (!(factory->get_default_participant_qos() == dds::DomainParticipantQos())) {
     if (options.warn &&
         (!options.peers.empty() || !options.multicast || !options.interface_name.empty())) {
@@ -137,7 +168,7 @@ fast_dds_participant_qos(const ParticipantOptions& options,
                    "multicast and interface are taken from there");
     }
     for (auto& transport : qos.transport().user_transports) {
-      transport = screened(transport, state);
+      transport = with_screen(transport, state);
     }
     return qos;
   }

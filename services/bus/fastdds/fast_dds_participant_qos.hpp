@@ -9,9 +9,10 @@
 #pragma once
 
 #include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
+#include <memory>
 
 #include "services/bus/bus.hpp"
-#include "services/bus/fastdds/screen/screened_transport.hpp"
+#include "services/bus/fastdds/screen/transport_state.hpp"
 
 namespace dyncal::bus {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <toml++/impl/forward_declarations.h>
+#include "services/bench/file/toml_names.hpp"
 
 namespace dyncal::inline checks::bench_check {
 

@@ -194,7 +194,8 @@ Expected<void> read_loss(FaultText& text, BenchFaults& faults) {
   DYNCAL_TRY(const double probability, text.value("PROBABILITY", 0.0, 1.0));
   DYNCAL_TRY(const auto at, text.word("at", "", {"sensor", "acs"}));
   DYNCAL_TRY(const auto counted, text.word("counted", "yes", {"yes", "no"}));
-  (at == "acs" ? faults.acs_loss : faults.sensor_loss) = {probability, counted == "yes"};
+  auto& loss = at == "acs" ? faults.acs_loss : faults.sensor_loss;
+  loss = {probability, counted == "yes"};
   return {};
 }
 

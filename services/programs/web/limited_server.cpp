@@ -320,8 +320,17 @@ bool LimitedServer::answer(Connection& connection) {
   connection.request.clear();
   ++connection.requests;
   bool is_closed = false;
-  const bool was_served = process_request(stream, connection.requests >= max_requests, is_closed,
-                                          [](httplib::Request&) {});
+  const bool is_last = connection.requests >= max_requests;
+  const auto nothing = [](httplib::Request&) {};
+  // Newer versions of the library hand on addresses, too, which nothing here asks for.
+  const auto process = [&](auto& server) {
+    if constexpr (requires { server.process_request(stream, is_last, is_closed, nothing); }) {
+      return server.process_request(stream, is_last, is_closed, nothing);
+    } else {
+      return server.process_request(stream, "", 0, "", 0, is_last, is_closed, nothing);
+    }
+  };
+  const bool was_served = process(*this);
   ++requests_;
   if (stream.was_slow()) {
     refusals_.count(Refusal::slow);

@@ -121,7 +121,12 @@ private:
     for (const Parameter& parameter : parameters) {
       texts.push_back(parameter.known ? parameter.text.c_str() : nullptr);
     }
-    return work_.exec_params(statement, pqxx::prepare::make_dynamic_params(texts));
+    const auto given = pqxx::prepare::make_dynamic_params(texts);
+#if PQXX_VERSION_MAJOR >= 7
+    return work_.exec(statement, pqxx::params(given));
+#else
+    return work_.exec_params(statement, given);
+#endif
   }
   Expected<void> begin_writing() override {
     const auto begun = execute("BEGIN", {}).and_then([&](const auto& /*none*/) {

@@ -4,21 +4,12 @@
 // only once, and it would then know nothing of them up to their next announcement, a second later.
 #pragma once
 
-#include <atomic>
 #include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
 #include <memory>
 
-#include "services/bus/refused_packets.hpp"
+#include "services/bus/fastdds/screen/transport_state.hpp"
 
 namespace dyncal::bus {
-
-// What the transports of a participant share with who makes it. Safe from several threads.
-struct TransportState {
-  explicit TransportState(std::shared_ptr<RefusedPackets> counter) : refused(std::move(counter)) {}
-
-  std::shared_ptr<RefusedPackets> refused; // counts what is dropped
-  std::atomic<bool> listens{false};        // set when the participant is there
-};
 
 // Around `transport`, e.g. UDP.
 [[nodiscard]] std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface>
