@@ -8,8 +8,12 @@ endif()
 set(write_man_pages ${CMAKE_CURRENT_LIST_DIR}/write-man-pages.sh)
 set(described ${CMAKE_BINARY_DIR}/described)
 set(described_files "")
-foreach(program dyncal dyncal-acs dyncal-analysis dyncal-can dyncal-dau dyncal-dso dyncal-guard
-                dyncal-recorder dyncal-virtual-bench)
+set(programs dyncal dyncal-acs dyncal-analysis dyncal-can dyncal-dau dyncal-dso dyncal-guard
+  dyncal-recorder dyncal-virtual-bench)
+if(TARGET dyncal-web)
+  list(APPEND programs dyncal-web)
+endif()
+foreach(program IN LISTS programs)
   set(pages ${described}/man/${program})
   set(files ${described}/bash/${program} ${described}/zsh/_${program}
     ${described}/fish/${program}.fish)
