@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <cstring>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
@@ -46,27 +47,24 @@ public:
   }
   template <std::size_t bound>
   void operator()(wire::BoundedString<bound>& text) {
-    std::string whole;
-    (*this)(whole);
-    text = whole;
+    const std::string_view whole = take_text();
+    if (is_closed(whole)) {
+      text = whole.data();
+    } else {
+      text = std::string(whole);
+    }
   }
   void operator()(std::string& text) {
-    const std::size_t begin = position_;
-    std::uint32_t count = 0;
-    (*this)(count);
-    if (stop_unless(count <= count_ - position_, begin)) {
-      const bool is_closed = count > 0 && payload_[position_ + count - 1] == '\0';
-      text.assign(payload_ + position_, count - (is_closed ? 1 : 0));
-      position_ += count;
-    }
+    const std::string_view whole = take_text();
+    text = whole.substr(0, whole.size() - (is_closed(whole) ? 1 : 0));
   }
   template <class T>
   void operator()(std::vector<T>& elements) {
     const std::size_t begin = position_;
     std::uint32_t count = 0;
     (*this)(count);
-    elements.clear();
     if (!stop_unless(count <= count_ - position_, begin) || count == 0) {
+      elements.clear();
       return;
     }
     if constexpr (std::is_arithmetic_v<T>) {
@@ -75,14 +73,29 @@ public:
         take(elements.data(), sizeof(T), count);
       }
     } else {
+      elements.resize(std::min<std::size_t>(count, elements.size()));
       for (std::uint32_t i = 0; i < count && is_whole_; ++i) {
-        (*this)(elements.emplace_back());
+        (*this)(i < elements.size() ? elements[i] : elements.emplace_back());
       }
     }
     stop_unless(is_whole_, begin);
   }
 
 private:
+  static bool is_closed(std::string_view text) { return !text.empty() && text.back() == '\0'; }
+
+  // With its closing zero.
+  std::string_view take_text() {
+    const std::size_t begin = position_;
+    std::uint32_t count = 0;
+    (*this)(count);
+    if (!stop_unless(count <= count_ - position_, begin)) {
+      return {};
+    }
+    position_ += count;
+    return {payload_ + position_ - count, count};
+  }
+
   bool stop_unless(bool is_right, std::size_t begin) {
     if (!is_right || !is_whole_) {
       is_whole_ = false;

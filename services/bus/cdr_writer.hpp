@@ -39,9 +39,10 @@ public:
   }
   template <std::size_t bound>
   void operator()(const wire::BoundedString<bound>& text) {
-    put_text(text.c_str());
+    put_text(text.c_str(), text.size());
   }
-  void operator()(const std::string& text) { put_text(text.c_str()); }
+  // To its first zero: what is behind it has no place in a string of DDS.
+  void operator()(const std::string& text) { put_text(text.c_str(), std::strlen(text.c_str())); }
   template <class T>
   void operator()(const std::vector<T>& elements) {
     (*this)(static_cast<std::uint32_t>(elements.size()));
@@ -68,11 +69,9 @@ private:
     }
   }
 
-  // To its first zero: what is behind it has no place in a string of DDS.
-  void put_text(const char* text) {
-    const std::size_t count = std::strlen(text) + 1;
-    (*this)(static_cast<std::uint32_t>(count));
-    put(text, count);
+  void put_text(const char* text, std::size_t count) {
+    (*this)(static_cast<std::uint32_t>(count + 1));
+    put(text, count + 1);
   }
 
   char* bytes_ = nullptr;
