@@ -111,7 +111,8 @@ def main():
         units = {}
         for entry in json.load(file):
             words = shlex.split(entry["command"])
-            units[graph.path(words[words.index("-o") + 1])] = entry
+            if "c++-header" not in words:  # no commit reaches what is precompiled
+                units[graph.path(words[words.index("-o") + 1])] = entry
 
     def reached(names):
         made = graph.reached({os.path.join(options.top, name) for name in names})
