@@ -8,6 +8,7 @@
 
 #include "services/bus/host_clocks/clock_messages.hpp"
 #include "services/checks/doctor/checks.hpp"
+#include "services/checks/doctor/laboratory_view.hpp"
 #include "services/checks/doctor/qos_mismatch.hpp"
 #include "services/contract/topics.hpp"
 

@@ -2,6 +2,7 @@
 
 #include "services/bench/file/generator_address.hpp"
 #include "services/checks/doctor/checks.hpp"
+#include "services/checks/doctor/laboratory_view.hpp"
 
 namespace dyncal::inline checks::doctor {
 namespace {

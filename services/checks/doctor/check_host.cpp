@@ -4,6 +4,7 @@
 #include "services/bus/host_network.hpp"
 #include "services/bus/qos_profiles.hpp"
 #include "services/checks/doctor/checks.hpp"
+#include "services/checks/doctor/host_view.hpp"
 
 namespace dyncal::inline checks::doctor {
 namespace {

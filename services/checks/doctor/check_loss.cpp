@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include "services/checks/doctor/checks.hpp"
+#include "services/checks/doctor/laboratory_view.hpp"
 
 namespace dyncal::inline checks::doctor {
 namespace {

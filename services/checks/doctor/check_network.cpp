@@ -4,6 +4,7 @@
 
 #include "services/bus/qos_profiles.hpp"
 #include "services/checks/doctor/checks.hpp"
+#include "services/checks/doctor/laboratory_view.hpp"
 
 namespace dyncal::inline checks::doctor {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "idl/dyncal.h"
 #include "services/checks/doctor/checks.hpp"
+#include "services/checks/doctor/laboratory_view.hpp"
 #include "services/checks/doctor/unheard_analysis.hpp"
 
 namespace dyncal::inline checks::doctor {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "services/checks/doctor/checks.hpp"
+#include "services/checks/doctor/laboratory_view.hpp"
 #include "services/contract/bench_file_origin.hpp"
 
 namespace dyncal::inline checks::doctor {

@@ -8,10 +8,11 @@
 
 #include "services/base/finding.hpp"
 #include "services/bench/file/bench_file.hpp"
-#include "services/checks/doctor/host_view.hpp"
-#include "services/checks/doctor/laboratory_view.hpp"
 
 namespace dyncal::inline checks::doctor {
+
+struct HostView;
+struct LaboratoryView;
 
 // Who is there: programs and an analysis service, versions of software and contract, clocks.
 [[nodiscard]] Findings check_programs(const LaboratoryView& view);

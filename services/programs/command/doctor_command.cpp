@@ -11,6 +11,7 @@
 
 #include "services/base/json_text.hpp"
 #include "services/checks/doctor/checks.hpp"
+#include "services/checks/doctor/laboratory_view.hpp"
 #include "services/checks/doctor/report.hpp"
 #include "services/checks/doctor/unheard_analysis.hpp"
 #include "services/daemon/program/bench_program.hpp"

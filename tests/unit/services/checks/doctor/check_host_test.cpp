@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "services/checks/doctor/checks.hpp"
+#include "services/checks/doctor/host_view.hpp"
 #include "tests/temporary_folder.hpp"
 #include "tests/unit/services/checks/doctor/findings.hpp"
 
