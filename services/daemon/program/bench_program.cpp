@@ -2,6 +2,9 @@
 
 #include <CLI/CLI.hpp>
 
+#include "services/daemon/program/daemon.hpp"
+#include "services/daemon/supervision/supervisor.hpp"
+
 namespace dyncal::inline daemon {
 namespace {
 

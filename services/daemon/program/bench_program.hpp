@@ -12,9 +12,11 @@
 
 #include "services/base/error.hpp"
 #include "services/bench/file/bench_file.hpp"
-#include "services/daemon/program/daemon.hpp"
+#include "services/daemon/program/program.hpp"
 
 namespace dyncal::inline daemon {
+
+class Daemon;
 
 // Adds the bench file's peers to those of the command line; what the command line leaves open is
 // taken from the bench file.

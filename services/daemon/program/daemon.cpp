@@ -8,7 +8,10 @@
 
 #include "services/base/version.hpp"
 #include "services/bus/host_clocks/clock_messages.hpp"
+#include "services/bus/host_clocks/clock_responder.hpp"
 #include "services/daemon/program/command_line.hpp"
+#include "services/daemon/program/watched_network.hpp"
+#include "services/daemon/supervision/supervisor.hpp"
 
 namespace dyncal::inline daemon {
 
@@ -17,6 +20,20 @@ Daemon::Daemon(std::string name, NetworkOptions options, std::unique_ptr<Supervi
     : network(std::move(options)), name_(std::move(name)), signals_(signals),
       supervisor_(std::move(supervisor)) {
   stopping_.emplace(signals_, [this] { supervisor_->stopping(); });
+}
+
+Daemon::~Daemon() = default;
+
+bus::Participant& Daemon::participant() {
+  return joined_->participant;
+}
+
+std::stop_token Daemon::stop() const {
+  return joined_ ? joined_->stop() : signals_;
+}
+
+const ProgramIdentity& Daemon::identity() const {
+  return supervisor_->identity();
 }
 
 Expected<void> Daemon::join() {

@@ -15,14 +15,19 @@
 #include <string>
 
 #include "services/base/error.hpp"
-#include "services/bus/host_clocks/clock_responder.hpp"
+#include "services/bus/bus.hpp"
+#include "services/contract/program_identity.hpp"
 #include "services/daemon/program/program.hpp"
-#include "services/daemon/program/watched_network.hpp"
-#include "services/daemon/supervision/supervisor.hpp"
+
+namespace dyncal::inline host_clocks {
+class ClockResponder;
+}
 
 namespace dyncal::inline daemon {
 
 class Daemon;
+class Supervisor;
+class WatchedNetwork;
 
 struct DaemonProgram {
   std::string name;        // "dyncal-dau"
@@ -37,6 +42,9 @@ class Daemon {
 public:
   Daemon(std::string name, NetworkOptions options, std::unique_ptr<Supervisor> supervisor,
          const std::stop_token& signals);
+  ~Daemon();
+  Daemon(const Daemon&) = delete;
+  Daemon& operator=(const Daemon&) = delete;
 
   // As the command line has it; a bench file may add to it before join().
   NetworkOptions network;
@@ -45,11 +53,11 @@ public:
   // join_network() does.
   [[nodiscard]] Expected<void> join();
   // REQUIRES: joined.
-  [[nodiscard]] bus::Participant& participant() { return joined_->participant; }
+  [[nodiscard]] bus::Participant& participant();
   // Requested by a signal, and once joined also when nobody hears the program any more.
-  [[nodiscard]] std::stop_token stop() const { return joined_ ? joined_->stop() : signals_; }
+  [[nodiscard]] std::stop_token stop() const;
   [[nodiscard]] Supervisor& supervisor() { return *supervisor_; }
-  [[nodiscard]] const ProgramIdentity& identity() const { return supervisor_->identity(); }
+  [[nodiscard]] const ProgramIdentity& identity() const;
   // One turn of the main loop: what the network refused is reported with it. REQUIRES:
   // participant() was not moved from; who does that reports to supervisor().
   void turned();

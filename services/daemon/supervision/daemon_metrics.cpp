@@ -3,6 +3,7 @@
 #include <array>
 
 #include "idl/dyncal.h"
+#include "services/daemon/supervision/metric_store.hpp"
 
 namespace dyncal::inline daemon {
 namespace {

@@ -8,13 +8,14 @@
 #include <vector>
 
 #include "services/contract/program_identity.hpp"
-#include "services/daemon/supervision/metric_store.hpp"
 
 namespace dyncal::wire {
 class SourceStatus;
 }
 
 namespace dyncal::inline daemon {
+
+class MetricStore;
 
 // What the analysis service does, all in all.
 struct AnalysisFigures {

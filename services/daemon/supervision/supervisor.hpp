@@ -13,6 +13,7 @@
 #include "services/base/error.hpp"
 #include "services/contract/program_identity.hpp"
 #include "services/daemon/supervision/daemon_metrics.hpp"
+#include "services/daemon/supervision/metric_store.hpp"
 #include "services/daemon/supervision/metrics_server.hpp"
 #include "services/daemon/supervision/service_manager.hpp"
 

@@ -5,6 +5,8 @@
 #include <fmt/core.h>
 
 #include "services/daemon/program/bench_program.hpp"
+#include "services/daemon/program/daemon.hpp"
+#include "services/daemon/supervision/supervisor.hpp"
 #include "services/instruments/played_source.hpp"
 #include "services/stream/run_sources.hpp"
 

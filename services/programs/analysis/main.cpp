@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "services/daemon/program/daemon.hpp"
+#include "services/daemon/supervision/supervisor.hpp"
 #include "services/programs/analysis/analysis_service.hpp"
 
 namespace {

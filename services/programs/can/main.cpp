@@ -6,6 +6,8 @@
 #include <spdlog/spdlog.h>
 
 #include "services/daemon/program/bench_program.hpp"
+#include "services/daemon/program/daemon.hpp"
+#include "services/daemon/supervision/supervisor.hpp"
 #include "services/programs/can/can_source.hpp"
 #include "services/stream/run_sources.hpp"
 

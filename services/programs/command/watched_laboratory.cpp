@@ -2,8 +2,24 @@
 
 #include "services/base/version.hpp"
 #include "services/bus/host_clocks/clock_messages.hpp"
+#include "services/daemon/program/watched_network.hpp"
 
 namespace dyncal::inline programs {
+
+WatchedLaboratory::WatchedLaboratory(std::unique_ptr<WatchedNetwork> network,
+                                     std::shared_ptr<bus::WakeUp> wake_up)
+    : network_(std::move(network)), wake_up_(std::move(wake_up)), laboratory_(bus::system_clock()) {
+}
+
+WatchedLaboratory::~WatchedLaboratory() = default;
+
+bool WatchedLaboratory::is_over() const {
+  return network_->stop().stop_requested();
+}
+
+Expected<void> WatchedLaboratory::outcome() const {
+  return network_->outcome({});
+}
 
 Expected<std::unique_ptr<WatchedLaboratory>> WatchedLaboratory::open(const NetworkOptions& network,
                                                                      const std::string& program,

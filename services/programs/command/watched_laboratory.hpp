@@ -4,11 +4,17 @@
 
 #include <chrono>
 #include <memory>
+#include <optional>
+#include <stop_token>
 #include <string>
 
-#include "services/daemon/program/watched_network.hpp"
+#include "services/daemon/program/program.hpp"
 #include "services/network/bus_readers.hpp"
 #include "services/network/bus_state.hpp"
+
+namespace dyncal::inline daemon {
+class WatchedNetwork;
+}
 
 namespace dyncal::inline programs {
 
@@ -18,20 +24,21 @@ public:
   [[nodiscard]] static Expected<std::unique_ptr<WatchedLaboratory>>
   open(const NetworkOptions& network, const std::string& program, const std::string& bench,
        const std::stop_token& asked);
+  ~WatchedLaboratory();
+  WatchedLaboratory(const WatchedLaboratory&) = delete;
+  WatchedLaboratory& operator=(const WatchedLaboratory&) = delete;
 
   // Takes what has come; waits for it until then at most.
   void work(std::chrono::steady_clock::time_point until);
 
   [[nodiscard]] const network::BusState& laboratory() const { return laboratory_; }
   // Nothing more is heard of the laboratory, or the end was asked for.
-  [[nodiscard]] bool is_over() const { return network_->stop().stop_requested(); }
+  [[nodiscard]] bool is_over() const;
   // Fails (network) where nothing more is heard.
-  [[nodiscard]] Expected<void> outcome() const { return network_->outcome({}); }
+  [[nodiscard]] Expected<void> outcome() const;
 
 private:
-  WatchedLaboratory(std::unique_ptr<WatchedNetwork> network, std::shared_ptr<bus::WakeUp> wake_up)
-      : network_(std::move(network)), wake_up_(std::move(wake_up)),
-        laboratory_(bus::system_clock()) {}
+  WatchedLaboratory(std::unique_ptr<WatchedNetwork> network, std::shared_ptr<bus::WakeUp> wake_up);
 
   std::unique_ptr<WatchedNetwork> network_;
   std::shared_ptr<bus::WakeUp> wake_up_;

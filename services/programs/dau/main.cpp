@@ -7,6 +7,8 @@
 
 #include "drivers/smartup/receiver.hpp"
 #include "services/daemon/program/bench_program.hpp"
+#include "services/daemon/program/daemon.hpp"
+#include "services/daemon/supervision/supervisor.hpp"
 #include "services/instruments/listening_plan.hpp"
 #include "services/programs/dau/endpoint_watch.hpp"
 #include "services/stream/source_service.hpp"

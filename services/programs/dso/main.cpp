@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "services/daemon/program/bench_program.hpp"
+#include "services/daemon/program/daemon.hpp"
+#include "services/daemon/supervision/supervisor.hpp"
 #include "services/programs/dso/triggered_bench.hpp"
 #include "services/stream/source_service.hpp"
 #include "services/stream/supervised.hpp"

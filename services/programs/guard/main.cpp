@@ -9,6 +9,8 @@
 #include <spdlog/spdlog.h>
 
 #include "services/daemon/program/bench_program.hpp"
+#include "services/daemon/program/daemon.hpp"
+#include "services/daemon/supervision/supervisor.hpp"
 #include "services/programs/guard/exciter_guard.hpp"
 
 namespace dyncal::inline programs {

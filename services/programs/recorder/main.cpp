@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include "services/daemon/program/daemon.hpp"
+#include "services/daemon/supervision/supervisor.hpp"
 #include "services/programs/recorder/bench_recordings.hpp"
 
 namespace dyncal::inline programs {

@@ -3,6 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
+#include "services/daemon/program/daemon.hpp"
+#include "services/daemon/supervision/supervisor.hpp"
 #include "services/network/bus_readers.hpp"
 #include "services/programs/web/access_token.hpp"
 #include "services/programs/web/actions.hpp"

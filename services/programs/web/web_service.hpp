@@ -10,8 +10,11 @@
 #include <string>
 
 #include "services/base/error.hpp"
-#include "services/daemon/program/daemon.hpp"
 #include "services/programs/web/request_router.hpp"
+
+namespace dyncal::inline daemon {
+class Daemon;
+}
 
 namespace dyncal::inline programs::web {
 
