@@ -1,6 +1,7 @@
 #include "services/run/run_controller.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <utility>
 
@@ -17,6 +18,8 @@
 #include "services/run/results_wait.hpp"
 #include "services/run/resume_wait.hpp"
 #include "services/run/run_plan.hpp"
+#include "services/run/run_watch.hpp"
+#include "services/run/step_sequence.hpp"
 
 namespace dyncal::inline run {
 namespace {
@@ -49,6 +52,13 @@ RunController::RunController(RunEnvironment environment, const BenchFile& bench,
     : environment_(std::move(environment)), clock_(environment_.clock), bench_(bench),
       run_(std::move(run)), show_progress_(std::move(show_progress)),
       wake_up_(std::make_shared<bus::WakeUp>()) {}
+
+RunController::~RunController() = default;
+RunController::RunController(RunController&&) noexcept = default;
+
+bool RunController::has_heard_analysis() const {
+  return watch_ && watch_->analysis();
+}
 
 Expected<RunOutcome>
 RunController::conduct(const std::vector<analysis::AdcCalibrationPoint>& adc_calibration,

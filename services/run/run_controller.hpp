@@ -12,33 +12,25 @@
 // early. Belongs to one thread.
 #pragma once
 
-#include <chrono>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "analysis/instrument/adc_calibration.hpp"
+#include "idl/dyncal.h"
 #include "services/bench/file/bench_file.hpp"
 #include "services/evaluation/result/run_outcome.hpp"
-#include "services/run/begun_run.hpp"
-#include "services/run/run_watch.hpp"
-#include "services/run/step_sequence.hpp"
+#include "services/run/run_environment.hpp"
+#include "services/run/run_keeping.hpp"
+#include "services/run/run_progress.hpp"
 
 namespace dyncal::inline run {
 
-// How results are kept while the run goes on. All may be empty; the functions are called by the
-// thread that conducts the run and must not make it wait.
-struct RunKeeping {
-  // When the run is armed and its sources are known: whether there is room for it. What it fails
-  // with is why nothing is excited.
-  std::function<Expected<void>(const RunOutcome& planned)> check;
-  // With all there is, as soon as results have come.
-  std::function<void(const RunOutcome& so_far)> keep;
-  std::optional<BegunRun> begun{}; // where the run is resumed
-};
+class RunWatch;
+class StepSequence;
 
 class RunController {
 public:
@@ -48,6 +40,8 @@ public:
                       std::move(show_progress)) {}
   RunController(RunEnvironment environment, const BenchFile& bench, std::string run,
                 ShowProgress show_progress);
+  ~RunController();
+  RunController(RunController&&) noexcept;
 
   // Before conduct() or resume().
   void set_keeping(RunKeeping keeping) { keeping_ = std::move(keeping); }
@@ -66,7 +60,7 @@ public:
          const std::stop_token& stop);
 
   // An analysis has spoken of the run.
-  [[nodiscard]] bool has_heard_analysis() const { return watch_ && watch_->analysis(); }
+  [[nodiscard]] bool has_heard_analysis() const;
 
 private:
   using Instant = bus::Clock::Instant;

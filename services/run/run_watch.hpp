@@ -16,22 +16,9 @@
 #include "services/run/run_commands.hpp"
 #include "services/run/run_messages.hpp"
 #include "services/run/run_outlook.hpp"
+#include "services/run/run_progress.hpp"
 
 namespace dyncal::inline run {
-
-struct RunProgress {
-  std::size_t step = 0; // 1..steps; 0 before the first
-  std::size_t steps = 0;
-  std::uint32_t attempt = 1; // at this step
-  std::string frequency_hz;
-  std::string phase;   // "waiting for the analysis", "settling", "measuring", ...
-  std::string request; // to the operator; "" for none
-  std::string notice;  // what has happened, for a line of its own; "" for none
-  std::size_t results = 0;
-  std::optional<double> seconds_left; // of the host's clock
-};
-
-using ShowProgress = std::function<void(const RunProgress&)>;
 
 class RunWatch {
 public:

@@ -1,11 +1,13 @@
 #include "services/run/step_excitation.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/core.h>
 
 #include "analysis/base/frequency.hpp"
 #include "services/base/device_error.hpp"
+#include "services/run/level_meter.hpp"
 #include "services/run/level_settling.hpp"
 
 namespace dyncal::inline run {
@@ -39,6 +41,12 @@ Error of_step(const wire::PlannedStep& step, ErrorCode code, const std::string& 
 }
 
 } // namespace
+
+StepExcitation::StepExcitation(const RunEnvironment& environment, const BenchFile& bench,
+                               std::string run, std::shared_ptr<bus::WakeUp> wake_up,
+                               StepHooks hooks)
+    : participant_(environment.participant), clock_(environment.clock), bench_(bench),
+      run_(std::move(run)), wake_up_(std::move(wake_up)), hooks_(std::move(hooks)) {}
 
 Expected<std::unique_ptr<StepExcitation>> StepExcitation::open(const RunEnvironment& environment,
                                                                const BenchFile& bench,
@@ -94,7 +102,7 @@ Expected<void> StepExcitation::begin() {
   if (bench_.generator.level_tolerance_rel) {
     DYNCAL_TRY(auto meter,
                LevelMeter::create(participant_, bench_.bench, bench_.method.reference, wake_up_));
-    meter_.emplace(std::move(meter));
+    meter_ = std::make_unique<LevelMeter>(std::move(meter));
   }
   return {};
 }

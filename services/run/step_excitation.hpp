@@ -31,17 +31,12 @@
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
 #include "services/run/generator_connection.hpp"
-#include "services/run/level_meter.hpp"
+#include "services/run/run_environment.hpp"
 #include "services/run/shot_counter.hpp"
 
 namespace dyncal::inline run {
 
-// What a run is conducted with. All of it outlives the run; tests bring their own.
-struct RunEnvironment {
-  bus::Participant& participant;
-  bus::Clock& clock = bus::system_clock();
-  ConnectGenerator connect_generator = run::connect_generator;
-};
+class LevelMeter;
 
 // What the run does while a step is excited.
 struct StepHooks {
@@ -89,9 +84,7 @@ public:
 
 private:
   StepExcitation(const RunEnvironment& environment, const BenchFile& bench, std::string run,
-                 std::shared_ptr<bus::WakeUp> wake_up, StepHooks hooks)
-      : participant_(environment.participant), clock_(environment.clock), bench_(bench),
-        run_(std::move(run)), wake_up_(std::move(wake_up)), hooks_(std::move(hooks)) {}
+                 std::shared_ptr<bus::WakeUp> wake_up, StepHooks hooks);
 
   Expected<void> check_levels(const wire::Measurement& measurement) const;
   void announce(const wire::PlannedStep& step, wire::ExcitationState state) {
@@ -130,7 +123,7 @@ private:
   wire::PlannedStep step_;                        // that is, or was last, excited
   std::uint32_t attempt_ = 1;                     // of the step that is excited
   std::stop_token stop_;                          // likewise
-  std::optional<LevelMeter> meter_;               // with a level tolerance, between begin and end
+  std::unique_ptr<LevelMeter> meter_;             // with a level tolerance, between begin and end
   std::map<std::string, double> known_responses_; // m/s^2 per V by frequency, from earlier steps
   // m/s^2 by frequency that the reference shows while nothing is excited, once it was listened to.
   std::optional<std::map<std::string, double>> quiet_levels_;

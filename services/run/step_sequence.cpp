@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 
 #include "services/evaluation/result/run_pause.hpp"
+#include "services/run/step_excitation.hpp"
 
 namespace dyncal::inline run {
 namespace {
@@ -29,6 +30,16 @@ std::vector<std::uint32_t> numbers_of(const wire::Measurement& measurement) {
 
 StepSequence::StepSequence(RunWatch& watch, const BenchFile& bench)
     : watch_(watch), repeats_(numbers_of(watch.measurement()), bench.excitation.attempts) {}
+
+StepSequence::~StepSequence() = default;
+
+bool StepSequence::output_may_be_on() const {
+  return excitation_->output_may_be_on();
+}
+
+Expected<bool> StepSequence::switch_off() {
+  return excitation_->switch_off();
+}
 
 Expected<std::unique_ptr<StepSequence>> StepSequence::open(const RunEnvironment& environment,
                                                            const BenchFile& bench, RunWatch& watch,

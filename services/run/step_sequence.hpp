@@ -31,11 +31,13 @@
 #include <optional>
 #include <stop_token>
 
+#include "services/run/run_environment.hpp"
 #include "services/run/run_watch.hpp"
-#include "services/run/step_excitation.hpp"
 #include "services/run/step_repeats.hpp"
 
 namespace dyncal::inline run {
+
+class StepExcitation;
 
 class StepSequence {
 public:
@@ -49,14 +51,17 @@ public:
   [[nodiscard]] static Expected<std::unique_ptr<StepSequence>>
   open(const RunEnvironment& environment, const BenchFile& bench, RunWatch& watch,
        std::shared_ptr<bus::WakeUp> wake_up);
+  ~StepSequence();
+  StepSequence(const StepSequence&) = delete;
+  StepSequence& operator=(const StepSequence&) = delete;
 
   // Before excite_all(): the results that are there tell which steps were excited, and how often;
   // the one behind them was perhaps broken off when its conductor died.
   void resume();
   [[nodiscard]] Expected<void> excite_all(const std::stop_token& stop);
 
-  [[nodiscard]] bool output_may_be_on() const { return excitation_->output_may_be_on(); }
-  [[nodiscard]] Expected<bool> switch_off() { return excitation_->switch_off(); }
+  [[nodiscard]] bool output_may_be_on() const;
+  [[nodiscard]] Expected<bool> switch_off();
 
 private:
   using Instant = bus::Clock::Instant;

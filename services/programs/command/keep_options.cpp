@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "services/records/run_folder/run_folder.hpp"
+#include "services/records/store/store.hpp"
 
 namespace dyncal::inline programs {
 namespace {
@@ -26,6 +27,10 @@ void add_keep_options(CLI::App& command, KeepOptions& keep) {
   command.add_flag("--recording,!--no-recording", keep.recording,
                    "record everything that the bench's programs tell each other (default)");
   add_store_option(command, keep.store);
+}
+
+std::string StorePlace::text() const {
+  return store_place(store, folder);
 }
 
 void add_store_place(CLI::App& command, StorePlace& place) {

@@ -3,10 +3,8 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
-
-#include "services/programs/command/kept_run.hpp"
-#include "services/records/store/store.hpp"
 
 namespace CLI { // NOLINT(readability-identifier-naming): of the library
 class App;
@@ -14,6 +12,12 @@ class Option;
 } // namespace CLI
 
 namespace dyncal::inline programs {
+
+struct KeepOptions {
+  std::optional<std::filesystem::path> folder; // of all runs; nothing: no run folder
+  bool recording = true;
+  std::string store; // as store_place() takes it
+};
 
 // --folder, --recording, --store
 void add_keep_options(CLI::App& command, KeepOptions& keep);
@@ -23,7 +27,7 @@ struct StorePlace {
   std::filesystem::path folder = "runs"; // of all runs
   std::string store;                     // as store_place() takes it
 
-  [[nodiscard]] std::string text() const { return store_place(store, folder); }
+  [[nodiscard]] std::string text() const;
 };
 void add_store_place(CLI::App& command, StorePlace& place);
 

@@ -8,6 +8,7 @@
 #include "services/contract/run_identity.hpp"
 #include "services/programs/command/own_recording.hpp"
 #include "services/programs/command/progress_line.hpp"
+#include "services/records/capture/recorder.hpp"
 #include "services/records/store/store.hpp"
 #include "services/views/report/show_outcome.hpp"
 #include "services/views/report/stored_result.hpp"
@@ -64,6 +65,8 @@ KeptRun::KeptRun(KeepOptions options, const BenchFile& bench, KeptRunSetup setup
                  std::optional<Disk> disk)
     : options_(std::move(options)), bench_(bench), setup_(std::move(setup)),
       disk_(std::move(disk)) {}
+
+KeptRun::~KeptRun() = default;
 
 Expected<std::unique_ptr<KeptRun>> KeptRun::open(const KeepOptions& options, const BenchFile& bench,
                                                  KeptRunSetup setup,

@@ -16,17 +16,16 @@
 #include "services/bench/file/bench_file.hpp"
 #include "services/bus/bus.hpp"
 #include "services/daemon/program/log_file.hpp"
-#include "services/records/capture/recorder.hpp"
+#include "services/programs/command/keep_options.hpp"
 #include "services/records/run_folder/run_folder.hpp"
-#include "services/run/run_controller.hpp"
+#include "services/run/run_keeping.hpp"
+#include "services/run/run_progress.hpp"
+
+namespace dyncal::inline records::recording {
+class Recorder;
+}
 
 namespace dyncal::inline programs {
-
-struct KeepOptions {
-  std::optional<std::filesystem::path> folder; // of all runs; nothing: no run folder
-  bool recording = true;
-  std::string store; // as store_place() takes it
-};
 
 // Of the run whose results are kept.
 struct KeptRunSetup {
@@ -48,6 +47,9 @@ public:
                                                                const BenchFile& bench,
                                                                KeptRunSetup setup,
                                                                bus::Participant& participant);
+  ~KeptRun();
+  KeptRun(const KeptRun&) = delete;
+  KeptRun& operator=(const KeptRun&) = delete;
 
   // Valid as long as the object.
   [[nodiscard]] RunKeeping keeping();

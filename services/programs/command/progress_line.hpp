@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <string>
 
-#include "services/run/run_controller.hpp"
+#include "services/run/run_progress.hpp"
 
 namespace dyncal::inline programs {
 

@@ -9,8 +9,8 @@
 #include <string>
 
 #include "services/daemon/program/program.hpp"
-#include "services/programs/command/kept_run.hpp"
-#include "services/run/run_controller.hpp"
+#include "services/evaluation/result/run_outcome.hpp"
+#include "services/programs/command/keep_options.hpp"
 #include "services/views/report/run_figures.hpp"
 
 namespace dyncal::inline programs {

@@ -8,6 +8,7 @@
 #include "services/programs/command/command.hpp"
 #include "services/programs/command/keep_options.hpp"
 #include "services/programs/command/work_progress.hpp"
+#include "services/records/store/store.hpp"
 
 namespace dyncal::inline programs {
 namespace {

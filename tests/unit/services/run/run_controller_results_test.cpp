@@ -1,6 +1,7 @@
 // What a conductor waits for behind its last step, and what it takes for results of its run. No
 // real time passes.
 #include "services/run/run_controller.hpp"
+#include "services/run/step_sequence.hpp"
 
 #include <set>
 #include <string>

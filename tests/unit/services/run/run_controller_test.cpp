@@ -1,6 +1,7 @@
 // The conductor of a run at every limit until its last step, against an analysis service and a
 // generator that the test plays. No real time passes.
 #include "services/run/run_controller.hpp"
+#include "services/run/step_sequence.hpp"
 
 #include <string>
 

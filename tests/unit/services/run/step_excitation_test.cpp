@@ -1,5 +1,6 @@
 // A step from the first setting to the last, at every limit and on every way out: the output is off
 // afterwards. No real time passes.
+#include "services/run/level_meter.hpp"
 #include "services/run/step_excitation.hpp"
 
 #include <algorithm>
