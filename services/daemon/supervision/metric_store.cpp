@@ -2,6 +2,7 @@
 
 #ifdef DYNCAL_HAVE_PROMETHEUS
 #include <prometheus/counter.h>
+#include <prometheus/gauge.h>
 #include <prometheus/registry.h>
 #endif
 
@@ -11,15 +12,14 @@ namespace dyncal::inline daemon {
 
 MetricStore::MetricStore() : registry_(std::make_shared<prometheus::Registry>()) {}
 
-void MetricStore::set(const MetricFamily& family, const MetricLabels& labels, double value) {
-  const auto registered = [&](auto builder) -> auto& {
-    return builder.Name(family.name).Help(family.help).Register(*registry_);
-  };
-  if (family.kind == MetricKind::gauge) {
-    registered(prometheus::BuildGauge()).Add(labels).Set(value);
-    return;
-  }
-  auto& counters = registered(prometheus::BuildCounter());
+void MetricStore::gauge(const char* name, const char* help, const MetricLabels& labels,
+                        double value) {
+  prometheus::BuildGauge().Name(name).Help(help).Register(*registry_).Add(labels).Set(value);
+}
+
+void MetricStore::counter(const char* name, const char* help, const MetricLabels& labels,
+                          double value) {
+  auto& counters = prometheus::BuildCounter().Name(name).Help(help).Register(*registry_);
   const std::lock_guard lock(mutex_);
   auto* counter = &counters.Add(labels);
   if (value < counter->Value()) {
@@ -33,8 +33,11 @@ void MetricStore::set(const MetricFamily& family, const MetricLabels& labels, do
 
 MetricStore::MetricStore() = default;
 
-void MetricStore::set(const MetricFamily& /*family*/, const MetricLabels& /*labels*/,
-                      double /*value*/) {}
+void MetricStore::gauge(const char* /*name*/, const char* /*help*/, const MetricLabels& /*labels*/,
+                        double /*value*/) {}
+
+void MetricStore::counter(const char* /*name*/, const char* /*help*/,
+                          const MetricLabels& /*labels*/, double /*value*/) {}
 
 #endif
 

@@ -17,21 +17,15 @@ class Registry;
 
 namespace dyncal::inline daemon {
 
-enum class MetricKind { counter, gauge };
-
-struct MetricFamily {
-  const char* name;
-  const char* help;
-  MetricKind kind;
-};
-
 using MetricLabels = std::map<std::string, std::string>;
 
 class MetricStore {
 public:
   MetricStore();
 
-  void set(const MetricFamily& family, const MetricLabels& labels, double value);
+  // `name` and `help` of the family.
+  void gauge(const char* name, const char* help, const MetricLabels& labels, double value);
+  void counter(const char* name, const char* help, const MetricLabels& labels, double value);
   // Null where this build has no prometheus-cpp.
   [[nodiscard]] const std::shared_ptr<prometheus::Registry>& registry() const { return registry_; }
 

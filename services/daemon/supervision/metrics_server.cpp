@@ -1,15 +1,18 @@
 #include "services/daemon/supervision/metrics_server.hpp"
 
 #include <arpa/inet.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <charconv>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <optional>
-
-#include "services/daemon/supervision/process_metrics.hpp"
+#include <sstream>
 
 #ifdef DYNCAL_HAVE_PROMETHEUS
 #include <prometheus/collectable.h>
@@ -55,6 +58,44 @@ std::string reason_against(const sockaddr_in& address) {
 #ifdef DYNCAL_HAVE_PROMETHEUS
 
 namespace {
+
+double seconds(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_usec) * 1e-6;
+}
+
+// The number after a name in /proc/self/status.
+double status_number(const std::string& status, const std::string& name) {
+  const auto found = status.find(name);
+  double number = 0.0;
+  if (found != std::string::npos) {
+    std::istringstream(status.substr(found + name.size())) >> number;
+  }
+  return number;
+}
+
+// With the names that Prometheus' own clients give them.
+void add_process_metrics(MetricStore& store) {
+  std::ifstream file("/proc/self/status");
+  const std::string status{std::istreambuf_iterator<char>(file), {}};
+  constexpr double bytes_per_kb = 1024.0;
+  store.gauge("process_resident_memory_bytes", "Resident memory size in bytes.", {},
+              status_number(status, "VmRSS:") * bytes_per_kb);
+  store.gauge("process_virtual_memory_bytes", "Virtual memory size in bytes.", {},
+              status_number(status, "VmSize:") * bytes_per_kb);
+  store.gauge("process_threads", "Number of threads of the process.", {},
+              status_number(status, "Threads:"));
+  rusage usage{};
+  if (getrusage(RUSAGE_SELF, &usage) == 0) {
+    store.counter("process_cpu_seconds_total", "Total user and system CPU time spent in seconds.",
+                  {}, seconds(usage.ru_utime) + seconds(usage.ru_stime));
+  }
+  std::error_code error;
+  const std::filesystem::directory_iterator descriptors("/proc/self/fd", error);
+  if (!error) {
+    store.gauge("process_open_fds", "Number of open file descriptors.", {},
+                static_cast<double>(std::distance(begin(descriptors), end(descriptors))));
+  }
+}
 
 // Looks at the process whenever somebody asks.
 class ProcessMetrics final : public prometheus::Collectable {
