@@ -4,11 +4,9 @@
 #include <ifaddrs.h>
 #include <net/if.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <array>
 #include <cstring>
-#include <utility>
 
 #include "services/bus/discovery.hpp"
 
@@ -50,45 +48,36 @@ int join_on_every_interface(int descriptor) {
 
 Expected<AnnouncementListener> AnnouncementListener::open(int domain,
                                                           const std::string& interface_address) {
-  AnnouncementListener listener(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  AnnouncementListener listener;
+  listener.socket_ =
+      drivers::FileDescriptor(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  const int descriptor = listener.socket_.number();
   const int on = 1;
-  setsockopt(listener.descriptor_, SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on));
-  setsockopt(listener.descriptor_, SOL_SOCKET, SO_REUSEPORT, &on, sizeof(on));
+  setsockopt(descriptor, SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on));
+  setsockopt(descriptor, SOL_SOCKET, SO_REUSEPORT, &on, sizeof(on));
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(static_cast<std::uint16_t>(7400 + 250 * domain));
   inet_pton(AF_INET, discovery_group, &address.sin_addr); // unicast to this port is not for us
-  if (bind(listener.descriptor_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) !=
-      0) {
+  if (bind(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0) {
     return fail(ErrorCode::network, "the multicast port of discovery cannot be listened at: " +
                                         std::string(std::strerror(errno)));
   }
   in_addr only{};
   const bool one = inet_pton(AF_INET, interface_address.c_str(), &only) == 1;
-  const int joined =
-      one ? join(listener.descriptor_, only) : join_on_every_interface(listener.descriptor_);
+  const int joined = one ? join(descriptor, only) : join_on_every_interface(descriptor);
   if (joined == 0) {
     return fail(ErrorCode::network, "no interface of this host takes part in multicast");
   }
   return listener;
 }
 
-AnnouncementListener::~AnnouncementListener() {
-  if (descriptor_ >= 0) {
-    close(descriptor_);
-  }
-}
-
-AnnouncementListener::AnnouncementListener(AnnouncementListener&& other) noexcept
-    : descriptor_(std::exchange(other.descriptor_, -1)), heard_(std::move(other.heard_)),
-      heard_from_(std::move(other.heard_from_)) {}
-
 void AnnouncementListener::work() {
   std::array<unsigned char, 2048> buffer{};
   while (true) {
     sockaddr_in from{};
     socklen_t from_size = sizeof(from);
-    const ssize_t size = recvfrom(descriptor_, buffer.data(), buffer.size(), 0,
+    const ssize_t size = recvfrom(socket_.number(), buffer.data(), buffer.size(), 0,
                                   reinterpret_cast<sockaddr*>(&from), &from_size);
     if (size < 0) {
       return;

@@ -9,6 +9,7 @@
 #include <set>
 #include <string>
 
+#include "drivers/link/file_descriptor.hpp"
 #include "services/base/error.hpp"
 
 namespace dyncal::inline checks::doctor {
@@ -19,11 +20,6 @@ public:
   // (network) when the port cannot be shared or no interface can.
   [[nodiscard]] static Expected<AnnouncementListener> open(int domain,
                                                            const std::string& interface_address);
-  ~AnnouncementListener();
-  AnnouncementListener(AnnouncementListener&& other) noexcept;
-  AnnouncementListener& operator=(AnnouncementListener&&) = delete;
-  AnnouncementListener(const AnnouncementListener&) = delete;
-  AnnouncementListener& operator=(const AnnouncementListener&) = delete;
 
   // Reads what has come; never waits.
   void work();
@@ -33,9 +29,9 @@ public:
   [[nodiscard]] const std::set<std::string>& heard_from() const { return heard_from_; }
 
 private:
-  explicit AnnouncementListener(int descriptor) : descriptor_(descriptor) {}
+  AnnouncementListener() = default;
 
-  int descriptor_;
+  drivers::FileDescriptor socket_;
   std::set<std::string> heard_;
   std::set<std::string> heard_from_;
 };

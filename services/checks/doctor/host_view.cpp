@@ -16,6 +16,7 @@
 #include <set>
 #include <sstream>
 
+#include "drivers/link/file_descriptor.hpp"
 #include "services/bus/host_network.hpp"
 #include "services/bus/qos_profiles.hpp"
 
@@ -27,42 +28,39 @@ constexpr const char* trial_group = "239.255.0.2"; // beside that of discovery, 
 
 class UdpSocket {
 public:
-  UdpSocket() : descriptor_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {}
-  UdpSocket(const UdpSocket&) = delete;
-  UdpSocket& operator=(const UdpSocket&) = delete;
-  ~UdpSocket() { close(descriptor_); }
-
   // At any free port of all addresses; 0: not possible.
   [[nodiscard]] std::uint16_t listen() const {
     sockaddr_in address{};
     address.sin_family = AF_INET;
     socklen_t size = sizeof(address);
-    const bool bound = bind(descriptor_, reinterpret_cast<sockaddr*>(&address), size) == 0 &&
-                       getsockname(descriptor_, reinterpret_cast<sockaddr*>(&address), &size) == 0;
+    const bool bound =
+        bind(socket_.number(), reinterpret_cast<sockaddr*>(&address), size) == 0 &&
+        getsockname(socket_.number(), reinterpret_cast<sockaddr*>(&address), &size) == 0;
     return bound ? ntohs(address.sin_port) : std::uint16_t{0};
   }
   [[nodiscard]] bool join(const char* group) const {
     ip_mreqn request{};
     inet_pton(AF_INET, group, &request.imr_multiaddr);
-    return setsockopt(descriptor_, IPPROTO_IP, IP_ADD_MEMBERSHIP, &request, sizeof(request)) == 0;
+    return setsockopt(socket_.number(), IPPROTO_IP, IP_ADD_MEMBERSHIP, &request, sizeof(request)) ==
+           0;
   }
   [[nodiscard]] bool send(const std::string& host, std::uint16_t port) const {
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_port = htons(port);
     inet_pton(AF_INET, host.c_str(), &address.sin_addr);
-    return sendto(descriptor_, "dyncal", 6, 0, reinterpret_cast<const sockaddr*>(&address),
+    return sendto(socket_.number(), "dyncal", 6, 0, reinterpret_cast<const sockaddr*>(&address),
                   sizeof(address)) == 6;
   }
   [[nodiscard]] bool receive() const {
-    pollfd readable{descriptor_, POLLIN, 0};
+    pollfd readable{socket_.number(), POLLIN, 0};
     std::array<char, 16> buffer{};
     return poll(&readable, 1, answer_limit_ms) > 0 &&
-           recv(descriptor_, buffer.data(), buffer.size(), 0) == 6;
+           recv(socket_.number(), buffer.data(), buffer.size(), 0) == 6;
   }
 
 private:
-  int descriptor_;
+  drivers::FileDescriptor socket_{socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)};
 };
 
 bool reaches(const std::string& address) {
@@ -85,10 +83,8 @@ std::optional<bool> multicast_comes_back() {
 int mtu_of(const std::string& name) {
   ifreq request{};
   std::strncpy(request.ifr_name, name.c_str(), sizeof(request.ifr_name) - 1);
-  const int descriptor = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  const bool known = ioctl(descriptor, SIOCGIFMTU, &request) == 0;
-  close(descriptor);
-  return known ? request.ifr_mtu : 0;
+  const drivers::FileDescriptor any(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  return ioctl(any.number(), SIOCGIFMTU, &request) == 0 ? request.ifr_mtu : 0;
 }
 
 // Up, not loopback, and with an address of its own, but of IPv6 alone.
