@@ -1,10 +1,9 @@
 #include "services/views/lab_file/laboratory_file.hpp"
 
 #include <fmt/core.h>
-#include <toml++/toml.h>
 
 #include "services/base/whole_file.hpp"
-#include "services/bench/file/toml_text.hpp"
+#include "services/views/lab_file/table_file.hpp"
 
 namespace dyncal::inline views {
 namespace {
@@ -80,32 +79,16 @@ void read_laboratory(TomlTable& root, ReadTables& read) {
   laboratory->finish();
 }
 
-void read_optional_tables(TomlTable& root, LaboratoryFile& file) {
-  if (auto letterhead = root.table("letterhead")) {
-    file.letterhead = read_letterhead(*letterhead);
-    letterhead->finish();
-  }
-  if (auto customer = root.table("customer")) {
-    file.customer = read_contact(*customer);
-    customer->finish();
-  }
-  if (auto reference = root.table("reference")) {
-    file.reference = read_reference(*reference);
-    reference->finish();
-  }
-  if (auto conditions = root.table("conditions")) {
-    file.conditions = read_conditions(*conditions);
-    conditions->finish();
-  }
-}
-
 ReadTables read_tables(const toml::table& parsed, const std::filesystem::path& path,
                        BenchProblems& problems) {
   ReadTables read;
   read.file.path = path;
   TomlTable root(parsed, "", path.string(), problems);
   read_laboratory(root, read);
-  read_optional_tables(root, read.file);
+  read_table(root, "letterhead", read_letterhead, read.file.letterhead);
+  read_table(root, "customer", read_contact, read.file.customer);
+  read_table(root, "reference", read_reference, read.file.reference);
+  read_table(root, "conditions", read_conditions, read.file.conditions);
   read.file.persons = read_tables_of(root, "person", path.string(), problems, read_person);
   read.file.equipment = read_tables_of(root, "equipment", path.string(), problems, read_equipment);
   read.file.statements = lines_of(root, "statements");
@@ -117,15 +100,7 @@ ReadTables read_tables(const toml::table& parsed, const std::filesystem::path& p
 
 Expected<LaboratoryFile> parse_laboratory_file(std::string_view text,
                                                const std::filesystem::path& path) {
-  const auto parsed = parse_toml(text, path);
-  if (!parsed) {
-    return fail(ErrorCode::bad_file, parsed.error().text());
-  }
-  BenchProblems problems;
-  ReadTables read = read_tables(*parsed, path, problems);
-  if (!problems.empty()) {
-    return fail(ErrorCode::bad_file, problems.front().text());
-  }
+  DYNCAL_TRY(auto read, parse_tables(text, path, read_tables));
   if (!read.logo.empty()) {
     auto logo = read_picture(path.parent_path() / read.logo);
     if (!logo) {

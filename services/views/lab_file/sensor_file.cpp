@@ -1,9 +1,7 @@
 #include "services/views/lab_file/sensor_file.hpp"
 
-#include <toml++/toml.h>
-
 #include "services/base/whole_file.hpp"
-#include "services/bench/file/toml_text.hpp"
+#include "services/views/lab_file/table_file.hpp"
 
 namespace dyncal::inline views {
 namespace {
@@ -37,14 +35,8 @@ SensorFile read_tables(const toml::table& parsed, const std::filesystem::path& p
     file.certificate_number = required_line(*certificate, "number");
     certificate->finish();
   }
-  if (auto customer = root.table("customer")) {
-    file.customer = read_contact(*customer);
-    customer->finish();
-  }
-  if (auto conditions = root.table("conditions")) {
-    file.conditions = read_conditions(*conditions);
-    conditions->finish();
-  }
+  read_table(root, "customer", read_contact, file.customer);
+  read_table(root, "conditions", read_conditions, file.conditions);
   root.finish();
   return file;
 }
@@ -52,16 +44,7 @@ SensorFile read_tables(const toml::table& parsed, const std::filesystem::path& p
 } // namespace
 
 Expected<SensorFile> parse_sensor_file(std::string_view text, const std::filesystem::path& path) {
-  const auto parsed = parse_toml(text, path);
-  if (!parsed) {
-    return fail(ErrorCode::bad_file, parsed.error().text());
-  }
-  BenchProblems problems;
-  SensorFile file = read_tables(*parsed, path, problems);
-  if (!problems.empty()) {
-    return fail(ErrorCode::bad_file, problems.front().text());
-  }
-  return file;
+  return parse_tables(text, path, read_tables);
 }
 
 Expected<SensorFile> read_sensor_file(const std::filesystem::path& path) {
