@@ -11,7 +11,6 @@
 
 #include "services/base/nearest_name.hpp"
 #include "services/base/printable_text.hpp"
-#include "services/daemon/program/command_tree.hpp"
 #include "services/daemon/program/completion.hpp"
 
 namespace dyncal::inline daemon {
@@ -43,20 +42,16 @@ std::string without_dashes(const std::string& option) {
 
 std::set<std::string> option_names(const CLI::App& app) {
   std::set<std::string> names;
-  for (const CLI::Option* option : app.get_options()) {
-    if (!option->get_group().empty()) {
-      names.insert(option->get_lnames().begin(), option->get_lnames().end());
-    }
+  for (const CLI::Option* option : shown_options(app)) {
+    names.insert(option->get_lnames().begin(), option->get_lnames().end());
   }
   return names;
 }
 
 std::set<std::string> command_names(const CLI::App& app) {
   std::set<std::string> names;
-  for (const CLI::App* inner : app.get_subcommands([](const CLI::App*) { return true; })) {
-    if (!inner->get_group().empty()) {
-      names.insert(inner->get_name());
-    }
+  for (const CLI::App* inner : shown_commands(app)) {
+    names.insert(inner->get_name());
   }
   return names;
 }
@@ -167,10 +162,10 @@ std::string sentence_about(const CLI::App& app, const CLI::ParseError& error,
   return what;
 }
 
-void print_commands(const DescribedCommand& command) {
-  fmt::print("{}\t{}\n", command.path, command.description);
-  for (const DescribedCommand& inner : command.commands) {
-    print_commands(inner);
+void print_commands(const CLI::App& app) {
+  fmt::print("{}\t{}\n", path_of(app), app.get_description());
+  for (const CLI::App* inner : shown_commands(app)) {
+    print_commands(*inner);
   }
 }
 
@@ -189,7 +184,7 @@ std::optional<Expected<void>> print_description(const CLI::App& app,
     return Expected<void>{};
   }
   if (words[0] == "--print-commands") {
-    print_commands(describe_commands(app));
+    print_commands(app);
     return Expected<void>{};
   }
   return std::nullopt;

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <map>
+#include <sstream>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "services/base/printable_text.hpp"
-#include "services/daemon/program/command_tree.hpp"
 
 namespace dyncal::inline daemon {
 namespace {
@@ -77,22 +77,57 @@ std::string offer(const std::string& word, const std::string& description) {
   return fmt::format("{}\t{}\n", word, one_line(description));
 }
 
-// What may follow this option, behind `before` in one word.
-std::string values_of(const DescribedOption& option, const std::string& before) {
-  std::string values;
-  for (const std::string& choice : option.choices) {
-    values += offer(before + choice, option.description);
+std::vector<std::string> names_of(const CLI::Option& option) {
+  std::vector<std::string> names;
+  for (const std::string& name : option.get_snames()) {
+    names.push_back("-" + name);
   }
-  return option.choices.empty() ? files("*") : values;
+  for (const std::string& name : option.get_lnames()) {
+    names.push_back("--" + name);
+  }
+  return names;
 }
 
-bool takes_bench_files(const DescribedCommand& command) {
-  return std::ranges::any_of(command.arguments, [](const DescribedOption& argument) {
-    return argument.names.front().find("BENCH") != std::string::npos;
+// What validators say follows the type: "TEXT:{fir,iir}", or "ENUM:value in {expanded->1,
+// standard->0} OR {1,0}", where the program's own values stand behind the arrows.
+std::vector<std::string> choices_of(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  const std::size_t opened = type.find('{', type.find(':'));
+  const std::size_t closed = type.find('}', opened);
+  std::vector<std::string> choices;
+  if (closed != std::string::npos) {
+    std::istringstream listed(type.substr(opened + 1, closed - opened - 1));
+    for (std::string choice; std::getline(listed, choice, ',');) {
+      choices.push_back(choice.substr(0, choice.find("->")));
+    }
+  }
+  return choices;
+}
+
+// What may follow this option, behind `before` in one word.
+std::string values_of(const CLI::Option& option, const std::string& before) {
+  std::string values;
+  for (const std::string& choice : choices_of(option)) {
+    values += offer(before + choice, option.get_description());
+  }
+  return values.empty() ? files("*") : values;
+}
+
+bool takes_bench_files(const CLI::App& command) {
+  return std::ranges::any_of(shown_options(command), [](const CLI::Option* option) {
+    return option->get_positional() && option->get_name(true).find("BENCH") != std::string::npos;
   });
 }
 
 } // namespace
+
+std::vector<const CLI::App*> shown_commands(const CLI::App& app) {
+  return app.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
+}
+
+std::vector<const CLI::Option*> shown_options(const CLI::App& app) {
+  return app.get_options([](const CLI::Option* option) { return !option->get_group().empty(); });
+}
 
 Expected<std::string> completion_script(const CLI::App& app, const std::string& shell) {
   const std::map<std::string, const char*> scripts{
@@ -118,24 +153,25 @@ std::string completion_offers(const CLI::App& app, std::vector<std::string> word
     before = typed.substr(0, sign + 1);
     words.push_back(typed.substr(0, sign));
   }
-  const DescribedCommand program = describe_commands(app);
-  const DescribedCommand* command = &program;
+  const CLI::App* command = &app;
   for (const std::string& word : words) {
-    const auto inner = std::ranges::find(command->commands, word, &DescribedCommand::name);
-    command = inner == command->commands.end() ? command : &*inner;
+    const auto inner = shown_commands(*command);
+    const auto named = std::ranges::find(inner, word, &CLI::App::get_name);
+    command = named == inner.end() ? command : *named;
   }
   std::string offers;
-  for (const DescribedOption& option : command->options) {
-    if (!option.value.empty() && !words.empty() &&
-        std::ranges::find(option.names, words.back()) != option.names.end()) {
-      return values_of(option, before);
+  for (const CLI::Option* option : shown_options(*command)) {
+    const std::vector<std::string> names = names_of(*option);
+    const bool takes_value = option->get_items_expected_max() > 0;
+    if (takes_value && !words.empty() && std::ranges::find(names, words.back()) != names.end()) {
+      return values_of(*option, before);
     }
-    for (const std::string& name : option.names) {
-      offers += typed.starts_with('-') ? offer(name, option.description) : "";
+    for (const std::string& name : names) {
+      offers += typed.starts_with('-') ? offer(name, option->get_description()) : "";
     }
   }
-  for (const DescribedCommand& inner : command->commands) {
-    offers += typed.starts_with('-') ? "" : offer(inner.name(), inner.description);
+  for (const CLI::App* inner : shown_commands(*command)) {
+    offers += typed.starts_with('-') ? "" : offer(inner->get_name(), inner->get_description());
   }
   return offers.empty() ? files(takes_bench_files(*command) ? "*.toml" : "*") : offers;
 }

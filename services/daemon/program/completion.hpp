@@ -11,9 +11,14 @@
 
 namespace CLI { // NOLINT(readability-identifier-naming): of the library
 class App;
-}
+class Option;
+} // namespace CLI
 
 namespace dyncal::inline daemon {
+
+// What people see of a program or command: all that is not hidden.
+[[nodiscard]] std::vector<const CLI::App*> shown_commands(const CLI::App& app);
+[[nodiscard]] std::vector<const CLI::Option*> shown_options(const CLI::App& app);
 
 // Calls `PROGRAM --complete WORDS...`. Fails (bad_argument) with another shell than "bash", "zsh"
 // and "fish".

@@ -22,6 +22,7 @@
 #include <CLI/CLI.hpp>
 
 #include "services/base/error.hpp"
+#include "services/daemon/program/options.hpp"
 #include "services/daemon/program/program.hpp"
 
 namespace dyncal::inline programs {
@@ -58,19 +59,6 @@ private:
     return done.map([] { return 0; });
   }
 };
-
-// An option that takes only what `check` passes.
-template <class T>
-CLI::Option* add_checked(CLI::App& command, const std::string& name, T& value,
-                         const std::string& help, const CLI::Validator& check) {
-  return command.add_option(name, value, help)->check(check);
-}
-// The same, where the help has the value before the command line is read, and any may pass.
-template <class T>
-CLI::Option* add_default(CLI::App& command, const std::string& name, T& value,
-                         const std::string& help, const CLI::Validator& check = {}) {
-  return add_checked(command, name, value, help, check)->capture_default_str();
-}
 
 // Adds every command that has registered itself. `chosen`: what is to be done, once `app` has read
 // the command line; both outlive that.

@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include "services/daemon/program/daemon.hpp"
+#include "services/daemon/program/options.hpp"
 #include "services/daemon/supervision/supervisor.hpp"
 #include "services/programs/recorder/bench_recordings.hpp"
 
@@ -22,11 +23,10 @@ void add_options(CLI::App& app, RecorderOptions& options) {
   app.add_option("--bench", options.benches,
                  "record this bench (repeatable; default: every one that is heard of)");
   app.add_flag("--runs-only", options.plan.runs_only, "record nothing between runs");
-  app.add_option("--compression", options.compression, "none or zstd")->capture_default_str();
-  app.add_option("--min-free-mb", options.min_free_mb,
-                 "end the recording in order when the disk has less room than this, in MB")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
+  add_default(app, "--compression", options.compression, "none or zstd");
+  add_default(app, "--min-free-mb", options.min_free_mb,
+              "end the recording in order when the disk has less room than this, in MB",
+              CLI::NonNegativeNumber);
 }
 
 Expected<void> serve(RecorderOptions& options, Daemon& daemon) {

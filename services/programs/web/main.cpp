@@ -10,6 +10,7 @@
 #include "services/bus/host_network.hpp"
 #include "services/daemon/program/child_process.hpp"
 #include "services/daemon/program/daemon.hpp"
+#include "services/daemon/program/options.hpp"
 #include "services/programs/web/web_service.hpp"
 
 namespace dyncal::inline programs {
@@ -31,9 +32,8 @@ std::string installed_guide() {
 }
 
 void add_options(CLI::App& app, WebProgram& program) {
-  app.add_option("--listen", program.listen,
-                 "where the page is served; other than loopback: in networks that you trust")
-      ->capture_default_str();
+  add_default(app, "--listen", program.listen,
+              "where the page is served; other than loopback: in networks that you trust");
   app.add_option("--own-name", program.web.door.own_names,
                  "name of this computer that browsers may use (repeatable; its host name, "
                  "localhost and addresses are known)");
@@ -49,9 +49,8 @@ void add_options(CLI::App& app, WebProgram& program) {
                  "folder of bench files that a run may be started with (needs --token-file)");
   app.add_option("--guide", program.web.door.guide_folder,
                  "folder of the guide's pages (default: as it is installed with this program)");
-  app.add_option("--javascript", program.web.door.javascript_folder,
-                 "folder of the JavaScript libraries of this computer")
-      ->capture_default_str();
+  add_default(app, "--javascript", program.web.door.javascript_folder,
+              "folder of the JavaScript libraries of this computer");
 }
 
 Expected<void> serve(WebProgram& program, Daemon& daemon) {
