@@ -1,11 +1,12 @@
 #include "services/programs/command/pulse_file.hpp"
 
-#include <charconv>
 #include <fstream>
 #include <optional>
 #include <string_view>
 
 #include <fmt/core.h>
+
+#include "services/base/parsed_number.hpp"
 
 namespace dyncal::inline programs {
 namespace {
@@ -14,13 +15,6 @@ using analysis::PulseEdge;
 using analysis::PulseInput;
 
 constexpr std::size_t max_shown = 60; // of a line in an error message
-
-std::optional<std::uint64_t> whole_number(std::string_view text) {
-  std::uint64_t value = 0;
-  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return status == std::errc() && end == text.data() + text.size() ? std::optional(value)
-                                                                   : std::nullopt;
-}
 
 std::optional<PulseEdge> edge_of(std::string_view line, bool with_input) {
   PulseEdge edge;
@@ -36,8 +30,8 @@ std::optional<PulseEdge> edge_of(std::string_view line, bool with_input) {
   if (separator == std::string_view::npos) {
     return std::nullopt;
   }
-  const auto number = whole_number(line.substr(0, separator));
-  const auto ticks = whole_number(line.substr(separator + 1));
+  const auto number = parsed_number<std::uint64_t>(line.substr(0, separator));
+  const auto ticks = parsed_number<std::uint64_t>(line.substr(separator + 1));
   if (!number || !ticks) {
     return std::nullopt;
   }

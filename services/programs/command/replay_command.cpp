@@ -1,9 +1,9 @@
 // `dyncal replay RECORDING`: puts a recording back on DDS
 // (services/records/replay/recording_player.hpp). Belongs to one thread.
-#include <charconv>
 
 #include <fmt/core.h>
 
+#include "services/base/parsed_number.hpp"
 #include "services/base/printable_text.hpp"
 #include "services/daemon/program/watched_network.hpp"
 #include "services/programs/command/command.hpp"
@@ -34,14 +34,13 @@ Expected<double> parse_speed(const std::string& text) {
   if (text == "max") {
     return 0.0;
   }
-  double speed = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), speed);
-  if (error != std::errc() || end != text.data() + text.size() || !(speed > 0.0)) {
+  const auto speed = parsed_number<double>(text);
+  if (!speed || !(*speed > 0.0)) {
     return fail(
         ErrorCode::bad_argument,
         fmt::format("invalid --speed '{}': give a multiple of real time above 0, or max", text));
   }
-  return speed;
+  return *speed;
 }
 
 Expected<void> run_replay(ReplayCommand& command, const std::stop_token& asked) {

@@ -1,11 +1,11 @@
 #include "services/programs/web/laboratory_answers.hpp"
 
 #include <array>
-#include <charconv>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "services/base/parsed_number.hpp"
 #include "services/programs/web/request_router.hpp"
 #include "services/views/figures/error_bar_names.hpp"
 #include "services/views/report/json_members.hpp"
@@ -20,11 +20,7 @@ constexpr std::array<std::string_view, 7> parts{"run",      "figures", "budget",
 
 // 0: it is no number.
 std::uint32_t number_of(const httplib::Request& request, const char* parameter) {
-  const std::string text = request.get_param_value(parameter);
-  std::uint32_t number = 0;
-  const char* end = text.data() + text.size();
-  const auto parsed = std::from_chars(text.data(), end, number);
-  return parsed.ec == std::errc() && parsed.ptr == end ? number : 0;
+  return parsed_number<std::uint32_t>(request.get_param_value(parameter)).value_or(0);
 }
 
 void send_file(const ServedFile& file, const std::string& name, const httplib::Request& request,

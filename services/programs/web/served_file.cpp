@@ -7,11 +7,11 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <vector>
 
 #include <fmt/core.h>
 
+#include "services/base/parsed_number.hpp"
 #include "services/programs/web/request_head.hpp"
 #include "services/programs/web/request_router.hpp"
 
@@ -21,14 +21,6 @@ namespace {
 using drivers::FileDescriptor;
 
 constexpr std::size_t part_bytes = std::size_t{64} * 1024;
-
-// Nothing: it is no number.
-std::optional<std::size_t> number_of(std::string_view text) {
-  std::size_t number = 0;
-  const auto read = std::from_chars(text.data(), text.data() + text.size(), number);
-  const bool is_number = read.ec == std::errc() && read.ptr == text.data() + text.size();
-  return is_number ? std::optional(number) : std::nullopt;
-}
 
 // A range of what the visitor has in part, unless he has another state of it (If-Range).
 std::optional<ByteRange> range_of(const ServedFile& file, const httplib::Request& request) {
@@ -68,8 +60,8 @@ std::optional<ByteRange> parse_range(std::string_view text, std::size_t bytes) {
   }
   const std::string_view begin = text.substr(unit.size(), dash - unit.size());
   const std::string_view end = text.substr(dash + 1);
-  const auto first = number_of(begin);
-  const auto last = number_of(end);
+  const auto first = parsed_number<std::size_t>(begin);
+  const auto last = parsed_number<std::size_t>(end);
   if ((!first && !begin.empty()) || (!last && !end.empty()) || (!first && !last) ||
       (first && last && *last < *first)) {
     return std::nullopt;

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "services/base/json_text.hpp"
+#include "services/base/parsed_number.hpp"
 #include "services/contract/channel_name.hpp"
 #include "services/programs/web/laboratory_answers.hpp"
 #include "services/programs/web/request_router.hpp"
@@ -28,11 +29,8 @@ using Json = nlohmann::ordered_json;
 constexpr const char* no_channel = "there is no such channel, or too many are looked at already";
 
 double number_of(const std::string& text, double low, double high, double otherwise) {
-  double number = otherwise;
-  const char* end = text.data() + text.size();
-  const auto parsed = std::from_chars(text.data(), end, number);
-  const bool is_number = parsed.ec == std::errc() && parsed.ptr == end && number == number;
-  return is_number ? std::clamp(number, low, high) : otherwise;
+  const double number = parsed_number<double>(text).value_or(otherwise);
+  return std::isnan(number) ? otherwise : std::clamp(number, low, high);
 }
 
 // Six digits are more than a picture has. Null: not finite.
@@ -215,13 +213,10 @@ Expected<Json> SignalAnswers::spectrum(const Question& question) {
 }
 
 struct SignalAnswers::ExcitedStep {
-  bool is_excited = false;
-  std::uint32_t step = 0;
-  std::uint32_t attempt = 0;
-  std::string frequency_hz;
-  bus::Clock::Instant announced;
-  std::optional<bus::Clock::Instant> steady; // nothing: it is settling
-  network::Plan plan;
+  network::Excitation now;
+  network::Plan plan; // without its steps
+
+  [[nodiscard]] bool is_in(network::StepState state) const { return now.step.state == state; }
 };
 
 // The one that is excited now, by what was announced last; nothing: no run is under way.
@@ -233,15 +228,7 @@ SignalAnswers::excited_step(const std::string& bench_name) const {
     if (run == nullptr || !run->plan || !run->now || run->is_over()) {
       return std::nullopt;
     }
-    const network::Excitation& now = *run->now;
-    const bool is_steady = now.step.state == network::StepState::steady;
-    ExcitedStep step{is_steady || now.step.state == network::StepState::settling,
-                     now.step.step,
-                     now.step.attempt,
-                     now.step.frequency_text_hz,
-                     now.began,
-                     is_steady ? now.steady : std::nullopt,
-                     *run->plan};
+    ExcitedStep step{*run->now, *run->plan};
     step.plan.steps.clear();
     return step;
   });
@@ -251,16 +238,17 @@ SignalAnswers::excited_step(const std::string& bench_name) const {
 Json SignalAnswers::fitted_json(const std::string& bench, const std::string& name,
                                 const ExcitedStep& step) {
   const auto parsed = parse_channel_name(name);
-  const auto frequency = analysis::Frequency::parse(step.frequency_hz);
+  const auto frequency = analysis::Frequency::parse(step.now.step.frequency_text_hz);
   const auto found =
       parsed ? find({.bench = bench, .source = parsed->source, .channel = parsed->channel})
              : std::nullopt;
   std::vector<Sample> samples;
   std::optional<StepWindow> window;
   const auto look = [&](const ChannelRing& ring) {
-    window = step.steady
-                 ? step_window(ring, step.announced, *step.steady, is_triggered(found->tapped.kind))
-                 : std::nullopt;
+    window =
+        step.is_in(network::StepState::steady) && step.now.steady
+            ? step_window(ring, step.now.began, *step.now.steady, is_triggered(found->tapped.kind))
+            : std::nullopt;
     if (window) {
       samples = samples_around(ring, *window);
     }
@@ -291,14 +279,16 @@ Expected<Json> SignalAnswers::fit(const std::string& bench) {
   const auto fitted = [&](const std::string& channel) {
     return fitted_json(bench, channel, *step);
   };
-  Json json{{"step", step->step},
-            {"attempt", step->attempt},
-            {"frequency_text_hz", step->frequency_hz},
+  Json json{{"step", step->now.step.step},
+            {"attempt", step->now.step.attempt},
+            {"frequency_text_hz", step->now.step.frequency_text_hz},
             {"reference", fitted(step->plan.reference)},
             {"sync", fitted(step->plan.sync_acs)},
             {"dau_phase",
              fitted(step->plan.sync_dau.empty() ? step->plan.sync_dso : step->plan.sync_dau)}};
-  if (!step->is_excited) { // asked for all the same: earlier samples show where a step begins
+  const bool is_excited =
+      step->is_in(network::StepState::settling) || step->is_in(network::StepState::steady);
+  if (!is_excited) { // asked for all the same: earlier samples show where a step begins
     json["step"] = 0;
     json["reference"] = json["sync"] = json["dau_phase"] = nullptr;
   }
