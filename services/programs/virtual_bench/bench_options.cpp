@@ -2,12 +2,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include "services/base/parsed_number.hpp"
 #include "services/base/version.hpp"
 #include "services/daemon/program/command_line.hpp"
+#include "services/daemon/program/options.hpp"
 #include "services/programs/virtual_bench/fault_option.hpp"
 
 namespace dyncal::inline programs::virtual_bench {
@@ -35,34 +36,26 @@ struct Words {
   std::vector<double> levels{10.0};
 };
 
-tl::unexpected<Error> refuse(std::string message) {
-  return fail(ErrorCode::bad_argument, std::move(message));
+template <class... Parts>
+tl::unexpected<Error> refuse(fmt::format_string<Parts...> format, Parts&&... parts) {
+  return fail(ErrorCode::bad_argument, fmt::format(format, std::forward<Parts>(parts)...));
 }
 
 void add_instrument_options(CLI::App& app, Words& words, BenchOptions& options) {
-  app.add_option("--preset", words.preset,
-                 fmt::format("sensor: {}", fmt::join(device::preset_names(), ", ")))
-      ->capture_default_str();
-  app.add_option("--seed", options.bench.seed, "everything drawn follows from it")
-      ->capture_default_str();
-  app.add_option("--speed", words.speed, "times real time, or max")->capture_default_str();
+  add_default(app, "--preset", words.preset,
+              fmt::format("sensor: {}", fmt::join(device::preset_names(), ", ")));
+  add_default(app, "--seed", options.bench.seed, "everything drawn follows from it");
+  add_default(app, "--speed", words.speed, "times real time, or max");
   app.add_option("--duration", options.server.duration_s,
                  "end after so many seconds of bench time (0: never)");
-  app.add_option("--dau", words.dau, "HOST:PORT that the unit sends its datagrams to")
-      ->capture_default_str();
-  app.add_option("--acs-listen", words.acs, "HOST:PORT of the ACS stream (port 0: chosen)")
-      ->capture_default_str();
-  app.add_option("--generator-listen", words.generator,
-                 "HOST:PORT of the generator's SCPI (port 0: chosen)")
-      ->capture_default_str();
-  app.add_option("--generator-words", words.generator_words,
-                 "whose SCPI the generator speaks: dg4000, 33500")
-      ->check(CLI::IsMember({"dg4000", "33500"}))
-      ->capture_default_str();
-  app.add_option("--dso-listen", words.dso, "HOST:PORT of the oscilloscope's SCPI (preset tss)")
-      ->capture_default_str();
-  app.add_option("--tss-listen", words.tss, "HOST:PORT of the time series sensor (preset tss)")
-      ->capture_default_str();
+  add_default(app, "--dau", words.dau, "HOST:PORT that the unit sends its datagrams to");
+  add_default(app, "--acs-listen", words.acs, "HOST:PORT of the ACS stream (port 0: chosen)");
+  add_default(app, "--generator-listen", words.generator,
+              "HOST:PORT of the generator's SCPI (port 0: chosen)");
+  add_default(app, "--generator-words", words.generator_words,
+              "whose SCPI the generator speaks: dg4000, 33500", CLI::IsMember({"dg4000", "33500"}));
+  add_default(app, "--dso-listen", words.dso, "HOST:PORT of the oscilloscope's SCPI (preset tss)");
+  add_default(app, "--tss-listen", words.tss, "HOST:PORT of the time series sensor (preset tss)");
   app.add_flag("--tss-free-running", options.bench.faults.series_start.free_running,
                "the same as --fault free-running");
   app.add_option("--scope-fault", words.scope_faults,
@@ -81,12 +74,10 @@ void add_can_options(CLI::App& app, Words& words, BenchOptions& options) {
   app.add_option("--can", options.can_interface,
                  "put a sensor with CAN output on this interface; all instruments then keep the "
                  "UTC of this host, in real time");
-  app.add_option("--can-bus", words.can_bus,
-                 "500k, 1M (classic CAN) or fd-5M (CAN FD, 1 and 5 Mbit/s)")
-      ->capture_default_str();
-  app.add_option("--can-load", options.can.background_load,
-                 "share of the bus's time that other devices take")
-      ->check(CLI::Range(0.0, 0.8));
+  add_default(app, "--can-bus", words.can_bus,
+              "500k, 1M (classic CAN) or fd-5M (CAN FD, 1 and 5 Mbit/s)");
+  add_checked(app, "--can-load", options.can.background_load,
+              "share of the bus's time that other devices take", CLI::Range(0.0, 0.8));
   app.add_option("--dbc-file", options.dbc_file,
                  "write the DBC file of the sensor with CAN output to this file");
 }
@@ -100,55 +91,45 @@ void add_model_options(CLI::App& app, Words& words, BenchOptions& options) {
   app.add_option("--levels", words.levels,
                  "in m/s^2, one or one per frequency; the highest decides the ranges")
       ->delimiter(',');
-  app.add_option("--acs-rate", options.bench.acs_rate_hz, "samples per second")
-      ->check(CLI::Range(100, 1000000))
-      ->capture_default_str();
+  add_default(app, "--acs-rate", options.bench.acs_rate_hz, "samples per second",
+              CLI::Range(100, 1000000));
   app.add_flag("--acs-utc", options.bench.acs_utc, "the ACS stamps in UTC, as the unit does");
   app.add_flag(
       "--sync-is-first-output", options.bench.sync_is_first_output,
       "sync is the output that drives the exciter, not a second one of constant amplitude");
-  app.add_option("--exciter-gain", options.bench.faults.exciter_gain,
-                 "the same as --fault exciter-gain=FACTOR")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  app.add_option("--thermal-cycle", options.bench.thermal_cycle_s,
-                 "seconds for the sensor's warm-up")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--reference-magnitude-rel", options.bench.reference_magnitude_rel,
-                 "standard uncertainty, relative")
-      ->check(CLI::Range(0.0, 1.0));
-  app.add_option("--reference-phase-rad", options.bench.reference_phase_rad,
-                 "standard uncertainty in rad")
-      ->check(CLI::Range(0.0, 1.0));
-  app.add_option("--sensor", words.sensor, "id of the sensor in the unit")->capture_default_str();
+  add_default(app, "--exciter-gain", options.bench.faults.exciter_gain,
+              "the same as --fault exciter-gain=FACTOR", CLI::PositiveNumber);
+  add_checked(app, "--thermal-cycle", options.bench.thermal_cycle_s,
+              "seconds for the sensor's warm-up", CLI::PositiveNumber);
+  add_checked(app, "--reference-magnitude-rel", options.bench.reference_magnitude_rel,
+              "standard uncertainty, relative", CLI::Range(0.0, 1.0));
+  add_checked(app, "--reference-phase-rad", options.bench.reference_phase_rad,
+              "standard uncertainty in rad", CLI::Range(0.0, 1.0));
+  add_default(app, "--sensor", words.sensor, "id of the sensor in the unit");
 }
 
 void add_path_options(CLI::App& app, Words& words, BenchOptions& options) {
   app.add_flag("--ticks", options.server.with_ticks, "send time_ticks, as units do since 2021-07");
-  app.add_option("--loss", options.server.path.loss, "probability that a datagram is lost")
-      ->check(CLI::Range(0.0, 1.0));
-  app.add_option("--duplicate", options.server.path.duplicate,
-                 "probability that a datagram comes twice")
-      ->check(CLI::Range(0.0, 1.0));
-  app.add_option("--reorder", options.server.path.reorder,
-                 "probability that a datagram comes after the next one")
-      ->check(CLI::Range(0.0, 1.0));
+  add_checked(app, "--loss", options.server.path.loss, "probability that a datagram is lost",
+              CLI::Range(0.0, 1.0));
+  add_checked(app, "--duplicate", options.server.path.duplicate,
+              "probability that a datagram comes twice", CLI::Range(0.0, 1.0));
+  add_checked(app, "--reorder", options.server.path.reorder,
+              "probability that a datagram comes after the next one", CLI::Range(0.0, 1.0));
   app.add_option("--fault", words.faults, fault_help());
-  app.add_option("--datagrams-per-second", options.server.datagrams_per_s,
-                 "most datagrams in a second of this host")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  add_default(app, "--datagrams-per-second", options.server.datagrams_per_s,
+              "most datagrams in a second of this host", CLI::PositiveNumber);
 }
 
 void add_recording_options(CLI::App& app, BenchOptions& options) {
   app.add_option("--record-csv", options.record_folder,
                  "write acs.csv and dau.csv into this folder instead of opening sockets");
-  app.add_option("--repetitions", options.programme.repetitions, "with --record-csv")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--settling", options.programme.settling_s, "with --record-csv, seconds")
-      ->check(CLI::NonNegativeNumber);
-  app.add_option("--duration-per-step", options.programme.duration_s, "with --record-csv, seconds")
-      ->check(CLI::PositiveNumber);
+  add_checked(app, "--repetitions", options.programme.repetitions, "with --record-csv",
+              CLI::PositiveNumber);
+  add_checked(app, "--settling", options.programme.settling_s, "with --record-csv, seconds",
+              CLI::NonNegativeNumber);
+  add_checked(app, "--duration-per-step", options.programme.duration_s,
+              "with --record-csv, seconds", CLI::PositiveNumber);
   app.add_flag("--exit-with-parent", options.exit_with_parent,
                "end when the process that started this one ends");
 }
@@ -161,13 +142,6 @@ void add_options(CLI::App& app, Words& words, BenchOptions& options) {
   add_recording_options(app, options);
 }
 
-template <class Number, class... Base>
-bool read_whole(const std::string& text, Number& value, Base... base) {
-  const char* end = text.data() + text.size();
-  const auto [read_to, status] = std::from_chars(text.data(), end, value, base...);
-  return status == std::errc() && read_to == end;
-}
-
 Expected<void> read_addresses(const Words& words, device::ServerSettings& server) {
   const std::pair<const std::string*, drivers::Address*> addresses[] = {
       {&words.dau, &server.dau},
@@ -176,7 +150,7 @@ Expected<void> read_addresses(const Words& words, device::ServerSettings& server
   for (const auto& [text, address] : addresses) {
     auto parsed = drivers::parse_address(*text);
     if (!parsed) {
-      return refuse(parsed.error().message);
+      return refuse("{}", parsed.error().message);
     }
     *address = *parsed;
   }
@@ -190,36 +164,33 @@ Expected<void> read_scope_faults(const std::vector<std::string>& texts,
   for (const std::string& text : texts) {
     const std::size_t sign = text.find('=');
     const std::string name = text.substr(0, sign);
-    double probability = 0.0;
     if (std::ranges::find(known, name) == known.end()) {
-      return refuse(
-          fmt::format("{} {}: no such fault; there are: {}", option, text, fmt::join(known, ", ")));
+      return refuse("{} {}: no such fault; there are: {}", option, text, fmt::join(known, ", "));
     }
-    if (sign == std::string::npos || !read_whole(text.substr(sign + 1), probability) ||
-        !(probability >= 0.0 && probability <= 1.0)) {
-      return refuse(fmt::format("{} {}: write NAME=PROBABILITY with a probability from 0 to 1",
-                                option, text));
+    const auto probability =
+        sign == std::string::npos ? std::nullopt : parsed_number<double>(text.substr(sign + 1));
+    if (!probability || !(*probability >= 0.0 && *probability <= 1.0)) {
+      return refuse("{} {}: write NAME=PROBABILITY with a probability from 0 to 1", option, text);
     }
-    faults[name] = probability;
+    faults[name] = *probability;
   }
   return {};
 }
 
 Expected<void> read_programme(const Words& words, BenchOptions& options) {
   for (const std::string& text : words.frequencies) {
-    double frequency_hz = 0.0;
-    if (!read_whole(text, frequency_hz) || !(frequency_hz > 0.0 && frequency_hz <= 5000.0)) {
-      return refuse(
-          fmt::format("--frequencies: \"{}\" is not a frequency between 0 and 5000 Hz", text));
+    const auto frequency_hz = parsed_number<double>(text);
+    if (!frequency_hz || !(*frequency_hz > 0.0 && *frequency_hz <= 5000.0)) {
+      return refuse("--frequencies: \"{}\" is not a frequency between 0 and 5000 Hz", text);
     }
   }
   if (words.levels.size() != 1 && words.levels.size() != words.frequencies.size()) {
-    return refuse(fmt::format("--levels: give one level, or one for each of the {} frequencies",
-                              words.frequencies.size()));
+    return refuse("--levels: give one level, or one for each of the {} frequencies",
+                  words.frequencies.size());
   }
   for (const double level : words.levels) {
     if (!(level > 0.0 && level <= 500.0)) {
-      return refuse(fmt::format("--levels: {} m/s^2 is not between 0 and 500", level));
+      return refuse("--levels: {} m/s^2 is not between 0 and 500", level);
     }
   }
   options.programme.frequencies_hz = words.frequencies;
@@ -234,8 +205,7 @@ Expected<void> read_can(const Words& words, BenchOptions& options) {
   const auto& kinds = device::can_bus_kinds();
   const auto kind = std::ranges::find(kinds, words.can_bus, &device::CanBusKind::name);
   if (kind == kinds.end()) {
-    return refuse(
-        fmt::format("--can-bus {}: no such bus; there are 500k, 1M, fd-5M", words.can_bus));
+    return refuse("--can-bus {}: no such bus; there are 500k, 1M, fd-5M", words.can_bus);
   }
   options.can.bus = *kind;
   options.can.preset = options.bench.preset;
@@ -266,7 +236,7 @@ Expected<void> read_triggered(const Words& words, BenchOptions& options) {
   const auto scope = drivers::parse_address(words.dso);
   const auto sensor = drivers::parse_address(words.tss);
   if (!scope || !sensor) {
-    return refuse(scope ? sensor.error().message : scope.error().message);
+    return refuse("{}", (scope ? sensor : scope).error().message);
   }
   triggered.scope_listen = *scope;
   triggered.sensor_listen = *sensor;
@@ -294,11 +264,11 @@ Expected<void> read_response(const Words& words, BenchOptions& options) {
     return fail(ErrorCode::bad_file, table.error().message);
   }
   for (const std::string& text : options.programme.frequencies_hz) {
-    double frequency_hz = 0.0;
-    if (read_whole(text, frequency_hz) && !table->covers(frequency_hz)) {
-      return refuse(fmt::format("--frequencies: {} Hz lies outside the response of {}, which is "
-                                "known from {} to {} Hz",
-                                text, words.response, table->first_hz, table->last_hz));
+    const auto frequency_hz = parsed_number<double>(text);
+    if (frequency_hz && !table->covers(*frequency_hz)) {
+      return refuse("--frequencies: {} Hz lies outside the response of {}, which is "
+                    "known from {} to {} Hz",
+                    text, words.response, table->first_hz, table->last_hz);
     }
   }
   options.bench.response = std::move(*table);
@@ -308,23 +278,25 @@ Expected<void> read_response(const Words& words, BenchOptions& options) {
 Expected<void> read_words(const Words& words, BenchOptions& options) {
   const auto preset = device::preset_by_name(words.preset);
   if (!preset) {
-    return refuse(fmt::format("--preset {}: no such sensor; there are: {}", words.preset,
-                              fmt::join(device::preset_names(), ", ")));
+    return refuse("--preset {}: no such sensor; there are: {}", words.preset,
+                  fmt::join(device::preset_names(), ", "));
   }
   options.bench.preset = *preset;
-  options.server.speed = 0.0;
   options.bench.generator_words = words.generator_words == "33500"
                                       ? device::GeneratorWords::keysight_33500
                                       : device::GeneratorWords::dg4000;
-  if (words.speed != "max" &&
-      (!read_whole(words.speed, options.server.speed) || !(options.server.speed > 0.0))) {
-    return refuse(fmt::format("--speed {}: write a number above 0, or max", words.speed));
+  options.server.speed =
+      words.speed == "max" ? 0.0 : parsed_number<double>(words.speed).value_or(-1.0);
+  if (words.speed != "max" && !(options.server.speed > 0.0)) {
+    return refuse("--speed {}: write a number above 0, or max", words.speed);
   }
   const bool hexadecimal = words.sensor.starts_with("0x");
-  if (!read_whole(hexadecimal ? words.sensor.substr(2) : words.sensor, options.server.sensor_id,
-                  hexadecimal ? 16 : 10)) {
-    return refuse(fmt::format("--sensor {}: write a number such as 0xbccb0100", words.sensor));
+  const auto sensor = parsed_number<std::uint32_t>(
+      hexadecimal ? words.sensor.substr(2) : words.sensor, hexadecimal ? 16 : 10);
+  if (!sensor) {
+    return refuse("--sensor {}: write a number such as 0xbccb0100", words.sensor);
   }
+  options.server.sensor_id = *sensor;
   return read_addresses(words, options.server)
       .and_then([&] { return read_bench_faults(words, options.bench.faults); })
       .and_then([&] { return read_programme(words, options); })

@@ -2,12 +2,17 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
+#include <iterator>
 #include <map>
 #include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+
+#include "services/base/parsed_number.hpp"
 
 namespace dyncal::inline programs::virtual_bench {
 namespace {
@@ -16,14 +21,8 @@ namespace device = dyncal::drivers::virtual_bench;
 using device::BenchFaults;
 using device::ChannelFaults;
 
-std::optional<double> number_in(const std::string& text) {
-  double value = 0.0;
-  const char* end = text.data() + text.size();
-  const auto [read_to, status] = std::from_chars(text.data(), end, value);
-  return status == std::errc() && read_to == end ? std::optional(value) : std::nullopt;
-}
-
-// The option taken to pieces. What has been asked for is gone, so that the rest is unknown.
+// The option taken to pieces. What has been asked for is gone, so that the rest is unknown. What is
+// wrong first is the problem; what is read then goes nowhere.
 class FaultText {
 public:
   explicit FaultText(const std::string& whole) : whole_(whole) {
@@ -44,57 +43,71 @@ public:
 
   [[nodiscard]] const std::string& name() const { return name_; }
 
-  [[nodiscard]] tl::unexpected<Error> refuse(const std::string& what) const {
-    return fail(ErrorCode::bad_argument, fmt::format("--fault {}: {}", whole_, what));
+  void refuse(const std::string& what) {
+    if (outcome_) {
+      outcome_ = fail(ErrorCode::bad_argument, fmt::format("--fault {}: {}", whole_, what));
+    }
   }
 
-  [[nodiscard]] Expected<double> value(const char* meaning, double lowest, double highest) const {
-    return checked(number_in(value_), fmt::format("{}=", name_), meaning, lowest, highest);
+  [[nodiscard]] double value(const char* meaning, double lowest, double highest) {
+    return checked(value_, name_, meaning, lowest, highest);
   }
 
-  [[nodiscard]] Expected<double> setting(const std::string& key, const char* meaning, double usual,
-                                         double lowest, double highest) {
+  [[nodiscard]] double setting(const std::string& key, const char* meaning, double usual,
+                               double lowest, double highest) {
     const auto text = take(key);
-    return text ? checked(number_in(*text), fmt::format("{}=", key), meaning, lowest, highest)
-                : Expected<double>(usual);
+    return text ? checked(*text, key, meaning, lowest, highest) : usual;
   }
 
-  [[nodiscard]] Expected<std::string> word(const std::string& key, const std::string& usual,
-                                           const std::vector<std::string>& words) {
+  [[nodiscard]] std::string word(const std::string& key, const std::string& usual,
+                                 const std::vector<std::string>& words) {
     std::string word = take(key).value_or(usual);
     if (std::ranges::find(words, word) == words.end()) {
       const std::string another = fmt::format(" or {}=", key);
-      return refuse(fmt::format("write {}={}", key, fmt::join(words, another)));
+      refuse(fmt::format("write {}={}", key, fmt::join(words, another)));
     }
     return word;
   }
 
-  [[nodiscard]] Expected<void> without_value(bool& fault) const {
+  [[nodiscard]] bool without_value() {
     if (!value_.empty()) {
-      return refuse("takes no value");
+      refuse("takes no value");
     }
-    fault = true;
-    return {};
+    return true;
   }
 
+  [[nodiscard]] ChannelFaults& channel_of(BenchFaults& faults) {
+    const std::map<std::string, ChannelFaults*> channels{{"sensor", &faults.sensor},
+                                                         {"reference", &faults.reference},
+                                                         {"sync_acs", &faults.sync_acs},
+                                                         {"sync_dau", &faults.sync_dau}};
+    const auto found = channels.find(take("at").value_or(""));
+    if (found == channels.end()) {
+      refuse("write at=CHANNEL; there are sensor, reference, sync_acs, sync_dau");
+    }
+    return found == channels.end() ? nowhere_ : *found->second;
+  }
+
+  // Of all that was read.
+  [[nodiscard]] Expected<void> outcome() {
+    if (!settings_.empty()) {
+      refuse(fmt::format("has no setting \"{}\"", settings_.begin()->first));
+    }
+    return outcome_;
+  }
+
+private:
   [[nodiscard]] std::optional<std::string> take(const std::string& key) {
     auto found = settings_.extract(key);
     return found ? std::optional(std::move(found.mapped())) : std::nullopt;
   }
 
-  [[nodiscard]] Expected<void> nothing_left() const {
-    if (!settings_.empty()) {
-      return refuse(fmt::format("has no setting \"{}\"", settings_.begin()->first));
-    }
-    return {};
-  }
-
-private:
-  [[nodiscard]] Expected<double> checked(std::optional<double> number, const std::string& before,
-                                         const char* meaning, double lowest, double highest) const {
+  [[nodiscard]] double checked(const std::string& text, const std::string& key, const char* meaning,
+                               double lowest, double highest) {
+    const auto number = parsed_number<double>(text);
     if (!number || !(*number >= lowest && *number <= highest)) {
-      return refuse(
-          fmt::format("write {}{}, a number from {} to {}", before, meaning, lowest, highest));
+      refuse(fmt::format("write {}={}, a number from {} to {}", key, meaning, lowest, highest));
+      return lowest;
     }
     return *number;
   }
@@ -103,177 +116,129 @@ private:
   std::string name_;
   std::string value_;
   std::map<std::string, std::string> settings_;
+  ChannelFaults nowhere_;
+  Expected<void> outcome_;
 };
 
-Expected<ChannelFaults*> channel_of(FaultText& text, BenchFaults& faults) {
-  const std::pair<const char*, ChannelFaults*> channels[] = {{"sensor", &faults.sensor},
-                                                             {"reference", &faults.reference},
-                                                             {"sync_acs", &faults.sync_acs},
-                                                             {"sync_dau", &faults.sync_dau}};
-  const std::string name = text.take("at").value_or("");
-  for (const auto& [known, channel] : channels) {
-    if (name == known) {
-      return channel;
-    }
-  }
-  return text.refuse("write at=CHANNEL; there are sensor, reference, sync_acs, sync_dau");
+void read_soft_ends(FaultText& text, BenchFaults& faults) {
+  ChannelFaults& channel = text.channel_of(faults);
+  const double limit = text.value("LIMIT", 1e-3, 1e4);
+  const std::string end = text.word("end", "both", {"both", "upper", "lower"});
+  channel.soft_upper = end == "lower" ? 0.0 : limit;
+  channel.soft_lower = end == "upper" ? 0.0 : limit;
 }
 
-Expected<void> read_over_range(FaultText& text, BenchFaults& faults) {
-  DYNCAL_TRY(ChannelFaults* const channel, channel_of(text, faults));
-  DYNCAL_TRY(channel->range, text.value("LIMIT", 1e-3, 1e4));
-  return {};
+void read_stuck(FaultText& text, BenchFaults& faults) {
+  ChannelFaults& channel = text.channel_of(faults);
+  channel.stuck_samples = static_cast<std::size_t>(text.value("SAMPLES", 1.0, 1e6));
+  channel.stuck_every_s = text.setting("every", "SECONDS", 1.0, 1e-3, 1e6);
 }
 
-Expected<void> read_soft_ends(FaultText& text, BenchFaults& faults) {
-  DYNCAL_TRY(ChannelFaults* const channel, channel_of(text, faults));
-  DYNCAL_TRY(const double limit, text.value("LIMIT", 1e-3, 1e4));
-  DYNCAL_TRY(const auto end, text.word("end", "both", {"both", "upper", "lower"}));
-  channel->soft_upper = end == "lower" ? 0.0 : limit;
-  channel->soft_lower = end == "upper" ? 0.0 : limit;
-  return {};
+void read_hum(FaultText& text, BenchFaults& faults) {
+  ChannelFaults& channel = text.channel_of(faults);
+  channel.hum_rel = text.value("PART", 0.0, 10.0);
+  channel.hum_hz = text.setting("frequency", "HZ", 50.0, 0.1, 1e5);
+  channel.hum_while_driven = text.word("while", "always", {"always", "driven"}) == "driven";
 }
 
-Expected<void> read_held(FaultText& text, BenchFaults& faults) {
-  DYNCAL_TRY(ChannelFaults* const channel, channel_of(text, faults));
-  DYNCAL_TRY(channel->held_part, text.value("PART", 0.0, 1.0));
-  return {};
+void read_knock(FaultText& text, BenchFaults& faults) {
+  ChannelFaults& channel = text.channel_of(faults);
+  channel.knock_rel = text.value("PART", -1e3, 1e3);
+  channel.knock_after_s = text.setting("after", "SECONDS", 1.0, 0.0, 1e6);
 }
 
-Expected<void> read_fifo(FaultText& text, BenchFaults& faults) {
-  DYNCAL_TRY(const double samples, text.value("SAMPLES", 2.0, 1e6));
-  faults.fifo_samples = static_cast<std::size_t>(samples);
-  return {};
-}
-
-Expected<void> read_stuck(FaultText& text, BenchFaults& faults) {
-  DYNCAL_TRY(ChannelFaults* const channel, channel_of(text, faults));
-  DYNCAL_TRY(const double samples, text.value("SAMPLES", 1.0, 1e6));
-  channel->stuck_samples = static_cast<std::size_t>(samples);
-  DYNCAL_TRY(channel->stuck_every_s, text.setting("every", "SECONDS", 1.0, 1e-3, 1e6));
-  return {};
-}
-
-Expected<void> read_hum(FaultText& text, BenchFaults& faults) {
-  DYNCAL_TRY(ChannelFaults* const channel, channel_of(text, faults));
-  DYNCAL_TRY(channel->hum_rel, text.value("PART", 0.0, 10.0));
-  DYNCAL_TRY(channel->hum_hz, text.setting("frequency", "HZ", 50.0, 0.1, 1e5));
-  DYNCAL_TRY(const auto when, text.word("while", "always", {"always", "driven"}));
-  channel->hum_while_driven = when == "driven";
-  return {};
-}
-
-Expected<void> read_drift(FaultText& text, BenchFaults& faults) {
-  DYNCAL_TRY(ChannelFaults* const channel, channel_of(text, faults));
-  DYNCAL_TRY(channel->drift_rel_per_s, text.value("PART", -10.0, 10.0));
-  return {};
-}
-
-Expected<void> read_knock(FaultText& text, BenchFaults& faults) {
-  DYNCAL_TRY(ChannelFaults* const channel, channel_of(text, faults));
-  DYNCAL_TRY(channel->knock_rel, text.value("PART", -1e3, 1e3));
-  DYNCAL_TRY(channel->knock_after_s, text.setting("after", "SECONDS", 1.0, 0.0, 1e6));
-  return {};
-}
-
-Expected<void> read_delay_change(FaultText& text, BenchFaults& faults) {
-  DYNCAL_TRY(const double by_s, text.value("SECONDS", -0.1, 0.1));
-  DYNCAL_TRY(const double after_s, text.setting("after", "SECONDS", 1.0, 0.0, 1e6));
-  faults.delay_change = {by_s, after_s};
-  return {};
-}
-
-Expected<void> read_wandering(FaultText& text, BenchFaults& faults) {
-  DYNCAL_TRY(const double part, text.value("PART", 0.0, 0.5));
-  DYNCAL_TRY(const double period_s, text.setting("period", "SECONDS", 1.0, 0.01, 1e6));
-  faults.wandering = {part, period_s};
-  return {};
-}
-
-Expected<void> read_loss(FaultText& text, BenchFaults& faults) {
-  DYNCAL_TRY(const double probability, text.value("PROBABILITY", 0.0, 1.0));
-  DYNCAL_TRY(const auto at, text.word("at", "", {"sensor", "acs"}));
-  DYNCAL_TRY(const auto counted, text.word("counted", "yes", {"yes", "no"}));
+void read_loss(FaultText& text, BenchFaults& faults) {
+  const double probability = text.value("PROBABILITY", 0.0, 1.0);
+  const std::string at = text.word("at", "", {"sensor", "acs"});
+  const bool is_counted = text.word("counted", "yes", {"yes", "no"}) == "yes";
   auto& loss = at == "acs" ? faults.acs_loss : faults.sensor_loss;
-  loss = {probability, counted == "yes"};
-  return {};
+  loss = {probability, is_counted};
 }
 
-Expected<void> read_free_running(FaultText& text, BenchFaults& faults) {
-  return text.without_value(faults.series_start.free_running);
-}
-
-Expected<void> read_start_jitter(FaultText& text, BenchFaults& faults) {
-  DYNCAL_TRY(faults.series_start.jitter_s, text.value("SECONDS", 0.0, 1.0));
-  return {};
-}
-
-Expected<void> read_exciter_gain(FaultText& text, BenchFaults& faults) {
-  DYNCAL_TRY(faults.exciter_gain, text.value("FACTOR", 1e-3, 1e3));
-  return {};
-}
-
-Expected<void> read_ring_down(FaultText& text, BenchFaults& faults) {
-  DYNCAL_TRY(faults.ring_down_s, text.value("SECONDS", 1e-3, 10.0));
-  return {};
-}
-
-Expected<void> read_left_offset(FaultText& text, BenchFaults& faults) {
-  DYNCAL_TRY(faults.left_in_generator.offset_v, text.value("VOLTS", -10.0, 10.0));
-  return {};
-}
-
-Expected<void> read_left_burst(FaultText& text, BenchFaults& faults) {
-  return text.without_value(faults.left_in_generator.in_burst);
-}
-
-Expected<void> read_no_reset(FaultText& text, BenchFaults& faults) {
-  return text.without_value(faults.left_in_generator.is_kept);
-}
-
-Expected<void> read_output_stays_on(FaultText& text, BenchFaults& faults) {
-  return text.without_value(faults.output_stays_on);
-}
-
-Expected<void> read_stamp_fault(FaultText& text, BenchFaults& faults) {
-  DYNCAL_TRY(faults.stamps[text.name()], text.value("PROBABILITY", 0.0, 1.0));
-  return {};
+// A number of one channel.
+template <double ChannelFaults::*member>
+void read_of_channel(FaultText& text, BenchFaults& faults, const char* meaning, double lowest,
+                     double highest) {
+  ChannelFaults& channel = text.channel_of(faults);
+  channel.*member = text.value(meaning, lowest, highest);
 }
 
 struct Fault {
-  const char* name;
-  const char* form;
-  Expected<void> (*read)(FaultText&, BenchFaults&);
+  std::string_view form; // NAME=VALUE[,KEY=VALUE...]
+  void (*read)(FaultText&, BenchFaults&);
+
+  [[nodiscard]] std::string_view name() const { return form.substr(0, form.find_first_of("=,")); }
 };
 
-constexpr std::array<Fault, 19> known_faults{{
-    {"over-range", "over-range=LIMIT,at=CHANNEL", read_over_range},
-    {"soft-ends", "soft-ends=LIMIT,at=CHANNEL[,end=upper|lower]", read_soft_ends},
-    {"held", "held=PART,at=CHANNEL", read_held},
-    {"fifo", "fifo=SAMPLES", read_fifo},
-    {"stuck", "stuck=SAMPLES,at=CHANNEL[,every=SECONDS]", read_stuck},
-    {"hum", "hum=PART,at=CHANNEL[,frequency=HZ][,while=driven]", read_hum},
-    {"drift", "drift=PART_PER_SECOND,at=CHANNEL", read_drift},
-    {"knock", "knock=PART,at=CHANNEL[,after=SECONDS]", read_knock},
-    {"delay-change", "delay-change=SECONDS[,after=SECONDS]", read_delay_change},
-    {"wandering", "wandering=PART[,period=SECONDS]", read_wandering},
-    {"loss", "loss=PROBABILITY,at=sensor|acs[,counted=no]", read_loss},
-    {"free-running", "free-running", read_free_running},
-    {"start-jitter", "start-jitter=SECONDS", read_start_jitter},
-    {"exciter-gain", "exciter-gain=FACTOR", read_exciter_gain},
-    {"ring-down", "ring-down=SECONDS", read_ring_down},
-    {"generator-offset", "generator-offset=VOLTS", read_left_offset},
-    {"generator-burst", "generator-burst", read_left_burst},
-    {"generator-no-reset", "generator-no-reset", read_no_reset},
-    {"output-stays-on", "output-stays-on", read_output_stays_on},
-}};
+constexpr std::array known_faults{
+    Fault{"over-range=LIMIT,at=CHANNEL",
+          [](FaultText& text, BenchFaults& faults) {
+            read_of_channel<&ChannelFaults::range>(text, faults, "LIMIT", 1e-3, 1e4);
+          }},
+    Fault{"soft-ends=LIMIT,at=CHANNEL[,end=upper|lower]", read_soft_ends},
+    Fault{"held=PART,at=CHANNEL",
+          [](FaultText& text, BenchFaults& faults) {
+            read_of_channel<&ChannelFaults::held_part>(text, faults, "PART", 0.0, 1.0);
+          }},
+    Fault{"fifo=SAMPLES",
+          [](FaultText& text, BenchFaults& faults) {
+            faults.fifo_samples = static_cast<std::size_t>(text.value("SAMPLES", 2.0, 1e6));
+          }},
+    Fault{"stuck=SAMPLES,at=CHANNEL[,every=SECONDS]", read_stuck},
+    Fault{"hum=PART,at=CHANNEL[,frequency=HZ][,while=driven]", read_hum},
+    Fault{"drift=PART_PER_SECOND,at=CHANNEL",
+          [](FaultText& text, BenchFaults& faults) {
+            read_of_channel<&ChannelFaults::drift_rel_per_s>(text, faults, "PART", -10.0, 10.0);
+          }},
+    Fault{"knock=PART,at=CHANNEL[,after=SECONDS]", read_knock},
+    Fault{"delay-change=SECONDS[,after=SECONDS]",
+          [](FaultText& text, BenchFaults& faults) {
+            faults.delay_change = {text.value("SECONDS", -0.1, 0.1),
+                                   text.setting("after", "SECONDS", 1.0, 0.0, 1e6)};
+          }},
+    Fault{"wandering=PART[,period=SECONDS]",
+          [](FaultText& text, BenchFaults& faults) {
+            faults.wandering = {text.value("PART", 0.0, 0.5),
+                                text.setting("period", "SECONDS", 1.0, 0.01, 1e6)};
+          }},
+    Fault{"loss=PROBABILITY,at=sensor|acs[,counted=no]", read_loss},
+    Fault{"free-running",
+          [](FaultText& text, BenchFaults& faults) {
+            faults.series_start.free_running = text.without_value();
+          }},
+    Fault{"start-jitter=SECONDS",
+          [](FaultText& text, BenchFaults& faults) {
+            faults.series_start.jitter_s = text.value("SECONDS", 0.0, 1.0);
+          }},
+    Fault{"exciter-gain=FACTOR",
+          [](FaultText& text, BenchFaults& faults) {
+            faults.exciter_gain = text.value("FACTOR", 1e-3, 1e3);
+          }},
+    Fault{"ring-down=SECONDS",
+          [](FaultText& text, BenchFaults& faults) {
+            faults.ring_down_s = text.value("SECONDS", 1e-3, 10.0);
+          }},
+    Fault{"generator-offset=VOLTS",
+          [](FaultText& text, BenchFaults& faults) {
+            faults.left_in_generator.offset_v = text.value("VOLTS", -10.0, 10.0);
+          }},
+    Fault{"generator-burst",
+          [](FaultText& text, BenchFaults& faults) {
+            faults.left_in_generator.in_burst = text.without_value();
+          }},
+    Fault{"generator-no-reset",
+          [](FaultText& text, BenchFaults& faults) {
+            faults.left_in_generator.is_kept = text.without_value();
+          }},
+    Fault{"output-stays-on",
+          [](FaultText& text, BenchFaults& faults) {
+            faults.output_stays_on = text.without_value();
+          }},
+};
 
-std::vector<std::string> forms() {
-  std::vector<std::string> all;
-  all.reserve(known_faults.size());
-  for (const Fault& fault : known_faults) {
-    all.emplace_back(fault.form);
-  }
+std::vector<std::string_view> forms() {
+  std::vector<std::string_view> all;
+  std::ranges::transform(known_faults, std::back_inserter(all), &Fault::form);
   return all;
 }
 
@@ -290,13 +255,15 @@ Expected<void> read_fault(const std::string& text, BenchFaults& faults) {
   FaultText fault(text);
   const auto& stamp_faults = device::stamp_fault_names();
   const auto* known = std::ranges::find(known_faults, fault.name(), &Fault::name);
-  const bool is_of_stamps = std::ranges::find(stamp_faults, fault.name()) != stamp_faults.end();
-  if (known == known_faults.end() && !is_of_stamps) {
-    return fault.refuse(fmt::format("no such fault; there are: {}; of stamps: {}",
-                                    fmt::join(forms(), ", "), fmt::join(stamp_faults, ", ")));
+  if (known != known_faults.end()) {
+    known->read(fault, faults);
+  } else if (std::ranges::find(stamp_faults, fault.name()) != stamp_faults.end()) {
+    faults.stamps[fault.name()] = fault.value("PROBABILITY", 0.0, 1.0);
+  } else {
+    fault.refuse(fmt::format("no such fault; there are: {}; of stamps: {}",
+                             fmt::join(forms(), ", "), fmt::join(stamp_faults, ", ")));
   }
-  const auto read = is_of_stamps ? read_stamp_fault : known->read;
-  return read(fault, faults).and_then([&] { return fault.nothing_left(); });
+  return fault.outcome();
 }
 
 } // namespace dyncal::inline programs::virtual_bench
