@@ -21,12 +21,13 @@ void add_text(XmlElement parent, std::string_view element, std::string_view text
   parent.add(element).add("dcc:content", text).attribute("lang", "en");
 }
 
+void add_line(XmlElement parent, std::string_view element, std::string_view text) {
+  if (!text.empty()) {
+    parent.add(element, single_line(text));
+  }
+}
+
 void add_contact(XmlElement contact, const Contact& from) {
-  const auto add_line = [](XmlElement parent, std::string_view element, const std::string& text) {
-    if (!text.empty()) {
-      parent.add(element, single_line(text));
-    }
-  };
   add_text(contact, "dcc:name", from.name);
   add_line(contact, "dcc:eMail", from.email);
   add_line(contact, "dcc:phone", from.phone);
@@ -37,6 +38,31 @@ void add_contact(XmlElement contact, const Contact& from) {
   add_line(location, "dcc:postCode", from.post_code);
   add_line(location, "dcc:city", from.city);
   add_line(location, "dcc:countryCode", from.country);
+}
+
+void add_make(XmlElement parent, const std::string& manufacturer, const std::string& model) {
+  if (!manufacturer.empty()) {
+    add_text(parent.add("dcc:manufacturer"), "dcc:name", manufacturer);
+  }
+  add_line(parent, "dcc:model", model);
+}
+
+void add_identification(XmlElement list, std::string_view type, std::string_view issuer,
+                        const std::string& value, std::string_view name) {
+  XmlElement identification = list.add("dcc:identification").attribute("refType", type);
+  identification.add("dcc:issuer", issuer);
+  identification.add("dcc:value", single_line(value));
+  add_text(identification, "dcc:name", name);
+}
+
+void add_software(XmlElement list, const std::string& text, std::string_view description) {
+  const std::string line = single_line(text);
+  const std::size_t space = line.find(' ');
+  XmlElement software = list.add("dcc:software");
+  add_text(software, "dcc:name", line.substr(0, space));
+  software.add("dcc:release", space == std::string::npos ? "not stated" : line.substr(space + 1));
+  software.add("dcc:type", "application");
+  add_text(software, "dcc:description", description);
 }
 
 XmlDocument dcc_of(const CertificateContents& contents) {

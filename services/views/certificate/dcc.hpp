@@ -23,8 +23,17 @@ void add_results(XmlElement measurement_result, const std::vector<CertifiedChann
 
 // dcc:name (or another element of that type) with one text in English.
 void add_text(XmlElement parent, std::string_view element, std::string_view text);
+// The text in one line; nothing where it is empty.
+void add_line(XmlElement parent, std::string_view element, std::string_view text);
 // dcc:location and what stands before it in a contact.
 void add_contact(XmlElement contact, const Contact& from);
+// dcc:manufacturer and dcc:model, as far as they are known.
+void add_make(XmlElement parent, const std::string& manufacturer, const std::string& model);
+// `refType` may be empty.
+void add_identification(XmlElement list, std::string_view type, std::string_view issuer,
+                        const std::string& value, std::string_view name);
+// Of a text "dyncal 0.2.0 (1a2b3c4)": name and release.
+void add_software(XmlElement list, const std::string& text, std::string_view description);
 // Single-spaced and never empty: what dcc:notEmptyStringType takes.
 [[nodiscard]] std::string single_line(std::string_view text, std::string_view otherwise = "-");
 

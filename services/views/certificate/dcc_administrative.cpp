@@ -7,28 +7,6 @@
 namespace dyncal::inline views {
 namespace {
 
-// "dyncal 0.2.0 (1a2b3c4)": name and release.
-void add_software(XmlElement list, const std::string& text, std::string_view description) {
-  const std::string line = single_line(text);
-  const std::size_t space = line.find(' ');
-  XmlElement software = list.add("dcc:software");
-  add_text(software, "dcc:name", line.substr(0, space));
-  software.add("dcc:release", space == std::string::npos ? "not stated" : line.substr(space + 1));
-  software.add("dcc:type", "application");
-  add_text(software, "dcc:description", description);
-}
-
-void add_identification(XmlElement list, std::string_view type, std::string_view issuer,
-                        const std::string& value, std::string_view name) {
-  XmlElement identification = list.add("dcc:identification");
-  if (!type.empty()) {
-    identification.attribute("refType", type);
-  }
-  identification.add("dcc:issuer", issuer);
-  identification.add("dcc:value", single_line(value));
-  add_text(identification, "dcc:name", name);
-}
-
 void add_core_data(XmlElement parent, const CertificateContents& contents) {
   XmlElement core = parent.add("dcc:coreData");
   core.add("dcc:countryCodeISO3166_1", contents.laboratory.laboratory.country);
@@ -60,12 +38,7 @@ void add_item(XmlElement parent, const SensorFile& sensor) {
     software.add("dcc:release", single_line(sensor.firmware));
     software.add("dcc:type", "firmware");
   }
-  if (!sensor.manufacturer.empty()) {
-    add_text(item.add("dcc:manufacturer"), "dcc:name", sensor.manufacturer);
-  }
-  if (!sensor.model.empty()) {
-    item.add("dcc:model", single_line(sensor.model));
-  }
+  add_make(item, sensor.manufacturer, sensor.model);
   XmlElement identifications = item.add("dcc:identifications");
   add_identification(identifications, "basic_serialNo", "manufacturer", sensor.serial,
                      "Serial number");
@@ -77,9 +50,7 @@ void add_item(XmlElement parent, const SensorFile& sensor) {
 
 void add_laboratory(XmlElement parent, const LaboratoryFile& file) {
   XmlElement laboratory = parent.add("dcc:calibrationLaboratory");
-  if (!file.accreditation.empty()) {
-    laboratory.add("dcc:calibrationLaboratoryCode", single_line(file.accreditation));
-  }
+  add_line(laboratory, "dcc:calibrationLaboratoryCode", file.accreditation);
   add_contact(laboratory.add("dcc:contact"), file.laboratory);
 }
 
@@ -88,9 +59,7 @@ void add_persons(XmlElement parent, const LaboratoryFile& file) {
   for (const Person& person : file.persons) {
     XmlElement one = list.add("dcc:respPerson");
     add_text(one.add("dcc:person"), "dcc:name", person.name);
-    if (!person.role.empty()) {
-      one.add("dcc:role", single_line(person.role));
-    }
+    add_line(one, "dcc:role", person.role);
     if (person.main_signer) {
       one.add("dcc:mainSigner", "true");
     }

@@ -19,9 +19,7 @@ constexpr double pascal_per_hpa = 100.0;
 XmlElement add_method(XmlElement list, std::string_view type, std::string_view name,
                       const std::string& description, const std::vector<std::string>& norms) {
   XmlElement method = list.add("dcc:usedMethod");
-  if (!type.empty()) {
-    method.attribute("refType", type);
-  }
+  method.attribute("refType", type);
   add_text(method, "dcc:name", name);
   add_text(method, "dcc:description", description);
   for (const std::string& norm : norms) {
@@ -57,18 +55,9 @@ void add_methods(XmlElement parent, const CertificateContents& contents) {
 
 void add_used_software(XmlElement parent, const StoredResult& result) {
   XmlElement list = parent.add("dcc:usedSoftware");
-  std::vector<std::pair<std::string, std::string>> programs{{result.software, "conducted the run"}};
+  add_software(list, result.software, "conducted the run");
   if (!result.analysis_software.empty()) {
-    programs.emplace_back(result.analysis_software, "evaluated the run");
-  }
-  for (const auto& [text, task] : programs) {
-    const std::string line = single_line(text);
-    const std::size_t space = line.find(' ');
-    XmlElement software = list.add("dcc:software");
-    add_text(software, "dcc:name", line.substr(0, space));
-    software.add("dcc:release", space == std::string::npos ? "not stated" : line.substr(space + 1));
-    software.add("dcc:type", "application");
-    add_text(software, "dcc:description", task);
+    add_software(list, result.analysis_software, "evaluated the run");
   }
 }
 
@@ -79,18 +68,10 @@ XmlElement add_equipment(XmlElement list, const Equipment& equipment,
   if (!description.empty()) {
     add_text(one, "dcc:description", description);
   }
-  if (!equipment.manufacturer.empty()) {
-    add_text(one.add("dcc:manufacturer"), "dcc:name", equipment.manufacturer);
-  }
-  if (!equipment.model.empty()) {
-    one.add("dcc:model", single_line(equipment.model));
-  }
+  add_make(one, equipment.manufacturer, equipment.model);
   if (!equipment.serial.empty()) {
-    XmlElement identification = one.add("dcc:identifications").add("dcc:identification");
-    identification.attribute("refType", "basic_serialNo");
-    identification.add("dcc:issuer", "manufacturer");
-    identification.add("dcc:value", single_line(equipment.serial));
-    add_text(identification, "dcc:name", "Serial number");
+    add_identification(one.add("dcc:identifications"), "basic_serialNo", "manufacturer",
+                       equipment.serial, "Serial number");
   }
   return one;
 }

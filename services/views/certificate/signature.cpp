@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <ctime>
 
 #include <fmt/core.h>
@@ -258,17 +257,10 @@ bool verifies(const XmlDocument& document, X509* certificate) {
 // The end of YYYY-MM-DD in UTC, for a signer's certificate may be of that day; now for anything
 // else.
 std::time_t instant_of(const std::string& day) {
-  constexpr std::size_t length = 10;
-  if (day.size() < length) {
-    return std::time(nullptr);
-  }
   std::tm end{};
-  end.tm_year = std::atoi(day.substr(0, 4).c_str()) - 1900;
-  end.tm_mon = std::atoi(day.substr(5, 2).c_str()) - 1;
-  end.tm_mday = std::atoi(day.substr(8, 2).c_str());
   end.tm_hour = 23;
   end.tm_min = 59;
-  return timegm(&end);
+  return strptime(day.c_str(), "%Y-%m-%d", &end) == nullptr ? std::time(nullptr) : timegm(&end);
 }
 
 // Empty: the chain leads to a trusted certificate.

@@ -96,7 +96,9 @@ XmlElement XmlElement::add(std::string_view qualified_name, std::string_view tex
 }
 
 XmlElement& XmlElement::attribute(const char* name, std::string_view value) {
-  xmlNewProp(node_, xml_text(name), xml_text(document_text(value).c_str()));
+  if (!value.empty()) {
+    xmlNewProp(node_, xml_text(name), xml_text(document_text(value).c_str()));
+  }
   return *this;
 }
 

@@ -34,7 +34,7 @@ public:
   XmlElement add(std::string_view qualified_name);
   // The same with text in it.
   XmlElement add(std::string_view qualified_name, std::string_view text);
-  XmlElement& attribute(const char* name, std::string_view value);
+  XmlElement& attribute(const char* name, std::string_view value); // none of an empty value
 
   [[nodiscard]] std::string name() const; // without its prefix
   [[nodiscard]] bool is(std::string_view name, std::string_view of_namespace) const;
