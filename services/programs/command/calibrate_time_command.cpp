@@ -267,12 +267,8 @@ figures::Figure figure_of(const CalibrateTimeOptions& command, const EvaluatedPu
                                command.reference_offset_s ? "given" : "the mean of the record"),
                    "positive: the stamp is later than the reference pulse"};
   data.tick_s = 1.0 / evaluated.pulses.ticks_per_second;
-  for (const analysis::StampDeviation& one : deviation.deviations) {
-    data.deviations.push_back({one.session, one.time_s, one.deviation_s});
-  }
-  for (const analysis::AllanPoint& point : deviation.allan) {
-    data.allan.push_back({point.tau_s, point.deviation});
-  }
+  data.deviations = deviation.deviations;
+  data.allan = deviation.allan;
   return stamp_deviation_figure(data, command.output.stem().string());
 }
 

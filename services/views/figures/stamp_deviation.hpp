@@ -3,32 +3,22 @@
 // deviation.
 #pragma once
 
-#include <cstddef>
 #include <string>
 #include <vector>
 
+#include "analysis/instrument/stamp_deviation.hpp"
 #include "services/views/figures/figure.hpp"
 
 namespace dyncal::inline views::figures {
 
-struct StampDeviationPoint {
-  std::size_t session;
-  double time_s;
-  double deviation_s;
-};
-
 struct StampDeviationData {
-  struct Allan {
-    double tau_s;
-    double deviation;
-  };
   std::string title{};
   std::string subtitle{};
   std::vector<std::string> comments{}; // of the CSV
   double tick_s =
       0; // of the counter; 0: not known. A bin of the histogram is a whole number of ticks.
-  std::vector<StampDeviationPoint> deviations{};
-  std::vector<Allan> allan{}; // may be empty: the panel is left out
+  std::vector<analysis::StampDeviation> deviations{};
+  std::vector<analysis::AllanPoint> allan{}; // may be empty: the panel is left out
 };
 
 [[nodiscard]] Figure stamp_deviation_figure(const StampDeviationData& data,

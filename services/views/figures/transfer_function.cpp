@@ -210,27 +210,11 @@ const char* symbol_of(ErrorBars bars) {
 }
 
 double half_magnitude_bar(const ValueOverFrequency& value, ErrorBars bars) {
-  switch (bars) {
-  case ErrorBars::standard:
-    return value.value.u_magnitude;
-  case ErrorBars::expanded:
-    return value.expanded_magnitude;
-  case ErrorBars::none:
-    break;
-  }
-  return 0.0;
+  return per_enumerator(bars, {value.value.u_magnitude, value.expanded_magnitude, 0.0});
 }
 
 double half_phase_bar(const ValueOverFrequency& value, ErrorBars bars) {
-  switch (bars) {
-  case ErrorBars::standard:
-    return value.value.u_phase_rad;
-  case ErrorBars::expanded:
-    return value.expanded_phase_rad;
-  case ErrorBars::none:
-    break;
-  }
-  return 0.0;
+  return per_enumerator(bars, {value.value.u_phase_rad, value.expanded_phase_rad, 0.0});
 }
 
 std::vector<double> told_levels(const TransferFunctionData& data) {
