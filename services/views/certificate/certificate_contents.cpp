@@ -5,6 +5,7 @@
 #include <ctime>
 #include <fstream>
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <openssl/rand.h>
@@ -38,24 +39,14 @@ std::string new_uuid() {
   return text;
 }
 
-std::string today() {
-  const std::time_t now = std::time(nullptr);
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  return fmt::format("{:04}-{:02}-{:02}", utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday);
-}
-
 // The sensor as its source described itself to the run.
 SensorFile described_sensor(const StoredResult& result, const std::string& channel) {
   SensorFile sensor;
-  const std::string name = channel.substr(0, channel.find('/'));
-  for (const RunSource& source : result.sources) {
-    if (source.source == name) {
-      sensor.name = "Digital sensor";
-      sensor.model = source.description.device;
-      sensor.serial = source.description.serial;
-      sensor.firmware = source.description.firmware;
-    }
+  if (const auto source = described_source(result, channel)) {
+    sensor.name = "Digital sensor";
+    sensor.model = source->device;
+    sensor.serial = source->serial;
+    sensor.firmware = source->firmware;
   }
   return sensor;
 }
@@ -108,7 +99,7 @@ Expected<void> gather_customer(CertificateContents& contents) {
 
 Expected<void> gather_dates(const CertificateRequest& request, CertificateContents& contents) {
   constexpr std::size_t date_length = 10;
-  contents.issued = today();
+  contents.issued = fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)));
   contents.began = request.performed.empty() ? contents.result.began_utc.substr(0, date_length)
                                              : request.performed;
   contents.ended = request.performed.empty() ? contents.result.ended_utc.substr(0, date_length)
@@ -146,22 +137,9 @@ Expected<void> hash_recording(const std::filesystem::path& run, CertificateConte
   return {};
 }
 
-std::vector<std::string> asked_channels(const StoredResult& result,
-                                        const std::vector<std::string>& asked) {
-  if (!asked.empty()) {
-    return asked;
-  }
-  std::vector<std::string> responding;
-  for (const StoredChannel& channel : result.channels) {
-    if (channel.responds) {
-      responding.push_back(channel.channel);
-    }
-  }
-  return responding;
-}
-
 Expected<void> gather_values(const CertificateRequest& request, CertificateContents& contents) {
-  const std::vector<std::string> names = asked_channels(contents.result, request.channels);
+  const std::vector<std::string> names =
+      request.channels.empty() ? responding_channels(contents.result) : request.channels;
   if (names.empty()) {
     return fail(ErrorCode::no_result, fmt::format("{}: no channel responds to the excitation, so "
                                                   "there is nothing to certify",
@@ -184,17 +162,11 @@ Expected<void> refuse_unless_forced(const CertificateRequest& request,
   if (contents.objections.empty() || request.force) {
     return {};
   }
-  const std::size_t shown = std::min(contents.objections.size(), max_shown);
-  const std::vector<std::string> first(contents.objections.begin(),
-                                       contents.objections.begin() +
-                                           static_cast<std::ptrdiff_t>(shown));
-  const std::string others = contents.objections.size() > shown
-                                 ? fmt::format("; and {} more", contents.objections.size() - shown)
-                                 : "";
   return fail(ErrorCode::no_result,
-              fmt::format("{}: no certificate: {}{}. Measure again, leave channels out with "
+              fmt::format("{}: no certificate: {}. Measure again, leave channels out with "
                           "--channel, or --force a certificate that says all this",
-                          contents.result.file.string(), fmt::join(first, "; "), others));
+                          contents.result.file.string(),
+                          fmt::join(first_of(contents.objections, max_shown), "; ")));
 }
 
 } // namespace

@@ -1,30 +1,18 @@
 #include "services/views/document/report_document.hpp"
 
 #include <algorithm>
-#include <array>
 #include <ctime>
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "services/base/version.hpp"
 #include "services/views/document/html.hpp"
-#include "services/views/document/report_front.hpp"
-#include "services/views/document/report_results.hpp"
-#include "services/views/document/report_setup.hpp"
-#include "services/views/document/report_style.hpp"
+#include "services/views/report/stated_value.hpp"
 
 namespace dyncal::inline views {
 namespace {
-
-std::string today() {
-  const std::time_t now = std::time(nullptr);
-  std::tm local{};
-  localtime_r(&now, &local);
-  std::array<char, 16> text{};
-  std::strftime(text.data(), text.size(), "%Y-%m-%d", &local);
-  return text.data();
-}
 
 std::vector<std::string> channels_with_values(const StoredResult& result) {
   std::vector<std::string> names;
@@ -50,12 +38,10 @@ Expected<std::vector<std::string>> chosen_channels(const StoredResult& result,
   if (!asked.empty()) {
     return asked;
   }
-  std::vector<std::string> responding;
-  for (const StoredChannel& channel : result.channels) {
-    if (channel.responds && std::find(known.begin(), known.end(), channel.channel) != known.end()) {
-      responding.push_back(channel.channel);
-    }
-  }
+  std::vector<std::string> responding = responding_channels(result);
+  std::erase_if(responding, [&](const std::string& channel) {
+    return std::ranges::find(known, channel) == known.end();
+  });
   return responding.empty() ? known : responding;
 }
 
@@ -138,7 +124,7 @@ Expected<ReportContents> gather_report(const ReportRequest& request) {
   }
   DYNCAL_TRY(add_laboratory(request, contents));
   add_pictures(request.run, contents);
-  contents.issued = today();
+  contents.issued = fmt::format("{:%Y-%m-%d}", fmt::localtime(std::time(nullptr)));
   contents.software = software_version();
   return contents;
 }

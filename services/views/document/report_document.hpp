@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "services/base/error.hpp"
-#include "services/views/document/report_contents.hpp"
+#include "services/views/document/report_sections.hpp"
 
 namespace dyncal::inline views {
 

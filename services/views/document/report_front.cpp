@@ -1,4 +1,4 @@
-#include "services/views/document/report_front.hpp"
+#include "services/views/document/report_sections.hpp"
 
 #include <algorithm>
 
@@ -44,15 +44,10 @@ std::string joined_texts(const std::vector<std::string>& texts) {
 
 // As the source of the channel under calibration described itself.
 std::string described_sensor(const ReportContents& contents) {
-  const std::string& channel = contents.channels.front();
-  const std::string name = channel.substr(0, channel.find('/'));
-  for (const RunSource& source : contents.result.sources) {
-    if (source.source == name) {
-      const std::string& serial = source.description.serial;
-      return joined_texts({source.description.device, serial.empty() ? "" : "serial " + serial});
-    }
-  }
-  return "";
+  const auto source = described_source(contents.result, contents.channels.front());
+  return source ? joined_texts(
+                      {source->device, source->serial.empty() ? "" : "serial " + source->serial})
+                : "";
 }
 
 std::string sensor_text(const ReportContents& contents) {

@@ -1,4 +1,4 @@
-#include "services/views/document/report_results.hpp"
+#include "services/views/document/report_sections.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +15,7 @@
 #include "services/views/document/html.hpp"
 #include "services/views/figures/deviation.hpp"
 #include "services/views/report/stated_value.hpp"
+#include "services/views/report/transfer_data.hpp"
 
 namespace dyncal::inline views {
 namespace {
@@ -29,8 +30,7 @@ std::string in_unit(const std::string& quantity, const std::string& unit) {
 
 // Of a flag in the list of the report; 0: not in it.
 std::size_t flag_number(const StoredResult& result, const std::string& name) {
-  const auto found = std::find_if(result.flags.begin(), result.flags.end(),
-                                  [&](const StoredFlag& flag) { return flag.name == name; });
+  const auto found = std::ranges::find(result.flags, name, &StoredFlag::name);
   return found == result.flags.end() ? 0
                                      : static_cast<std::size_t>(found - result.flags.begin()) + 1;
 }
@@ -98,15 +98,7 @@ figures::TransferFunctionData transfer_data(const StoredResult& result, const st
   data.excited_axis = values.front().excited_axis;
   for (const StoredPoint& point : result.points_of(channel)) {
     if (point.valid) {
-      data.repetitions.push_back(
-          {point.repetition,
-           {point.frequency_hz,
-            point.level_m_s2,
-            {point.magnitude, point.u_magnitude, point.phase_rad, point.u_phase_rad},
-            joined(point.flag_names)},
-           point.residual_rel(),
-           point.step,
-           point.attempt});
+      data.repetitions.push_back(repetition_of(point, joined(point.flag_names)));
     }
   }
   for (const StoredValue& value : values) {
@@ -205,9 +197,8 @@ std::string budget_table(const std::vector<StoredPoint>& points,
     std::vector<std::string> cells{place_cell(point, with_level)};
     double squares = 0.0;
     for (const analysis::Contribution& column : rows) {
-      const auto found = std::find_if(
-          point.budget.begin(), point.budget.end(),
-          [&](const analysis::Contribution& row) { return row.name() == column.name(); });
+      const auto found =
+          std::ranges::find(point.budget, column.name(), &analysis::Contribution::name);
       if (found == point.budget.end()) {
         cells.emplace_back("");
         continue;
@@ -317,13 +308,8 @@ std::string flag_section(const ReportContents& contents) {
   for (std::size_t i = 0; i < contents.result.flags.size(); ++i) {
     const StoredFlag& flag = contents.result.flags[i];
     constexpr std::size_t max_sentences = 4;
-    std::vector<std::string> sentences = flag.sentences;
-    if (sentences.size() > max_sentences) {
-      const std::size_t others = sentences.size() - max_sentences;
-      sentences.resize(max_sentences);
-      sentences.push_back(fmt::format("and {} more", others));
-    }
-    table.row({fmt::format("F{}", i + 1), flag.name, fmt::format("{}", fmt::join(sentences, "; ")),
+    table.row({fmt::format("F{}", i + 1), flag.name,
+               fmt::format("{}", fmt::join(first_of(flag.sentences, max_sentences), "; ")),
                flag.meaning});
   }
   return heading + table.finish();

@@ -1,4 +1,4 @@
-#include "services/views/document/report_setup.hpp"
+#include "services/views/document/report_sections.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "services/views/document/report_style.hpp"
+#include "services/views/document/report_sections.hpp"
 
 namespace dyncal::inline views {
 namespace {

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "services/views/report/stated_value.hpp"
+
 namespace dyncal::inline views {
 namespace {
 
@@ -21,30 +23,25 @@ void add_once(std::vector<std::string>& texts, const std::string& text) {
 
 } // namespace
 
-std::vector<FlagMeaning> flag_legend(const std::vector<Flag>& flags) {
-  std::map<ResultFlag, FlagMeaning> by_kind;
+std::vector<StoredFlag> flag_legend(const std::vector<Flag>& flags) {
+  std::map<ResultFlag, StoredFlag> by_kind;
   for (const Flag& flag : flags) {
-    FlagMeaning& meaning = by_kind[flag.kind];
+    StoredFlag& meaning = by_kind[flag.kind];
     meaning.name = name_of(flag.kind);
-    meaning.explanation = explanation_of(flag.kind);
+    meaning.meaning = explanation_of(flag.kind);
     add_once(meaning.sentences, flag.sentence);
   }
-  std::vector<FlagMeaning> legend;
+  std::vector<StoredFlag> legend;
   for (auto& [kind, meaning] : by_kind) {
     legend.push_back(std::move(meaning));
   }
   return legend;
 }
 
-std::string legend_line(const FlagMeaning& meaning) {
+std::string legend_line(const StoredFlag& meaning) {
   constexpr std::size_t max_sentences = 3;
-  std::vector<std::string> sentences = meaning.sentences;
-  if (sentences.size() > max_sentences) {
-    const std::size_t others = sentences.size() - max_sentences;
-    sentences.resize(max_sentences);
-    sentences.push_back(fmt::format("and {} more", others));
-  }
-  return fmt::format("{} ({}): {}", meaning.name, fmt::join(sentences, "; "), meaning.explanation);
+  return fmt::format("{} ({}): {}", meaning.name,
+                     fmt::join(first_of(meaning.sentences, max_sentences), "; "), meaning.meaning);
 }
 
 std::vector<Flag> flags_of(const RunOutcome& outcome) {

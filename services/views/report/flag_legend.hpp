@@ -8,20 +8,15 @@
 #include <vector>
 
 #include "services/evaluation/result/run_outcome.hpp"
+#include "services/views/report/stored_result.hpp"
 
 namespace dyncal::inline views {
 
-struct FlagMeaning {
-  std::string name;                   // "samples_lost"
-  std::vector<std::string> sentences; // as the results carry them, each once: "dau: samples lost"
-  std::string explanation;            // what it means and what to do
-};
-
-// Of these flags, each kind once and in the order of ResultFlag.
-[[nodiscard]] std::vector<FlagMeaning> flag_legend(const std::vector<Flag>& flags);
+// Of these flags, each kind once and in the order of ResultFlag, with each sentence of it once.
+[[nodiscard]] std::vector<StoredFlag> flag_legend(const std::vector<Flag>& flags);
 
 // "samples_lost (dau: samples lost; acs: samples lost): samples of this source are missing ..."
-[[nodiscard]] std::string legend_line(const FlagMeaning& meaning);
+[[nodiscard]] std::string legend_line(const StoredFlag& meaning);
 
 // All of a run, or of one of its channels.
 [[nodiscard]] std::vector<Flag> flags_of(const RunOutcome& outcome);

@@ -99,9 +99,7 @@ StoredResult stored_result_of(const RunOutcome& outcome) {
   result.interrupted = outcome.interrupted;
   result.problem = outcome.problem;
   result.recipe_sha256 = outcome.recipe_sha256;
-  for (const FlagMeaning& meaning : flag_legend(flags_of(outcome))) {
-    result.flags.push_back({meaning.name, meaning.sentences, meaning.explanation});
-  }
+  result.flags = flag_legend(flags_of(outcome));
   result.sources = outcome.sources;
   result.pauses = outcome.pauses;
   result.clocks = outcome.clock_reports;

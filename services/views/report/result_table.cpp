@@ -259,8 +259,8 @@ std::string legend(const RunOutcome& outcome) {
     add(report.flags);
   }
   std::string text;
-  for (const FlagMeaning& meaning : flag_legend(flags)) {
-    text += (text.empty() ? "\nFlags:\n" : "") + wrapped(one_line(legend_line(meaning)));
+  for (const StoredFlag& flag : flag_legend(flags)) {
+    text += (text.empty() ? "\nFlags:\n" : "") + wrapped(one_line(legend_line(flag)));
   }
   if (!text.empty()) {
     text += "  What no flag can tell: what-it-cannot-see.md of the guide\n";

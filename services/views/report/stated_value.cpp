@@ -84,6 +84,32 @@ std::string level_range(const std::vector<StoredPoint>& points) {
   return range_of(points, 3, [](const StoredPoint& point) { return point.measured_level_m_s2; });
 }
 
+std::vector<std::string> responding_channels(const StoredResult& result) {
+  std::vector<std::string> responding;
+  for (const StoredChannel& channel : result.channels) {
+    if (channel.responds) {
+      responding.push_back(channel.channel);
+    }
+  }
+  return responding;
+}
+
+std::optional<drivers::SourceDescription> described_source(const StoredResult& result,
+                                                           const std::string& channel) {
+  const auto found =
+      std::ranges::find(result.sources, channel.substr(0, channel.find('/')), &RunSource::source);
+  return found == result.sources.end() ? std::nullopt : std::optional(found->description);
+}
+
+std::vector<std::string> first_of(std::vector<std::string> texts, std::size_t most) {
+  if (texts.size() > most) {
+    const std::size_t others = texts.size() - most;
+    texts.resize(most);
+    texts.push_back(fmt::format("and {} more", others));
+  }
+  return texts;
+}
+
 std::string coverage_percent(double probability) {
   return fmt::format("{:.2f} %", 100.0 * probability);
 }

@@ -8,6 +8,7 @@
 // thread.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,14 @@ struct StatedValue {
 // excitation, in m/s^2: "27.3 to 28.9"; empty where nothing is known.
 [[nodiscard]] std::string temperature_range(const std::vector<StoredPoint>& points);
 [[nodiscard]] std::string level_range(const std::vector<StoredPoint>& points);
+
+// Channels that respond to the excitation.
+[[nodiscard]] std::vector<std::string> responding_channels(const StoredResult& result);
+// As the source of a channel described itself to the run; nothing: it did not.
+[[nodiscard]] std::optional<drivers::SourceDescription>
+described_source(const StoredResult& result, const std::string& channel);
+// The first of many texts, and how many others there are.
+[[nodiscard]] std::vector<std::string> first_of(std::vector<std::string> texts, std::size_t most);
 
 // "95.45 %"
 [[nodiscard]] std::string coverage_percent(double probability);

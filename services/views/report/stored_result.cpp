@@ -132,13 +132,6 @@ std::vector<Item> those_of(const std::vector<Item>& all, const std::string& chan
 
 } // namespace
 
-double StoredPoint::residual_rel() const {
-  const auto own = std::find_if(signals.begin(), signals.end(), [&](const ChannelSignal& signal) {
-    return signal.channel == channel;
-  });
-  return own == signals.end() ? nan_value : own->residual;
-}
-
 std::vector<StoredValue> StoredResult::values_of(const std::string& channel) const {
   return those_of(values, channel);
 }
@@ -148,8 +141,7 @@ std::vector<StoredPoint> StoredResult::points_of(const std::string& channel) con
 }
 
 std::vector<Closure> StoredResult::closures_of(const std::string& channel) const {
-  const auto found = std::find_if(channels.begin(), channels.end(),
-                                  [&](const auto& one) { return one.channel == channel; });
+  const auto found = std::ranges::find(channels, channel, &StoredChannel::channel);
   return found == channels.end() ? std::vector<Closure>{} : found->closures;
 }
 
@@ -176,8 +168,7 @@ std::vector<StoredPoint> StoredResult::points_of(const std::vector<std::string>&
 }
 
 const analysis::GroupDelay* StoredResult::group_delay_of(const std::string& channel) const {
-  const auto found = std::find_if(group_delays.begin(), group_delays.end(),
-                                  [&](const StoredDelay& one) { return one.channel == channel; });
+  const auto found = std::ranges::find(group_delays, channel, &StoredDelay::channel);
   return found == group_delays.end() ? nullptr : &found->delay;
 }
 

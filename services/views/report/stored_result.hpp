@@ -64,9 +64,6 @@ struct StoredPoint : StepResult {
   double measured_level_m_s2 = nan_value;
   double u_measured_level_m_s2 = nan_value;
   std::optional<StoredFit> own_fit;
-
-  // Of the fit of the channel, over its amplitude; NaN: not known.
-  [[nodiscard]] double residual_rel() const;
 };
 
 struct StoredChannel {
@@ -86,9 +83,9 @@ struct StoredDelay {
 };
 
 struct StoredFlag {
-  std::string name;
-  std::vector<std::string> sentences;
-  std::string meaning;
+  std::string name;                   // "samples_lost"
+  std::vector<std::string> sentences; // as the results carry them, each once: "dau: samples lost"
+  std::string meaning;                // and what to do
 };
 
 struct StoredRoles { // "source/channel"; empty: none

@@ -153,10 +153,7 @@ void add_measured_excitation(const RunOutcome& outcome, StoredPoint& point) {
     return;
   }
   const ChannelName& reference = outcome.recipe->reference();
-  const auto fit =
-      std::find_if(point.fits.begin(), point.fits.end(), [&](const analysis::ChannelFit& one) {
-        return one.channel == reference.text();
-      });
+  const auto fit = std::ranges::find(point.fits, reference.text(), &analysis::ChannelFit::channel);
   if (fit == point.fits.end()) {
     return;
   }

@@ -20,21 +20,8 @@ namespace dyncal::inline views {
 namespace {
 
 double fit_residual(const StepResult& result) {
-  const auto own =
-      std::find_if(result.signals.begin(), result.signals.end(),
-                   [&](const ChannelSignal& signal) { return signal.channel == result.channel; });
+  const auto own = std::ranges::find(result.signals, result.channel, &ChannelSignal::channel);
   return own == result.signals.end() ? std::numeric_limits<double>::quiet_NaN() : own->residual;
-}
-
-figures::RepetitionPoint repetition_of(const StepResult& result) {
-  return {result.repetition,
-          {result.frequency_hz,
-           result.level_m_s2,
-           {result.magnitude, result.u_magnitude, result.phase_rad, result.u_phase_rad},
-           flag_names(result.flags)},
-          fit_residual(result),
-          result.step,
-          result.attempt};
 }
 
 std::vector<const StepResult*> valid_results(const RunOutcome& outcome,
@@ -58,10 +45,10 @@ figures::TransferFunctionData common_data(const RunOutcome& outcome,
   data.unit = short_form(function.unit);
   data.excited_axis = function.excited_axis;
   for (const StepResult* result : valid_results(outcome, function.channel)) {
-    data.repetitions.push_back(repetition_of(*result));
+    data.repetitions.push_back(repetition_of(*result, flag_names(result->flags)));
   }
-  for (const FlagMeaning& meaning : flag_legend(flags_of(outcome, function))) {
-    data.flag_sentences.push_back(legend_line(meaning));
+  for (const StoredFlag& flag : flag_legend(flags_of(outcome, function))) {
+    data.flag_sentences.push_back(legend_line(flag));
   }
   return data;
 }
@@ -89,6 +76,17 @@ figures::ValueOverFrequency plain_mean(const std::vector<const StepResult*>& rep
 }
 
 } // namespace
+
+figures::RepetitionPoint repetition_of(const StepResult& result, const std::string& flag_names) {
+  return {result.repetition,
+          {result.frequency_hz,
+           result.level_m_s2,
+           {result.magnitude, result.u_magnitude, result.phase_rad, result.u_phase_rad},
+           flag_names},
+          fit_residual(result),
+          result.step,
+          result.attempt};
+}
 
 figures::TransferFunctionData transfer_data(const RunOutcome& outcome,
                                             const TransferFunction& function) {

@@ -14,6 +14,8 @@
 
 namespace dyncal::inline views {
 
+[[nodiscard]] figures::RepetitionPoint repetition_of(const StepResult& result,
+                                                     const std::string& flag_names);
 [[nodiscard]] figures::TransferFunctionData transfer_data(const RunOutcome& outcome,
                                                           const TransferFunction& function);
 [[nodiscard]] figures::TransferFunctionData transfer_data_so_far(const RunOutcome& outcome,

@@ -20,7 +20,7 @@ TEST(FlagLegend, HasEachKindOnceInTheOrderOfTheTable) {
   EXPECT_EQ(legend[0].name, "samples_lost");
   EXPECT_THAT(legend[0].sentences, ElementsAre("dau: samples lost", "acs: samples lost"));
   EXPECT_EQ(legend[1].name, "polarity_inverted");
-  EXPECT_FALSE(legend[1].explanation.empty());
+  EXPECT_FALSE(legend[1].meaning.empty());
 }
 
 TEST(FlagLegend, ALineDoesNotGrowWithTheRun) {

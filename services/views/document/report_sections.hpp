@@ -1,0 +1,61 @@
+// What a report is made of: the stored result, what laboratory and sensor files add to it, and the
+// parts that become of them, in a file for each subject. HTML; any thread.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "services/views/lab_file/embedded_picture.hpp"
+#include "services/views/lab_file/laboratory_file.hpp"
+#include "services/views/lab_file/sensor_file.hpp"
+#include "services/views/report/stored_result.hpp"
+
+namespace dyncal::inline views {
+
+struct ReportContents {
+  StoredResult result;
+  std::optional<LaboratoryFile> laboratory;
+  std::optional<SensorFile> sensor;
+  std::vector<std::string> channels;     // those whose values are shown in full
+  std::vector<EmbeddedPicture> pictures; // further figures of the run folder
+  std::vector<std::string> left_out;     // pictures that could not be taken in, and why
+  std::string issued;                    // YYYY-MM-DD
+  std::string software;                  // that makes the report
+};
+
+// Whose it is and what it is about (report_front.cpp).
+[[nodiscard]] std::string letterhead(const ReportContents& contents);
+// What a reader must know before any number: a run that was broken off, values that are missing.
+[[nodiscard]] std::string warnings(const ReportContents& contents);
+[[nodiscard]] std::string summary(const ReportContents& contents);
+[[nodiscard]] std::string remarks(const ReportContents& contents);
+[[nodiscard]] std::string signatures(const ReportContents& contents);
+// The title, also that of the window and of the PDF.
+[[nodiscard]] std::string title_of(const ReportContents& contents);
+// "Physics laboratory, Musterstadt", or the bench without a laboratory file.
+[[nodiscard]] std::string issuer_of(const ReportContents& contents);
+
+// Values (report_results.cpp). Table, figures, group delay and budget of one channel; `number`
+// numbers the SVG of the document.
+[[nodiscard]] std::string channel_section(const ReportContents& contents,
+                                          const std::string& channel, std::size_t number);
+// Channels of the run that are not shown in full.
+[[nodiscard]] std::string other_channels(const ReportContents& contents);
+[[nodiscard]] std::string flag_section(const ReportContents& contents);
+[[nodiscard]] std::string single_results(const ReportContents& contents);
+
+// What they were measured with (report_setup.cpp).
+[[nodiscard]] std::string conditions_section(const ReportContents& contents);
+[[nodiscard]] std::string losses_section(const ReportContents& contents);
+[[nodiscard]] std::string closures_section(const ReportContents& contents);
+[[nodiscard]] std::string clock_section(const ReportContents& contents);
+[[nodiscard]] std::string devices_section(const ReportContents& contents);
+[[nodiscard]] std::string software_section(const ReportContents& contents);
+[[nodiscard]] std::string recipe_section(const ReportContents& contents);
+
+// How it looks, on the screen and on A4 paper: CSS without anything to fetch (report_style.cpp).
+[[nodiscard]] std::string_view report_style();
+
+} // namespace dyncal::inline views
