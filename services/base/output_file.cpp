@@ -37,6 +37,15 @@ Expected<void> write_output_file(const std::filesystem::path& path, std::string_
   return file.write(text).and_then([&] { return file.finish(); });
 }
 
+Expected<void> write_new_file(const std::filesystem::path& path, std::string_view text) {
+  DYNCAL_TRY(auto file, OutputStream::create(path));
+  return file.write(text).and_then([&] { return file.finish(); });
+}
+
+Expected<void> check_new_file(const std::filesystem::path& path) {
+  return check_new_output(path).and_then([&] { return check_output_file(path); });
+}
+
 Expected<void> check_output_file(const std::filesystem::path& path) {
   if (path.filename().empty() || std::filesystem::is_directory(path)) {
     return cannot_be_written(path, EISDIR);

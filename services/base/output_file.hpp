@@ -19,9 +19,16 @@ namespace dyncal::inline base {
 [[nodiscard]] Expected<void> write_output_file(const std::filesystem::path& path,
                                                std::string_view text);
 
+// The same, never in place of another file of this name.
+[[nodiscard]] Expected<void> write_new_file(const std::filesystem::path& path,
+                                            std::string_view text);
+
 // Whether a file of this name could be written now: to be asked before hours of measurement rather
 // than after. Leaves nothing behind, and an older file as it is.
 [[nodiscard]] Expected<void> check_output_file(const std::filesystem::path& path);
+
+// And whether there is none of this name yet.
+[[nodiscard]] Expected<void> check_new_file(const std::filesystem::path& path);
 
 // The same for files in a folder, which is made if it is not there.
 [[nodiscard]] Expected<void> check_output_folder(const std::filesystem::path& folder);

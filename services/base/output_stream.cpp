@@ -68,7 +68,8 @@ Expected<void> write_at(const drivers::FileDescriptor& file, std::uint64_t offse
 
 Expected<void> check_new_output(const std::filesystem::path& path) {
   std::error_code unknown;
-  return path.filename().empty() || std::filesystem::exists(path, unknown)
+  return path.filename().empty() ||
+                 std::filesystem::exists(std::filesystem::symlink_status(path, unknown))
              ? Expected<void>(is_there(path))
              : Expected<void>{};
 }

@@ -48,7 +48,7 @@ def check_combinations(folder):
         found = json.loads(succeed("check", f"{name}.toml", "--json", cwd=folder))
         expect(found["status"] == "note", f"{name}: {found}")
         before = (folder / f"{name}.toml").read_bytes()
-        refuse(1, "there is such a file already", "new-bench", *options, cwd=folder)
+        refuse(1, "is there already", "new-bench", *options, cwd=folder)
         expect((folder / f"{name}.toml").read_bytes() == before, f"{name}.toml has changed")
 
 

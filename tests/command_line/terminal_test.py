@@ -95,7 +95,7 @@ def check_questions(folder):
     before = sorted(folder.iterdir())
     terminal = Terminal("new-bench", cwd=folder)
     terminal.write("asked-1\n")
-    terminal.read_until(lambda text: "there is such a file already" in text)
+    terminal.read_until(lambda text: "is there already" in text)
     terminal.write("asked-2\ncan\n")
     terminal.read_until(lambda text: "Analogue system" in text)
     terminal.write("\x03")

@@ -10,16 +10,27 @@
 // Plain data; any thread.
 #pragma once
 
-#include <optional>
+#include "services/base/per_enumerator.hpp"
+
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace dyncal::inline bench::bench_draft {
 
 enum class SensorKind { smartup, file, can, series, analogue };
+[[nodiscard]] inline const char* to_string(SensorKind kind) {
+  return per_enumerator(kind, {"smartup", "file", "can", "series", "analogue"});
+}
+
 enum class AcsKind { socket, file };
+[[nodiscard]] inline const char* to_string(AcsKind kind) {
+  return per_enumerator(kind, {"socket", "file"});
+}
+
 enum class GeneratorKind { scpi, by_hand, none };
+[[nodiscard]] inline const char* to_string(GeneratorKind kind) {
+  return per_enumerator(kind, {"scpi", "by-hand", "none"});
+}
 
 struct BenchDraft {
   std::string name;
@@ -53,15 +64,9 @@ struct BenchDraft {
   double maximum_voltage_v = 5.0;
 };
 
-// "acceleration_z", or "sensor" for an analogue one.
-[[nodiscard]] std::string channel_of(const BenchDraft& draft);
-
-[[nodiscard]] const std::vector<std::string>& sensor_kinds(); // in the order of the enumeration
-[[nodiscard]] const std::vector<std::string>& acs_kinds();
-[[nodiscard]] const std::vector<std::string>& generator_kinds();
-
-[[nodiscard]] std::optional<SensorKind> parse_sensor_kind(std::string_view name);
-[[nodiscard]] std::optional<AcsKind> parse_acs_kind(std::string_view name);
-[[nodiscard]] std::optional<GeneratorKind> parse_generator_kind(std::string_view name);
-
+// Of the sensor: "acceleration_z", or "sensor" for an analogue one, unless it is named.
+[[nodiscard]] inline std::string channel_of(const BenchDraft& draft) {
+  const char* usual = draft.sensor == SensorKind::analogue ? "sensor" : "acceleration_z";
+  return draft.sensor_channel.empty() ? usual : draft.sensor_channel;
+}
 } // namespace dyncal::inline bench::bench_draft

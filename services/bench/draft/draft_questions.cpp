@@ -12,6 +12,7 @@
 
 #include "analysis/base/frequency.hpp"
 #include "drivers/link/address.hpp"
+#include "services/base/per_enumerator.hpp"
 
 namespace dyncal::inline bench::bench_draft {
 namespace {
@@ -108,16 +109,13 @@ public:
   }
 
   template <class Kind>
-  void choice(const std::string& question, const std::vector<std::string>& names, Kind& kind) {
-    const std::string all = fmt::format("{}", fmt::join(names, ", "));
-    ask(fmt::format("{} ({})", question, all), names[static_cast<std::size_t>(kind)],
+  void choice(const std::string& question, Kind& kind) {
+    const std::string all = fmt::format("{}", fmt::join(enumerator_texts<Kind>(), ", "));
+    ask(fmt::format("{} ({})", question, all), to_string(kind),
         [&](const std::string& answer) -> std::optional<std::string> {
-          const auto found = std::find(names.begin(), names.end(), answer);
-          if (found == names.end()) {
-            return "write one of " + all;
-          }
-          kind = static_cast<Kind>(found - names.begin());
-          return std::nullopt;
+          const auto chosen = parse_enumerator<Kind>(answer);
+          kind = chosen.value_or(kind);
+          return chosen ? std::nullopt : std::optional("write one of " + all);
         });
   }
 
@@ -210,9 +208,9 @@ Expected<BenchDraft> ask_for_draft(BenchDraft draft, const NameProblem& name_pro
                                    std::istream& answers, std::ostream& questions) {
   Interview interview(answers, questions);
   interview.text("Name of the bench", draft.name, name_problem);
-  interview.choice("Sensor", sensor_kinds(), draft.sensor);
-  interview.choice("Analogue system with the reference", acs_kinds(), draft.acs);
-  interview.choice("Generator", generator_kinds(), draft.generator);
+  interview.choice("Sensor", draft.sensor);
+  interview.choice("Analogue system with the reference", draft.acs);
+  interview.choice("Generator", draft.generator);
   ask_for_places(interview, draft);
   interview.frequencies(draft.frequencies_hz);
   interview.positive("Level in m/s^2, amplitude", draft.level_m_s2);

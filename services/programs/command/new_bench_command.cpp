@@ -10,10 +10,11 @@
 #include <fmt/core.h>
 
 #include "drivers/can/dbc/dbc.hpp"
+#include "services/base/output_file.hpp"
+#include "services/base/per_enumerator.hpp"
 #include "services/bench/draft/bench_draft.hpp"
 #include "services/bench/draft/bench_text.hpp"
 #include "services/bench/draft/draft_questions.hpp"
-#include "services/bench/draft/new_file.hpp"
 #include "services/checks/bench_check/checks.hpp"
 #include "services/checks/bench_check/report.hpp"
 #include "services/programs/command/command.hpp"
@@ -31,26 +32,22 @@ struct NewBenchOptions {
 
 // The first name is that of the default.
 template <class Kind>
-void add_kind(CLI::App& command, const char* name, const char* help, Kind& kind,
-              const std::vector<std::string>& names,
-              std::optional<Kind> (*parse)(std::string_view)) {
+void add_kind(CLI::App& command, const char* name, const char* help, Kind& kind) {
   command
       .add_option_function<std::string>(
-          name, [&kind, parse](const std::string& typed) { kind = *parse(typed); }, help)
-      ->check(CLI::IsMember(names))
-      ->default_str(names.front());
+          name, [&kind](const std::string& typed) { kind = *parse_enumerator<Kind>(typed); }, help)
+      ->check(CLI::IsMember(enumerator_texts<Kind>()))
+      ->default_str(enumerator_texts<Kind>().front());
 }
 
 void add_kinds(CLI::App& command, BenchDraft& draft) {
-  using namespace bench_draft;
   add_kind(command, "--sensor",
            "smartup (of a SmartUp Unit), file (a record of it), can, series (triggered by an "
            "oscilloscope) or analogue (a channel of the analogue system)",
-           draft.sensor, sensor_kinds(), parse_sensor_kind);
-  add_kind(command, "--acs", "analogue system with the reference: its stream, or a file", draft.acs,
-           acs_kinds(), parse_acs_kind);
-  add_kind(command, "--generator", "what excites the bench", draft.generator, generator_kinds(),
-           parse_generator_kind);
+           draft.sensor);
+  add_kind(command, "--acs", "analogue system with the reference: its stream, or a file",
+           draft.acs);
+  add_kind(command, "--generator", "what excites the bench", draft.generator);
 }
 
 void add_places(CLI::App& command, BenchDraft& draft) {
@@ -187,16 +184,16 @@ Expected<std::string> write_files(BenchDraft draft, const std::filesystem::path&
   const bool own_dbc = draft.sensor == bench_draft::SensorKind::can && draft.dbc.empty();
   const std::string dbc_name = path.stem().string() + "-sensor.dbc";
   const std::filesystem::path dbc_path = path.parent_path() / dbc_name;
-  DYNCAL_TRY(bench_draft::check_new_file(path)); // before a DBC file is written for nothing
+  DYNCAL_TRY(check_new_file(path)); // before a DBC file is written for nothing
   if (own_dbc) {
-    DYNCAL_TRY(bench_draft::write_new_file(dbc_path, bench_draft::dbc_text()));
+    DYNCAL_TRY(write_new_file(dbc_path, bench_draft::dbc_text()));
   }
   const std::string text = bench_draft::bench_text(draft, dbc_name);
   const std::vector<bench_check::BenchView> views{bench_check::look_at_bench_text(text, path)};
   const Findings findings = bench_check::check_benches(views);
   const std::string errors = texts_of(findings, Severity::error, draft);
   auto written = errors.empty()
-                     ? bench_draft::write_new_file(path, text)
+                     ? write_new_file(path, text)
                      : fail(ErrorCode::bad_argument,
                             "nothing was written, 'dyncal check' would refuse it: " + errors);
   if (!written && own_dbc) {
@@ -221,7 +218,7 @@ std::optional<std::string> name_problem(const NewBenchOptions& command, const st
   if (name.find('/') != std::string::npos) {
     return "a name has no '/'; --output says where the file is written";
   }
-  const auto free = bench_draft::check_new_file(path_of(command, name));
+  const auto free = check_new_file(path_of(command, name));
   return free ? std::nullopt : std::optional(free.error().message);
 }
 

@@ -82,5 +82,18 @@ TEST_F(OutputFile, IsAskedForBeforeARunWithoutTouchingAnOlderFile) {
   EXPECT_FALSE(check_output_file(folder_ / "missing" / "r.json"));
 }
 
+TEST_F(OutputFile, ANewOneNeverTakesThePlaceOfAnother) {
+  EXPECT_TRUE(check_new_file(path_));
+  ASSERT_TRUE(write_new_file(path_, "mine"));
+  const auto written = write_new_file(path_, "other");
+  ASSERT_FALSE(written);
+  EXPECT_THAT(written.error().message, HasSubstr("there"));
+  EXPECT_EQ(text_of(path_), "mine");
+  EXPECT_EQ(files(), 1U);
+  fs::create_symlink("gone.toml", folder_ / "link.toml");
+  EXPECT_FALSE(check_new_file(folder_ / "link.toml"));
+  EXPECT_FALSE(check_new_file(folder_ / "missing" / "bench.toml"));
+}
+
 } // namespace
 } // namespace dyncal::inline base

@@ -7,12 +7,20 @@ namespace dyncal::inline base {
 namespace {
 
 enum class Fruit { apple, pear, plum };
+const char* to_string(Fruit fruit) {
+  return per_enumerator(fruit, {"apple", "pear", "plum"});
+}
 
 TEST(PerEnumerator, TakesTheEntryOfEachValue) {
-  const auto name = [](Fruit fruit) { return per_enumerator(fruit, {"apple", "pear", "plum"}); };
-  EXPECT_EQ(name(Fruit::apple), std::string("apple"));
-  EXPECT_EQ(name(Fruit::pear), std::string("pear"));
-  EXPECT_EQ(name(Fruit::plum), std::string("plum"));
+  EXPECT_EQ(to_string(Fruit::apple), std::string("apple"));
+  EXPECT_EQ(to_string(Fruit::pear), std::string("pear"));
+  EXPECT_EQ(to_string(Fruit::plum), std::string("plum"));
+}
+
+TEST(PerEnumerator, TextsOfAllValuesAreReadBack) {
+  EXPECT_EQ(enumerator_texts<Fruit>(), (std::vector<std::string>{"apple", "pear", "plum"}));
+  EXPECT_EQ(parse_enumerator<Fruit>("plum"), Fruit::plum);
+  EXPECT_EQ(parse_enumerator<Fruit>("Plum"), std::nullopt);
 }
 
 TEST(PerEnumerator, ValueBeyondIsTheOneForOthersElseTheFirst) {

@@ -26,9 +26,10 @@ TEST(BenchText, EveryCombinationPassesTheCheckWithoutWarning) {
   write_records(folder);
   folder.write("made.dbc", dbc_text());
   int combinations = 0;
-  for (std::size_t sensor = 0; sensor < sensor_kinds().size(); ++sensor) {
-    for (std::size_t acs = 0; acs < acs_kinds().size(); ++acs) {
-      for (std::size_t generator = 0; generator < generator_kinds().size(); ++generator) {
+  for (std::size_t sensor = 0; sensor < number_of_enumerators<SensorKind>(); ++sensor) {
+    for (std::size_t acs = 0; acs < number_of_enumerators<AcsKind>(); ++acs) {
+      for (std::size_t generator = 0; generator < number_of_enumerators<GeneratorKind>();
+           ++generator) {
         BenchDraft draft;
         draft.name = "new-1";
         draft.sensor = static_cast<SensorKind>(sensor);
