@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <string_view>
+#include <cstdlib>
 #include <utility>
 
 namespace dyncal::inline contract {
@@ -31,13 +31,51 @@ constexpr std::array<Pair, 17> short_forms{{
     {"1", R"(\one)"},
 }};
 
-constexpr std::array<std::string_view, 37> unit_words{
-    "metre",   "second", "gram",      "kilogram",  "ampere",        "kelvin", "mole",    "candela",
-    "one",     "radian", "steradian", "hertz",     "newton",        "pascal", "joule",   "watt",
-    "coulomb", "volt",   "farad",     "ohm",       "siemens",       "weber",  "tesla",   "henry",
-    "lumen",   "lux",    "minute",    "hour",      "day",           "degree", "percent", "ppm",
-    "bar",     "tonne",  "decibel",   "arcminute", "degreecelsius",
+struct UnitWord {
+  std::string_view word;
+  std::array<double, 7> exponents; // as in Dimension
+  bool is_angle = false;
 };
+
+constexpr std::array<UnitWord, 37> unit_words{{
+    {"metre", {1}},
+    {"gram", {0, 1}},
+    {"kilogram", {0, 1}},
+    {"tonne", {0, 1}},
+    {"second", {0, 0, 1}},
+    {"minute", {0, 0, 1}},
+    {"hour", {0, 0, 1}},
+    {"day", {0, 0, 1}},
+    {"ampere", {0, 0, 0, 1}},
+    {"kelvin", {0, 0, 0, 0, 1}},
+    {"degreecelsius", {0, 0, 0, 0, 1}},
+    {"mole", {0, 0, 0, 0, 0, 1}},
+    {"candela", {0, 0, 0, 0, 0, 0, 1}},
+    {"lumen", {0, 0, 0, 0, 0, 0, 1}},
+    {"lux", {-2, 0, 0, 0, 0, 0, 1}},
+    {"hertz", {0, 0, -1}},
+    {"newton", {1, 1, -2}},
+    {"pascal", {-1, 1, -2}},
+    {"bar", {-1, 1, -2}},
+    {"joule", {2, 1, -2}},
+    {"watt", {2, 1, -3}},
+    {"coulomb", {0, 0, 1, 1}},
+    {"volt", {2, 1, -3, -1}},
+    {"farad", {-2, -1, 4, 2}},
+    {"ohm", {2, 1, -3, -2}},
+    {"siemens", {-2, -1, 3, 2}},
+    {"weber", {2, 1, -2, -1}},
+    {"tesla", {0, 1, -2, -1}},
+    {"henry", {2, 1, -2, -2}},
+    {"radian", {}, true},
+    {"degree", {}, true},
+    {"arcminute", {}, true},
+    {"steradian", {}},
+    {"one", {}},
+    {"percent", {}},
+    {"ppm", {}},
+    {"decibel", {}},
+}};
 
 constexpr std::array<std::string_view, 16> prefix_words{
     "deca", "hecto", "kilo",  "mega",  "giga", "tera", "peta",  "exa",
@@ -53,45 +91,67 @@ bool is_exponent(std::string_view text) { // between the braces of \tothe{...}
   });
 }
 
-template <class Words>
-bool contains(const Words& words, std::string_view word) {
-  return std::ranges::find(words, word) != words.end();
+// Of the unit before it: 1 where \tothe{n} does not follow. Nothing: that is malformed.
+std::optional<double> take_exponent(std::string_view& text) {
+  constexpr std::string_view power = R"(\tothe{)";
+  if (!text.starts_with(power)) {
+    return 1.0;
+  }
+  text.remove_prefix(power.size());
+  const std::size_t end = std::min(text.find('}'), text.size());
+  const std::string number(text.substr(0, end));
+  if (end == text.size() || !is_exponent(number)) {
+    return std::nullopt;
+  }
+  text.remove_prefix(end + 1);
+  return std::strtod(number.c_str(), nullptr);
 }
 
-// D-SI: ([\prefix]\unit[\tothe{n}])+ with an optional leading \per or \per between.
-bool is_d_si(std::string_view text) {
-  bool unit_seen = false;
-  bool prefix_open = false;
-  while (!text.empty()) {
-    if (text.front() != '\\') {
-      return false;
-    }
-    text.remove_prefix(1);
-    const std::size_t length = static_cast<std::size_t>(
-        std::ranges::find_if_not(text, [](unsigned char c) { return std::isalpha(c) != 0; }) -
-        text.begin());
-    const std::string_view word = text.substr(0, length);
-    text.remove_prefix(length);
-    if (word == "tothe") {
-      const std::size_t close = text.find('}');
-      if (!unit_seen || prefix_open || text.empty() || text.front() != '{' ||
-          close == std::string_view::npos || !is_exponent(text.substr(1, close - 1))) {
-        return false;
-      }
-      text.remove_prefix(close + 1);
-    } else if (contains(unit_words, word)) {
-      unit_seen = true;
-      prefix_open = false;
-    } else if (contains(prefix_words, word) && !prefix_open) {
-      prefix_open = true;
-    } else if (word != "per" || prefix_open) {
-      return false;
-    }
+void add(const UnitWord& unit, double exponent, Dimension& dimension) {
+  for (std::size_t i = 0; i < dimension.exponents.size(); ++i) {
+    dimension.exponents.at(i) += exponent * unit.exponents.at(i);
   }
-  return unit_seen && !prefix_open;
+  dimension.has_angle |= unit.is_angle;
 }
 
 } // namespace
+
+// D-SI: ([\prefix]\unit[\tothe{n}])+ with an optional leading \per or \per between.
+std::optional<Dimension> dimension_of(std::string_view text) {
+  Dimension dimension;
+  bool unit_seen = false;
+  bool prefix_open = false;
+  bool divides = false; // \per stands before the unit that it divides by
+  while (!text.empty()) {
+    if (text.front() != '\\') {
+      return std::nullopt;
+    }
+    text.remove_prefix(1);
+    const auto length = std::min(text.find_first_of("\\{"), text.size());
+    const std::string_view word = text.substr(0, length);
+    text.remove_prefix(length);
+    const auto* const unit = std::ranges::find(unit_words, word, &UnitWord::word);
+    if (unit != unit_words.end()) {
+      const auto exponent = take_exponent(text);
+      if (!exponent) {
+        return std::nullopt;
+      }
+      add(*unit, divides ? -*exponent : *exponent, dimension);
+      unit_seen = true;
+      prefix_open = false;
+      divides = false;
+    } else if (prefix_open) {
+      return std::nullopt;
+    } else if (word == "per") {
+      divides = true;
+    } else if (std::ranges::find(prefix_words, word) != prefix_words.end()) {
+      prefix_open = true;
+    } else {
+      return std::nullopt;
+    }
+  }
+  return unit_seen && !prefix_open ? std::optional(dimension) : std::nullopt;
+}
 
 std::optional<std::string> to_d_si(const std::string& unit) {
   for (const auto& [short_text, d_si] : short_forms) {
@@ -99,7 +159,7 @@ std::optional<std::string> to_d_si(const std::string& unit) {
       return std::string(d_si);
     }
   }
-  return is_d_si(unit) ? std::optional(unit) : std::nullopt;
+  return dimension_of(unit) ? std::optional(unit) : std::nullopt;
 }
 
 std::string short_form(const std::string& d_si) {

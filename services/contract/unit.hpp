@@ -3,8 +3,10 @@
 // translated, anything else is refused. Any thread.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace dyncal::inline contract {
 
@@ -14,6 +16,14 @@ namespace dyncal::inline contract {
 // For people: "m/s^2" for \metre\second\tothe{-2}; the D-SI text itself where no short form is
 // known.
 [[nodiscard]] std::string short_form(const std::string& d_si);
+
+struct Dimension {
+  std::array<double, 7> exponents{}; // of m, kg, s, A, K, mol, cd
+  bool has_angle = false;
+};
+
+// Without prefixes. Nothing: `text` is not D-SI.
+[[nodiscard]] std::optional<Dimension> dimension_of(std::string_view text);
 
 // m/s^2, the unit in which levels are planned.
 [[nodiscard]] bool is_acceleration(const std::string& d_si);
