@@ -33,6 +33,7 @@ struct ChannelDescription {
   double minimum = 0.0; // of the range, in the unit; minimum == maximum: not known
   double maximum = 0.0;
   double resolution = 0.0; // one quantisation step in the unit; 0: not known
+  bool operator==(const ChannelDescription&) const = default;
 };
 
 struct SourceDescription {
@@ -47,6 +48,7 @@ struct SourceDescription {
   double tick_s = 0.0; // quantum of the stamps; 0: not known
   double stamp_uncertainty_s =
       0.0; // standard uncertainty of one stamp in its time base; 0: not known
+  bool operator==(const SourceDescription&) const = default;
 };
 
 // Bits of SampleBlock::flags, one byte a sample. 0 means the stamp is trusted.

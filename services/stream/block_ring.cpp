@@ -23,9 +23,11 @@ bool BlockRing::has_room(const RingEntry& entry) const {
          entry.offered - entries_.front().offered <= limits_.span;
 }
 
-void BlockRing::append(RingEntry entry) {
+void BlockRing::append(RingEntry entry, std::unique_lock<std::mutex> lock) {
   bytes_ += held_bytes(entry.block);
   entries_.push_back(std::move(entry));
+  lock.unlock();
+  changed_.notify_all();
 }
 
 bool BlockRing::offer(RingEntry entry) {
@@ -34,9 +36,7 @@ bool BlockRing::offer(RingEntry entry) {
     dropped_ += size_of(entry);
     return false;
   }
-  append(std::move(entry));
-  lock.unlock();
-  changed_.notify_all();
+  append(std::move(entry), std::move(lock));
   return true;
 }
 
@@ -45,9 +45,7 @@ bool BlockRing::offer_waiting(RingEntry entry, const std::stop_token& stop) {
   if (!changed_.wait(lock, stop, [&] { return has_room(entry); })) {
     return false;
   }
-  append(std::move(entry));
-  lock.unlock();
-  changed_.notify_all();
+  append(std::move(entry), std::move(lock));
   return true;
 }
 
@@ -60,39 +58,30 @@ bool BlockRing::offer_within(RingEntry entry, std::chrono::nanoseconds limit,
     dropped_ += size_of(entry);
     return false;
   }
-  append(std::move(entry));
-  lock.unlock();
-  changed_.notify_all();
+  append(std::move(entry), std::move(lock));
   return true;
 }
 
-RingEntry BlockRing::take_oldest() {
+std::optional<RingEntry> BlockRing::take_oldest(std::unique_lock<std::mutex> lock) {
+  if (entries_.empty()) {
+    return std::nullopt;
+  }
   RingEntry entry = std::move(entries_.front());
   entries_.pop_front();
   bytes_ -= held_bytes(entry.block);
+  lock.unlock();
+  changed_.notify_all();
   return entry;
 }
 
 std::optional<RingEntry> BlockRing::take() {
-  std::unique_lock lock(mutex_);
-  if (entries_.empty()) {
-    return std::nullopt;
-  }
-  RingEntry entry = take_oldest();
-  lock.unlock();
-  changed_.notify_all();
-  return entry;
+  return take_oldest(std::unique_lock(mutex_));
 }
 
 std::optional<RingEntry> BlockRing::take_waiting(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
-  if (!changed_.wait(lock, stop, [&] { return !entries_.empty(); })) {
-    return std::nullopt;
-  }
-  RingEntry entry = take_oldest();
-  lock.unlock();
-  changed_.notify_all();
-  return entry;
+  const bool has_come = changed_.wait(lock, stop, [&] { return !entries_.empty(); });
+  return has_come ? take_oldest(std::move(lock)) : std::nullopt;
 }
 
 void BlockRing::discard() {

@@ -82,8 +82,8 @@ public:
 
 private:
   [[nodiscard]] bool has_room(const RingEntry& entry) const;
-  void append(RingEntry entry);
-  RingEntry take_oldest();
+  void append(RingEntry entry, std::unique_lock<std::mutex> lock);
+  std::optional<RingEntry> take_oldest(std::unique_lock<std::mutex> lock);
 
   const RingLimits limits_;
   mutable std::mutex mutex_;

@@ -16,19 +16,6 @@ namespace {
 
 constexpr auto brief_wait = std::chrono::seconds(1);
 
-bool same_channel(const drivers::ChannelDescription& a, const drivers::ChannelDescription& b) {
-  return a.name == b.name && a.quantity == b.quantity && a.unit == b.unit &&
-         a.minimum == b.minimum && a.maximum == b.maximum && a.resolution == b.resolution;
-}
-
-bool same_description(const drivers::SourceDescription& a, const drivers::SourceDescription& b) {
-  return a.device == b.device && a.serial == b.serial && a.firmware == b.firmware &&
-         a.driver == b.driver && a.nominal_rate_hz == b.nominal_rate_hz &&
-         a.time_base == b.time_base && a.stamp_instant == b.stamp_instant && a.tick_s == b.tick_s &&
-         a.stamp_uncertainty_s == b.stamp_uncertainty_s &&
-         std::ranges::equal(a.channels, b.channels, same_channel);
-}
-
 } // namespace
 
 SourcePublisher::SourcePublisher(SourceOptions options, std::shared_ptr<bus::WakeUp> wake_up)
@@ -41,7 +28,7 @@ void SourcePublisher::describe(const drivers::SourceDescription& reported) {
   const drivers::SourceDescription description = with_identity(reported, options_.identity);
   {
     const std::lock_guard lock(mutex_);
-    if (description_ && same_description(*description_, description)) {
+    if (description_ == description) {
       return;
     }
     description_ = description;

@@ -1,15 +1,9 @@
 #include "services/stream/source_service.hpp"
 
 #include <algorithm>
-#include <map>
-#include <thread>
 #include <utility>
-#include <vector>
 
-#include "services/bus/bus.hpp"
 #include "services/contract/topics.hpp"
-#include "services/stream/catch_up_server.hpp"
-#include "services/stream/source_publication.hpp"
 
 namespace dyncal::inline stream {
 
@@ -27,66 +21,19 @@ constexpr std::size_t max_name = 64; // bound of the keys of the contract
 constexpr auto rest = std::chrono::milliseconds(5);
 constexpr std::uint64_t rest_worthwhile = 2; // messages in one turn
 
-// What the bench asks of its sources.
-struct BenchReaders {
-  bus::Reader<dyncal::wire::Command> command;
-  bus::Reader<dyncal::wire::Measurement> measurement;
-  std::vector<std::string> running{};
-};
-
 } // namespace
 
-class SourceService::Implementation {
-public:
-  Implementation(bus::Participant& participant, SourceServiceOptions options)
-      : participant_(participant), options_(std::move(options)),
-        wake_up_(std::make_shared<bus::WakeUp>()), catch_up_(participant) {}
-
-  Expected<std::shared_ptr<SourcePublisher>> add(SourceOptions source);
-  void start() {
-    if (!thread_.joinable()) {
-      thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
-      catch_up_thread_ = std::jthread([this](const std::stop_token& stop) { give_again(stop); });
-    }
-  }
-  void stop();
-
-private:
-  Expected<void> join_bench(const std::string& bench);
-  void run(const std::stop_token& stop);
-  void give_again(const std::stop_token& stop);
-  void finish();
-  bool step_channels();
-  [[nodiscard]] std::uint64_t messages_written() const;
-  void keep_up();
-  void listen();
-  void take_commands(const std::string& bench, BenchReaders& readers);
-  void take_measurements(const std::string& bench, BenchReaders& readers);
-
-  bus::Participant& participant_;
-  const SourceServiceOptions options_;
-  const std::shared_ptr<bus::WakeUp> wake_up_;
-  std::map<std::string, BenchReaders> benches_;
-  std::vector<std::unique_ptr<SourcePublication>> channels_;
-  CatchUpServer catch_up_; // of its thread, once that has started
-  std::jthread thread_;
-  std::jthread catch_up_thread_;
-};
-
-Expected<void> SourceService::Implementation::join_bench(const std::string& bench) {
+Expected<void> SourceService::join_bench(const std::string& bench) {
   if (benches_.contains(bench)) {
     return {};
   }
-  DYNCAL_TRY(auto command, participant_.reader<dyncal::wire::Command>(
-                               bus::topics::command, bus::Profile::command, bench, wake_up_));
-  DYNCAL_TRY(auto measurement, participant_.reader<dyncal::wire::Measurement>(
-                                   bus::topics::measurement, bus::Profile::state, bench, wake_up_));
+  DYNCAL_TRY(auto command, participant_.reader(bus::topics::command, bench, wake_up_));
+  DYNCAL_TRY(auto measurement, participant_.reader(bus::topics::measurement, bench, wake_up_));
   benches_.emplace(bench, BenchReaders{std::move(command), std::move(measurement)});
   return {};
 }
 
-Expected<std::shared_ptr<SourcePublisher>>
-SourceService::Implementation::add(SourceOptions source) {
+Expected<std::shared_ptr<SourcePublisher>> SourceService::add(SourceOptions source) {
   for (const auto* name : {&source.bench, &source.source}) {
     if (name->empty() || name->size() > max_name) {
       return fail(ErrorCode::bad_argument,
@@ -108,13 +55,13 @@ SourceService::Implementation::add(SourceOptions source) {
   DYNCAL_TRY(auto channel,
              SourcePublication::create(participant_, publisher, kept, options_.software));
   DYNCAL_TRY(catch_up_.add(publisher->options(), std::move(kept)));
-  (channel)->report_to(options_.reported);
+  channel->report_to(options_.reported);
   channels_.push_back(std::move(channel));
   return publisher;
 }
 
-void SourceService::Implementation::take_commands(const std::string& bench, BenchReaders& readers) {
-  readers.command.take([&](const dyncal::wire::Command& command) {
+void SourceService::take_commands(const std::string& bench, BenchReaders& readers) {
+  readers.command.take([&](const wire::Command& command) {
     if (command.kind() != wire::COMMAND_ARM || command.bench() != bench) {
       return;
     }
@@ -128,11 +75,10 @@ void SourceService::Implementation::take_commands(const std::string& bench, Benc
   });
 }
 
-void SourceService::Implementation::take_measurements(const std::string& bench,
-                                                      BenchReaders& readers) {
+void SourceService::take_measurements(const std::string& bench, BenchReaders& readers) {
   auto running = readers.running;
   bool under_way = false;
-  readers.measurement.take([&](const dyncal::wire::Measurement& measurement) {
+  readers.measurement.take([&](const wire::Measurement& measurement) {
     const std::string run = measurement.run().c_str();
     std::erase(running, run);
     under_way = under_way || measurement.state() == wire::MEASUREMENT_PLANNED ||
@@ -156,7 +102,7 @@ void SourceService::Implementation::take_measurements(const std::string& bench,
   }
 }
 
-void SourceService::Implementation::listen() {
+void SourceService::listen() {
   for (auto& [bench, readers] : benches_) {
     take_commands(bench, readers);
     take_measurements(bench, readers);
@@ -164,7 +110,7 @@ void SourceService::Implementation::listen() {
 }
 
 // Returns true if something is left to do at once.
-bool SourceService::Implementation::step_channels() {
+bool SourceService::step_channels() {
   bool more = false;
   for (auto& channel : channels_) {
     more = channel->step(write_limit) || more;
@@ -172,7 +118,7 @@ bool SourceService::Implementation::step_channels() {
   return more;
 }
 
-std::uint64_t SourceService::Implementation::messages_written() const {
+std::uint64_t SourceService::messages_written() const {
   std::uint64_t written = 0;
   for (const auto& channel : channels_) {
     written += channel->messages_written();
@@ -181,21 +127,21 @@ std::uint64_t SourceService::Implementation::messages_written() const {
 }
 
 // A stream that is played faster than real time fills memory faster than the other thread looks.
-void SourceService::Implementation::keep_up() {
+void SourceService::keep_up() {
   if (std::ranges::any_of(channels_,
                           [](const auto& channel) { return channel->kept().tidy_due(); })) {
     catch_up_.wake_up()->ring();
   }
 }
 
-void SourceService::Implementation::give_again(const std::stop_token& stop) {
+void SourceService::give_again(const std::stop_token& stop) {
   const std::stop_callback wake(stop, [this] { catch_up_.wake_up()->ring(); });
   while (!stop.stop_requested()) {
     catch_up_.wake_up()->wait_until(catch_up_.step());
   }
 }
 
-void SourceService::Implementation::run(const std::stop_token& stop) {
+void SourceService::run(const std::stop_token& stop) {
   const std::stop_callback wake(stop, [this] { wake_up_->ring(); });
   while (!stop.stop_requested()) {
     if (options_.turned) {
@@ -223,7 +169,7 @@ void SourceService::Implementation::run(const std::stop_token& stop) {
   finish();
 }
 
-void SourceService::Implementation::finish() {
+void SourceService::finish() {
   const auto deadline = Clock::now() + options_.stop_limit;
   for (auto& channel : channels_) {
     channel->publisher().end();
@@ -242,7 +188,7 @@ void SourceService::Implementation::finish() {
   }
 }
 
-void SourceService::Implementation::stop() {
+void SourceService::stop() {
   if (!thread_.joinable()) {
     return;
   }
@@ -252,29 +198,20 @@ void SourceService::Implementation::stop() {
   catch_up_thread_.join();
 }
 
-SourceService::SourceService(std::unique_ptr<Implementation> implementation)
-    : implementation_(std::move(implementation)) {}
-
 SourceService::~SourceService() {
   stop();
 }
 
 std::unique_ptr<SourceService> SourceService::create(bus::Participant& participant,
                                                      SourceServiceOptions options) {
-  return std::unique_ptr<SourceService>(
-      new SourceService(std::make_unique<Implementation>(participant, std::move(options))));
-}
-
-Expected<std::shared_ptr<SourcePublisher>> SourceService::add(SourceOptions options) {
-  return implementation_->add(std::move(options));
+  return std::unique_ptr<SourceService>(new SourceService(participant, std::move(options)));
 }
 
 void SourceService::start() {
-  implementation_->start();
-}
-
-void SourceService::stop() {
-  implementation_->stop();
+  if (!thread_.joinable()) {
+    thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+    catch_up_thread_ = std::jthread([this](const std::stop_token& stop) { give_again(stop); });
+  }
 }
 
 } // namespace dyncal::inline stream

@@ -18,19 +18,16 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include "services/base/error.hpp"
-#include "services/stream/retransmission_buffer.hpp"
-#include "services/stream/source_publisher.hpp"
-
-namespace dyncal::bus {
-class Participant;
-}
-namespace dyncal::wire {
-class SourceStatus;
-}
+#include "services/bus/bus.hpp"
+#include "services/stream/catch_up_server.hpp"
+#include "services/stream/source_publication.hpp"
 
 namespace dyncal::inline stream {
 
@@ -68,9 +65,34 @@ public:
   void stop();
 
 private:
-  class Implementation;
-  explicit SourceService(std::unique_ptr<Implementation> implementation);
-  std::unique_ptr<Implementation> implementation_;
+  // What the bench asks of its sources.
+  struct BenchReaders {
+    bus::Reader<wire::Command> command;
+    bus::Reader<wire::Measurement> measurement;
+    std::vector<std::string> running{};
+  };
+
+  SourceService(bus::Participant& participant, SourceServiceOptions options)
+      : participant_(participant), options_(std::move(options)), catch_up_(participant) {}
+  Expected<void> join_bench(const std::string& bench);
+  void run(const std::stop_token& stop);
+  void give_again(const std::stop_token& stop);
+  void finish();
+  bool step_channels();
+  [[nodiscard]] std::uint64_t messages_written() const;
+  void keep_up();
+  void listen();
+  void take_commands(const std::string& bench, BenchReaders& readers);
+  void take_measurements(const std::string& bench, BenchReaders& readers);
+
+  bus::Participant& participant_;
+  const SourceServiceOptions options_;
+  const std::shared_ptr<bus::WakeUp> wake_up_ = std::make_shared<bus::WakeUp>();
+  std::map<std::string, BenchReaders> benches_;
+  std::vector<std::unique_ptr<SourcePublication>> channels_;
+  CatchUpServer catch_up_; // of its thread, once that has started
+  std::jthread thread_;
+  std::jthread catch_up_thread_;
 };
 
 } // namespace dyncal::inline stream
