@@ -8,12 +8,7 @@
 #include <toml++/toml.h>
 
 #include "services/bench/file/bench_name.hpp"
-#include "services/bench/file/corrections_table.hpp"
-#include "services/bench/file/excitation_table.hpp"
-#include "services/bench/file/generator_table.hpp"
-#include "services/bench/file/method_table.hpp"
-#include "services/bench/file/source_table.hpp"
-#include "services/bench/file/toml_table.hpp"
+#include "services/bench/file/bench_tables.hpp"
 #include "services/bench/file/toml_text.hpp"
 #include "services/contract/digest.hpp"
 

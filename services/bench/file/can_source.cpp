@@ -1,12 +1,10 @@
-#include "services/bench/file/can_source.hpp"
+#include "services/bench/file/driver_tables.hpp"
 
 #include <cstdint>
 #include <map>
 #include <string>
 
 #include <fmt/core.h>
-
-#include "services/bench/file/file_source.hpp"
 
 namespace dyncal::inline bench {
 

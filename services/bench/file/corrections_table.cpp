@@ -1,13 +1,44 @@
-#include "services/bench/file/corrections_table.hpp"
+#include "services/bench/file/bench_tables.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <limits>
 
 #include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
-#include "services/bench/file/dso_delay_file.hpp"
 #include "services/bench/file/reference_file.hpp"
 
 namespace dyncal::inline bench {
 
 namespace {
+
+// Of the file that `dyncal calibrate dso-delay` writes; what else it holds is for people.
+void read_delay_file(TomlTable& table, const std::filesystem::path& path,
+                     CorrectionSettings& corrections) {
+  std::ifstream stream(path);
+  if (!stream || std::filesystem::is_directory(path)) {
+    table.refuse("file", fmt::format("{}: cannot be read; \"dyncal calibrate dso-delay\" writes "
+                                     "such a file",
+                                     path.string()));
+    return;
+  }
+  const auto json = nlohmann::json::parse(stream, nullptr, false);
+  const auto number = [&](const char* key) {
+    const bool is_there = json.is_object() && json.contains(key) && json[key].is_number();
+    return is_there ? json[key].get<double>() : std::numeric_limits<double>::quiet_NaN();
+  };
+  const double value_s = number("value_s");
+  const double u_s = number("u_s");
+  if (std::isfinite(value_s) && std::isfinite(u_s) && u_s >= 0.0) {
+    corrections.dso_delay_s = value_s;
+    corrections.u_dso_delay_s = u_s;
+  } else {
+    table.refuse("file", fmt::format("{}: is no JSON object with the finite numbers value_s and "
+                                     "u_s, the second of them not negative",
+                                     path.string()));
+  }
+}
 
 void read_trigger_delay(TomlTable table, NamedFiles& files, CorrectionSettings& corrections) {
   if (!table.has("file")) {
@@ -16,13 +47,7 @@ void read_trigger_delay(TomlTable table, NamedFiles& files, CorrectionSettings& 
   } else if (table.has("value_s") || table.has("u_s")) {
     table.refuse("file", "is given beside value_s or u_s; the file says both");
   } else {
-    const auto delay = read_dso_delay_file(files.resolve(table.required_text("file")));
-    if (delay) {
-      corrections.dso_delay_s = delay->value_s;
-      corrections.u_dso_delay_s = delay->u_s;
-    } else {
-      table.refuse("file", delay.error().message);
-    }
+    read_delay_file(table, files.resolve(table.required_text("file")), corrections);
   }
   if (corrections.u_dso_delay_s > 1.0) {
     table.refuse(table.has("file") ? "file" : "u_s",

@@ -1,4 +1,4 @@
-#include "services/bench/file/excitation_table.hpp"
+#include "services/bench/file/bench_tables.hpp"
 
 #include <algorithm>
 #include <cctype>

@@ -1,4 +1,4 @@
-#include "services/bench/file/file_source.hpp"
+#include "services/bench/file/driver_tables.hpp"
 
 #include <fmt/core.h>
 #include <toml++/toml.h>

@@ -1,4 +1,4 @@
-#include "services/bench/file/generator_table.hpp"
+#include "services/bench/file/bench_tables.hpp"
 
 namespace dyncal::inline bench {
 

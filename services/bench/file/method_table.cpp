@@ -1,10 +1,11 @@
-#include "services/bench/file/method_table.hpp"
+#include "services/bench/file/bench_tables.hpp"
 
 #include <algorithm>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "services/base/per_enumerator.hpp"
 #include "services/contract/role_rules.hpp"
 
 namespace dyncal::inline bench {
@@ -145,9 +146,9 @@ void read_mains(TomlTable& table, MethodSettings& method) {
 
 MethodSettings read_method(TomlTable table, const Sources& sources) {
   MethodSettings method;
-  const std::string kind = table.one_of(
-      "kind", {"analogue", "sample-timestamping", "series-timestamping", "absolute-time"}, "");
-  method.kind = parse_evaluation_method(kind).value_or(EvaluationMethod::sample_timestamping);
+  const std::string kind = table.one_of("kind", enumerator_texts<EvaluationMethod>(), "");
+  method.kind =
+      parse_enumerator<EvaluationMethod>(kind).value_or(EvaluationMethod::sample_timestamping);
   read_roles(table, sources, method);
   if (table.has("temperature")) {
     method.temperature = read_role(table, "temperature", sources);
@@ -164,10 +165,9 @@ MethodSettings read_method(TomlTable table, const Sources& sources) {
   if (!(method.clock_tolerance_ppm > 0.0 && method.clock_tolerance_ppm <= 1e5)) {
     table.refuse("clock_tolerance_ppm", "must be above 0 and at most 100000");
   }
-  method.dut_phase =
-      parse_dut_phase(
-          table.one_of("dut_phase", {"delay", "delay-from-0", "delay-from-180", "any"}, "delay"))
-          .value_or(method.dut_phase);
+  const std::string phase =
+      table.one_of("dut_phase", enumerator_texts<DutPhase>(), to_string(method.dut_phase));
+  method.dut_phase = parse_enumerator<DutPhase>(phase).value_or(method.dut_phase);
   read_mains(table, method);
   table.finish();
   return method;

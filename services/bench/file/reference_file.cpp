@@ -4,13 +4,13 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <numbers>
 #include <optional>
-#include <sstream>
 #include <string>
 
 #include <fmt/core.h>
+
+#include "services/base/whole_file.hpp"
 
 namespace dyncal::inline bench {
 namespace {
@@ -279,16 +279,9 @@ Expected<std::vector<ReferenceCalibrationPoint>> parse_reference_file(std::strin
 
 Expected<std::vector<ReferenceCalibrationPoint>>
 read_reference_file(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream || std::filesystem::is_directory(path)) {
-    return fail(ErrorCode::bad_file,
-                fmt::format("{}: cannot read this calibration of the reference; does it exist, and "
-                            "may you read it?",
-                            path.string()));
-  }
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return parse_reference_file(text.str(), path.string());
+  constexpr std::uintmax_t max_bytes = 16U << 20U;
+  DYNCAL_TRY(const auto text, read_whole_file(path, max_bytes));
+  return parse_reference_file(text, path.string());
 }
 
 } // namespace dyncal::inline bench

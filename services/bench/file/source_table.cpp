@@ -1,4 +1,4 @@
-#include "services/bench/file/source_table.hpp"
+#include "services/bench/file/bench_tables.hpp"
 
 #include <charconv>
 #include <cmath>
@@ -10,24 +10,58 @@
 #include <fmt/core.h>
 
 #include "services/bench/file/bench_name.hpp"
-#include "services/bench/file/can_source.hpp"
-#include "services/bench/file/file_source.hpp"
-#include "services/bench/file/oscilloscope_source.hpp"
-#include "services/bench/file/series_source.hpp"
-#include "services/bench/file/smartup_source.hpp"
-#include "services/bench/file/socket_source.hpp"
+#include "services/bench/file/driver_tables.hpp"
 #include "services/contract/unit.hpp"
 
 namespace dyncal::inline bench {
 
 namespace {
 
+std::optional<std::uint32_t> read_sensor_id(TomlTable& table, const std::string& key) {
+  const std::string text = table.text(key);
+  if (text.empty()) {
+    return std::nullopt;
+  }
+  std::uint32_t id = 0;
+  const bool prefixed = text.starts_with("0x") || text.starts_with("0X");
+  const char* begin = text.data() + (prefixed ? 2 : 0);
+  const auto [end, status] =
+      std::from_chars(begin, text.data() + text.size(), id, prefixed ? 16 : 10);
+  if (status != std::errc{} || end != text.data() + text.size()) {
+    table.refuse(key,
+                 fmt::format("is \"{}\" but must be a sensor id such as \"0xbccb0100\"", text));
+    return std::nullopt;
+  }
+  return id;
+}
+
+// One sensor of a SmartUp Unit:
+//
+//   listen = "0.0.0.0:7654"        address and UDP port of this host
+//   sensor = "0xbccb0100"
+//   sync_sensor = "0xbccb0a00"     sensor id that carries the sync ADC of later firmware
+SmartupSourceSettings read_smartup_source(TomlTable& table) {
+  SmartupSourceSettings smartup;
+  smartup.listen = table.text("listen", "0.0.0.0:7654");
+  if (!table.has("sensor")) {
+    table.refuse("sensor", "is missing: the id of the sensor, for example \"0xbccb0100\"");
+  }
+  const auto sensor = read_sensor_id(table, "sensor");
+  if (!sensor) {
+    table.refuse("sensor", "must not be empty: the id of the sensor, for example \"0xbccb0100\"");
+  }
+  smartup.sensor = sensor.value_or(0);
+  smartup.sync_sensor = read_sensor_id(table, "sync_sensor");
+  return smartup;
+}
+
 DriverSettings read_driver(TomlTable& table, const std::string& driver, NamedFiles& files) {
   if (driver == "smartup") {
     return read_smartup_source(table);
   }
   if (driver == "socket") {
-    return read_socket_source(table);
+    // The TCP stream of an analogue calibration system (drivers/acs/README.md).
+    return SocketSourceSettings{.address = table.required_text("address")};
   }
   if (driver == "can") {
     return read_can_source(table, files);

@@ -4,9 +4,9 @@
 //
 // Takes shots, prints delay, uncertainty and histogram, and writes them as JSON: the file that
 // [corrections] dso_delay = { file = ... } of a bench file names
-// (services/bench/file/dso_delay_file.hpp). With a generator's address the generator is set and its
-// output switched on and off; otherwise the operator does that. A shot that fails is repeated, up
-// to as many failures as shots. Belongs to one thread.
+// (services/bench/file/bench_tables.hpp). With a generator's address the generator is set and
+// its output switched on and off; otherwise the operator does that. A shot that fails is repeated,
+// up to as many failures as shots. Belongs to one thread.
 #include <algorithm>
 #include <chrono>
 #include <filesystem>

@@ -1,4 +1,4 @@
-#include "services/bench/file/can_source.hpp"
+#include "services/bench/file/driver_tables.hpp"
 
 #include <filesystem>
 #include <fstream>

@@ -100,7 +100,7 @@ TEST(ReferenceFile, RefusesWhatIsNotPlausible) {
 TEST(ReferenceFile, SaysThatItCannotBeRead) {
   const auto points = read_reference_file("/nowhere/reference.csv");
   ASSERT_FALSE(points);
-  EXPECT_THAT(points.error().message, HasSubstr("/nowhere/reference.csv: cannot read"));
+  EXPECT_THAT(points.error().message, HasSubstr("/nowhere/reference.csv: cannot be read"));
 }
 
 } // namespace

@@ -1,5 +1,5 @@
 // Bench files of series time stamping.
-#include "services/bench/file/oscilloscope_source.hpp"
+#include "services/bench/file/driver_tables.hpp"
 
 #include <fstream>
 
@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include "services/bench/file/bench_file.hpp"
-#include "services/bench/file/dso_delay_file.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace dyncal::inline bench {
