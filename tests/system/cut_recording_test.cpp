@@ -89,7 +89,7 @@ protected:
       chunk.add(recording::channel_of(topic), message);
       EXPECT_TRUE(writer->add_chunk(chunk));
     };
-    EXPECT_TRUE(reader->scan({.message = copy, .attachment = {}, .metadata = {}, .walked = {}}));
+    EXPECT_TRUE(reader->scan({.message = copy}));
     EXPECT_TRUE(writer->close());
     EXPECT_GT(left_out, 0U);
     return analysed(folder);

@@ -41,24 +41,6 @@ void remember(std::set<std::string>& names, const std::string& name) {
 
 } // namespace
 
-template <class T>
-class BenchIntake::ReaderOf : public TopicReader {
-public:
-  ReaderOf(bus::Reader<T> reader, const Channel& channel)
-      : reader_(std::move(reader)), channel_(channel) {}
-  void take(BenchIntake& intake) override {
-    reader_.take_with_bytes([&](const T& message, std::string_view bytes) {
-      if (message.bench() == intake.bench_) {
-        intake.take(channel_, message, bytes);
-      }
-    });
-  }
-
-private:
-  bus::Reader<T> reader_;
-  const Channel& channel_;
-};
-
 BenchIntake::BenchIntake(bus::Participant& participant, bus::Clock& clock, std::string bench,
                          std::string run, std::shared_ptr<bus::WakeUp> wake_up, Sink sink)
     : participant_(participant), clock_(clock), bench_(std::move(bench)), only_run_(std::move(run)),
@@ -93,13 +75,20 @@ Expected<void> BenchIntake::open_reader(const bus::Topic<T>& topic) {
   DYNCAL_TRY(auto reader, is_result<T> && !reads_results_of_bench_
                               ? participant_.reader_of_run(topic, bench_, only_run_, wake_up_)
                               : participant_.reader<T>(topic.name, profile, bench_, wake_up_));
-  readers_.push_back(std::make_unique<ReaderOf<T>>(std::move(reader), channel_of(topic.name)));
+  readers_.push_back([this, &channel = channel_of(topic.name),
+                      shared = std::make_shared<bus::Reader<T>>(std::move(reader))] {
+    shared->take_with_bytes([&](const T& message, std::string_view bytes) {
+      if (message.bench() == bench_) {
+        take(channel, message, bytes);
+      }
+    });
+  });
   return {};
 }
 
 void BenchIntake::take() {
-  for (const auto& reader : readers_) {
-    reader->take(*this);
+  for (const auto& take_from_reader : readers_) {
+    take_from_reader();
   }
   if (answers_) {
     const auto again = [&](const auto& message, std::string_view bytes) {

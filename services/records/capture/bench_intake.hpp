@@ -63,13 +63,6 @@ public:
 private:
   using Instant = bus::Clock::Instant;
 
-  class TopicReader {
-  public:
-    virtual ~TopicReader() = default;
-    virtual void take(BenchIntake& intake) = 0;
-  };
-  template <class T>
-  class ReaderOf;
   struct Source {
     explicit Source(std::string asker) : gaps(std::move(asker)) {}
     SourceGaps gaps;
@@ -117,7 +110,7 @@ private:
   std::string asker_;
   std::shared_ptr<bus::WakeUp> wake_up_;
   Sink sink_;
-  std::vector<std::unique_ptr<TopicReader>> readers_;
+  std::vector<std::function<void()>> readers_; // take what has come
   std::optional<bus::Writer<wire::CatchUpRequest>> requests_;
   std::optional<AnswerReaders> answers_;
   std::map<std::string, Source> sources_;

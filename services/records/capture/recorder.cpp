@@ -13,7 +13,6 @@
 #include "services/contract/digest.hpp"
 #include "services/records/capture/bench_intake.hpp"
 #include "services/records/capture/recorded_topics.hpp"
-#include "services/records/capture/recording_thread.hpp"
 
 namespace dyncal::inline records::recording {
 namespace {
@@ -79,18 +78,9 @@ public:
   }
 
   [[nodiscard]] RecorderStatus status() const {
-    const RecordingFigures figures = file_.figures();
-    RecorderStatus status;
-    status.stored = figures.stored;
-    status.not_stored = figures.not_stored + dropped_;
-    status.missing = missing_;
-    status.catches_up = catches_up_;
-    status.recovered = recovered_;
-    status.malformed = participant_.malformed_messages();
-    status.file_bytes = figures.file_bytes;
-    status.free_bytes = figures.free_bytes;
-    status.ended = figures.ended;
-    status.problem = figures.problem;
+    RecorderStatus status{file_.figures(), missing_, recovered_, participant_.malformed_messages(),
+                          catches_up_};
+    status.not_stored += dropped_;
     return status;
   }
 

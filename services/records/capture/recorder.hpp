@@ -23,6 +23,7 @@
 
 #include "services/base/error.hpp"
 #include "services/bus/bus.hpp"
+#include "services/records/capture/recording_thread.hpp"
 #include "services/records/mcap/chunk_codec.hpp"
 
 namespace dyncal::inline records::recording {
@@ -38,17 +39,12 @@ struct RecorderOptions {
   std::uint64_t min_free_bytes = std::uint64_t{256} << 20U; // of the disk; below, it ends
 };
 
-struct RecorderStatus {
-  std::uint64_t stored = 0;     // messages that are in the file
-  std::uint64_t not_stored = 0; // messages that came and are not, and will not be
-  std::uint64_t missing = 0;    // blocks and records that never came and could not be had again
-  std::uint64_t recovered = 0;  // that had to be asked for again
-  std::uint64_t file_bytes = 0;
-  std::uint64_t free_bytes = 0; // on the disk
-  std::uint64_t malformed = 0;  // messages that do not match the contract, not stored
-  bool catches_up = false;      // what it asked sources for again has yet to come
-  bool ended = false;           // nothing more is stored
-  std::string problem;          // why it ended before it was stopped; empty: it did not
+// Messages that came and are not stored, and will not be, are `not_stored`.
+struct RecorderStatus : RecordingFigures {
+  std::uint64_t missing = 0;   // blocks and records that never came and could not be had again
+  std::uint64_t recovered = 0; // that had to be asked for again
+  std::uint64_t malformed = 0; // messages that do not match the contract, not stored
+  bool catches_up = false;     // what it asked sources for again has yet to come
 };
 
 class Recorder {

@@ -9,11 +9,14 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
-#include "services/records/exchange/hdf5_tables.hpp"
+#include "drivers/files/hdf5_library.hpp"
 
 namespace dyncal::inline records {
+
+using drivers::files::Hdf5Handle;
 
 [[nodiscard]] Hdf5Handle make_group(hid_t place, const std::string& name);
 [[nodiscard]] bool write_text(hid_t object, const char* name, const std::string& text);
@@ -55,5 +58,20 @@ private:
   Hdf5Handle type_;
   std::uint64_t size_ = 0;
 };
+
+// A row of a table names each of its members once, with the value.
+using Hdf5Number = std::variant<std::uint32_t, std::uint64_t, std::int64_t, double>;
+
+struct Hdf5Member {
+  const char* name;
+  Hdf5Number value;
+};
+using Hdf5Row = std::vector<Hdf5Member>;
+
+// The compound type of rows that have these members.
+[[nodiscard]] Hdf5Handle hdf5_type(const Hdf5Row& row);
+
+// Adds the row as it lies in the file and in memory.
+void append_row(std::string& bytes, const Hdf5Row& row);
 
 } // namespace dyncal::inline records

@@ -44,9 +44,9 @@ struct MessageInFile {
 };
 
 struct ScanEvents { // any may be empty
-  std::function<void(const MessageInFile&)> message;
-  std::function<void(const Attachment&)> attachment;
-  std::function<void(const Metadata&)> metadata;
+  std::function<void(const MessageInFile&)> message{};
+  std::function<void(const Attachment&)> attachment{};
+  std::function<void(const Metadata&)> metadata{};
   // So many bytes of the file are behind: never fewer than before, all of them at the end. False:
   // stop, and fail (interrupted).
   std::function<bool(std::uint64_t)> walked{};

@@ -128,8 +128,6 @@ Expected<ScanReport> repair(const std::filesystem::path& path,
   Definitions definitions;
   auto report =
       reader.scan({.message = [&](const MessageInFile& message) { definitions.add(message); },
-                   .attachment = {},
-                   .metadata = {},
                    .walked =
                        [&](std::uint64_t bytes) {
                          read.set_done(bytes);

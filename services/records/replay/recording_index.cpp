@@ -181,8 +181,6 @@ Expected<RecordingContents> index_contents(recording::RecordingReader& reader,
   Gathering gathering;
   auto report = reader.scan(
       {.message = [&](const recording::MessageInFile& message) { gathering.take(message); },
-       .attachment = {},
-       .metadata = {},
        .walked =
            [&](std::uint64_t walked) {
              bytes.set_done(walked);

@@ -22,19 +22,14 @@ constexpr std::chrono::seconds acknowledgment_limit{5};
 // Benches of the file, by its descriptions, states and runs.
 Expected<std::string> recorded_bench(recording::RecordingReader& reader) {
   std::set<std::string> benches;
-  const auto report =
-      reader.scan({.message =
-                       [&](const recording::MessageInFile& message) {
-                         if (message.channel.topic != bus::topics::source_description.name) {
-                           return;
-                         }
-                         if (const auto one =
-                                 recording::decode<wire::SourceDescription>(message.message.data)) {
-                           benches.insert(one->bench().to_string());
-                         }
-                       },
-                   .attachment = {},
-                   .metadata = {}});
+  const auto report = reader.scan({.message = [&](const recording::MessageInFile& message) {
+    if (message.channel.topic != bus::topics::source_description.name) {
+      return;
+    }
+    if (const auto one = recording::decode<wire::SourceDescription>(message.message.data)) {
+      benches.insert(one->bench().to_string());
+    }
+  }});
   DYNCAL_TRY(report);
   if (benches.size() != 1) {
     return fail(
@@ -73,28 +68,16 @@ live_sender(bus::Participant& participant, const std::string& bench, const std::
   return heard;
 }
 
-void mark(wire::SourceDescription& message, const std::string& replay) {
-  message.driver(replay + ": " + message.driver());
-}
-void mark(wire::SourceStatus& message, const std::string& replay) {
-  message.message(message.message().empty() ? replay : replay + ": " + message.message());
-}
-void mark(wire::ServiceStatus& message, const std::string& replay) {
-  message.message(message.message().empty() ? replay : replay + ": " + message.message());
-}
-void mark(wire::Measurement& message, const std::string& replay) {
-  message.conductor(replay);
-}
 template <class T>
-void mark(T& /*message*/, const std::string& /*replay*/) {}
-
-// A run would rely on a guard that is not there.
-bool is_left_out(const wire::ServiceStatus& message) {
-  return !message.guarded_generator().empty();
-}
-template <class T>
-bool is_left_out(const T& /*message*/) {
-  return false;
+void mark(T& message, const std::string& replay) {
+  if constexpr (std::is_same_v<T, wire::SourceDescription>) {
+    message.driver(replay + ": " + message.driver());
+  } else if constexpr (std::is_same_v<T, wire::Measurement>) {
+    message.conductor(replay);
+  } else if constexpr (std::is_same_v<T, wire::SourceStatus> ||
+                       std::is_same_v<T, wire::ServiceStatus>) {
+    message.message(message.message().empty() ? replay : replay + ": " + message.message());
+  }
 }
 
 enum class Played {
@@ -103,39 +86,28 @@ enum class Played {
   left_out
 };
 
-class TopicPlayer {
-public:
-  virtual ~TopicPlayer() = default;
-  virtual Played play(std::string_view bytes, const std::string& bench,
-                      const std::string& replay) = 0;
-  virtual bool wait_for_acknowledgments(std::chrono::nanoseconds limit) = 0;
+struct TopicPlayer {
+  std::function<Played(std::string_view bytes)> play;
+  std::function<void()> wait_for_acknowledgments;
 };
 
 template <class T>
-class PlayerOf : public TopicPlayer {
-public:
-  explicit PlayerOf(bus::Writer<T> writer) : writer_(std::move(writer)) {}
-  Played play(std::string_view bytes, const std::string& bench,
-              const std::string& replay) override {
-    auto message = recording::decode<T>(bytes);
-    if (!message) {
-      return Played::not_written;
-    }
-    if (is_left_out(*message)) {
-      return Played::left_out;
-    }
-    message->bench(bench);
-    mark(*message, replay);
-    return writer_.write(*message) == bus::WriteOutcome::written ? Played::written
-                                                                 : Played::not_written;
+Played play(std::string_view bytes, const std::string& bench, const std::string& replay,
+            bus::Writer<T>& writer) {
+  auto message = recording::decode<T>(bytes);
+  if (!message) {
+    return Played::not_written;
   }
-  bool wait_for_acknowledgments(std::chrono::nanoseconds limit) override {
-    return writer_.wait_for_acknowledgments(limit);
+  if constexpr (std::is_same_v<T, wire::ServiceStatus>) {
+    if (!message->guarded_generator().empty()) {
+      return Played::left_out; // a run would rely on a guard that is not there
+    }
   }
-
-private:
-  bus::Writer<T> writer_;
-};
+  message->bench(bench);
+  mark(*message, replay);
+  return writer.write(*message) == bus::WriteOutcome::written ? Played::written
+                                                              : Played::not_written;
+}
 
 bool is_result(const std::string& topic) {
   namespace topics = bus::topics;
@@ -147,23 +119,27 @@ bool is_request(const std::string& topic) {
   return topic == bus::topics::command || topic == bus::topics::catch_up_request;
 }
 
-using Players = std::map<std::string, std::unique_ptr<TopicPlayer>>;
+using Players = std::map<std::string, TopicPlayer>;
 
-Expected<Players> open_players(bus::Participant& participant, const std::string& bench,
-                               bool results) {
+Expected<Players> open_players(bus::Participant& participant, const ReplayOptions& wish) {
+  const std::string replay = "replay of " + wish.recording.filename().string();
   Players players;
   Expected<void> opened;
   recording::for_each_recorded_topic([&]<class T>(const bus::Topic<T>& topic) {
     const std::string name = topic.name;
-    if (!opened || is_request(name) || (is_result(name) && !results)) {
+    if (!opened || is_request(name) || (is_result(name) && !wish.results)) {
       return;
     }
-    auto writer = participant.writer(topic, bench);
-    if (!writer) {
-      opened = fail(writer.error());
+    auto opened_writer = participant.writer(topic, wish.bench);
+    if (!opened_writer) {
+      opened = fail(opened_writer.error());
       return;
     }
-    players.emplace(name, std::make_unique<PlayerOf<T>>(std::move(*writer)));
+    const auto writer = std::make_shared<bus::Writer<T>>(std::move(*opened_writer));
+    players[name] = {[=, bench = wish.bench](std::string_view bytes) {
+                       return play(bytes, bench, replay, *writer);
+                     },
+                     [=] { writer->wait_for_acknowledgments(acknowledgment_limit); }};
   });
   DYNCAL_TRY(opened);
   return players;
@@ -223,31 +199,26 @@ Expected<RecordingPlayer> RecordingPlayer::open(bus::Participant& participant, R
 }
 
 Expected<ReplayFigures> RecordingPlayer::play(const std::stop_token& stop) {
-  DYNCAL_TRY(auto players, open_players(*participant_, wish_.bench, wish_.results));
-  const std::string replay = "replay of " + wish_.recording.filename().string();
+  DYNCAL_TRY(auto players, open_players(*participant_, wish_));
   ReplayFigures figures;
   Pace pace(wish_.speed);
   pace.wait_for_readers(stop);
-  auto report = reader_.scan({.message =
-                                  [&](const recording::MessageInFile& message) {
-                                    const auto player = players.find(message.channel.topic);
-                                    if (stop.stop_requested() || player == players.end()) {
-                                      ++figures.left_out;
-                                      return;
-                                    }
-                                    pace.wait_for(message.message.log_time, stop);
-                                    const Played played = player->second->play(message.message.data,
-                                                                               wish_.bench, replay);
-                                    ++(played == Played::written    ? figures.written
-                                       : played == Played::left_out ? figures.left_out
-                                                                    : figures.not_written);
-                                  },
-                              .attachment = {},
-                              .metadata = {}});
+  auto report = reader_.scan({.message = [&](const recording::MessageInFile& message) {
+    const auto player = players.find(message.channel.topic);
+    if (stop.stop_requested() || player == players.end()) {
+      ++figures.left_out;
+      return;
+    }
+    pace.wait_for(message.message.log_time, stop);
+    const Played played = player->second.play(message.message.data);
+    ++(played == Played::written    ? figures.written
+       : played == Played::left_out ? figures.left_out
+                                    : figures.not_written);
+  }});
   DYNCAL_TRY(report);
   figures.report = std::move(*report);
   for (const auto& [topic, player] : players) {
-    player->wait_for_acknowledgments(acknowledgment_limit);
+    player.wait_for_acknowledgments();
   }
   return figures;
 }

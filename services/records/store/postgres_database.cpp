@@ -5,13 +5,16 @@
 #ifdef DYNCAL_HAVE_PQXX
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <cstdlib>
+#include <mutex>
 #include <optional>
+#include <thread>
 
 #include <pqxx/pqxx>
-
-#include "services/records/store/socket_deadline.hpp"
+#include <sys/socket.h>
 #endif
 
 namespace dyncal::inline records {
@@ -79,6 +82,32 @@ std::string with_connect_limit(const std::string& place) {
   const bool has_settings = place.find('?', host == std::string::npos ? 0 : host) < place.size();
   return fmt::format("{}{}connect_timeout={}", place, has_settings ? '&' : '?', connect_limit_s);
 }
+
+// A limit for waiting at a socket in a library that has none of its own: when it has passed, the
+// socket is shut down, and the library finds that its peer has gone.
+//
+// Made before the call that may wait, and gone after it, while the socket is still open. Throws
+// std::system_error where no thread can be made.
+class SocketDeadline {
+public:
+  SocketDeadline(int socket, std::chrono::milliseconds limit)
+      : watch_([this, socket, limit](const std::stop_token& stop) {
+          std::mutex mutex;
+          std::unique_lock lock(mutex);
+          std::condition_variable_any ended;
+          ended.wait_for(lock, stop, limit, [] { return false; });
+          if (!stop.stop_requested()) {
+            passed_ = true;
+            ::shutdown(socket, SHUT_RDWR);
+          }
+        }) {}
+
+  [[nodiscard]] bool has_passed() const { return passed_; }
+
+private:
+  std::atomic<bool> passed_{false};
+  std::jthread watch_; // the last member: it uses the others
+};
 
 class PostgresDatabase : public Database {
 public:

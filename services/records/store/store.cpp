@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "services/base/per_enumerator.hpp"
 #include "services/records/store/migrations.hpp"
 
 namespace dyncal::inline records {
@@ -318,7 +319,7 @@ Expected<std::vector<OpenClosure>> Store::open_closures_of(const std::string& re
                                                  {result_sha256, source}));
   std::vector<OpenClosure> all;
   for (const DatabaseRow& row : rows) {
-    if (const auto kind = parse_closure_kind(text_of(row[1]))) {
+    if (const auto kind = parse_enumerator<ClosureKind>(text_of(row[1]))) {
       const Closure closure{.kind = *kind, .verdict = Verdict::open, .sentence = text_of(row[2])};
       all.push_back({text_of(row[0]), closure_line(text_of(row[0]), closure)});
     }

@@ -90,16 +90,13 @@ TEST_F(RowFormats, McapRowsHaveAMessageASample) {
   auto reader = recording::RecordingReader::open(folder_.path() / "rows.mcap").value();
   std::map<std::string, std::vector<std::uint64_t>> times;
   std::string schema;
-  const auto report = reader.scan({.message =
-                                       [&](const recording::MessageInFile& one) {
-                                         times[one.channel.topic].push_back(one.message.log_time);
-                                         if (one.channel.topic == "dau") {
-                                           schema = one.schema->data;
-                                           EXPECT_EQ(one.message.data.size(), 4U + 8U * 8U);
-                                         }
-                                       },
-                                   .attachment = {},
-                                   .metadata = {}});
+  const auto report = reader.scan({.message = [&](const recording::MessageInFile& one) {
+    times[one.channel.topic].push_back(one.message.log_time);
+    if (one.channel.topic == "dau") {
+      schema = one.schema->data;
+      EXPECT_EQ(one.message.data.size(), 4U + 8U * 8U);
+    }
+  }});
   ASSERT_TRUE(report);
   EXPECT_EQ(report->damage_count, 0U);
   EXPECT_TRUE(report->ended_in_order);

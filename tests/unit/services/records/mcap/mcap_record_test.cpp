@@ -89,18 +89,14 @@ TEST(McapRecord, ReadsAWholeFileOfTheFormatsOwnLibrary) {
   ASSERT_EQ(file.size(), 768U);
   RecordingReader reader = reader_of(file);
   std::vector<std::uint32_t> sequences;
-  const auto report =
-      reader.scan({.message =
-                       [&](const MessageInFile& one) {
-                         EXPECT_EQ(one.channel, channel);
-                         ASSERT_NE(one.schema, nullptr);
-                         EXPECT_EQ(*one.schema, schema);
-                         EXPECT_EQ(one.message.data.size(), 8U);
-                         EXPECT_EQ(one.message.data[4], one.message.sequence == 1 ? 7 : 8);
-                         sequences.push_back(one.message.sequence);
-                       },
-                   .attachment = {},
-                   .metadata = {}});
+  const auto report = reader.scan({.message = [&](const MessageInFile& one) {
+    EXPECT_EQ(one.channel, channel);
+    ASSERT_NE(one.schema, nullptr);
+    EXPECT_EQ(*one.schema, schema);
+    EXPECT_EQ(one.message.data.size(), 8U);
+    EXPECT_EQ(one.message.data[4], one.message.sequence == 1 ? 7 : 8);
+    sequences.push_back(one.message.sequence);
+  }});
   ASSERT_TRUE(report);
   EXPECT_EQ(sequences, (std::vector<std::uint32_t>{1, 2}));
   EXPECT_EQ(report->library, "x");

@@ -156,14 +156,11 @@ TEST(RecordingReader, GoesOnBehindALengthThatIsWrong) {
   std::string file = example();
   RecordingReader sound = reader_of(file);
   std::vector<std::uint64_t> chunks;
-  (void)sound.scan({.message =
-                        [&](const MessageInFile& one) {
-                          if (chunks.empty() || chunks.back() != one.chunk) {
-                            chunks.push_back(one.chunk);
-                          }
-                        },
-                    .attachment = {},
-                    .metadata = {}});
+  (void)sound.scan({.message = [&](const MessageInFile& one) {
+    if (chunks.empty() || chunks.back() != one.chunk) {
+      chunks.push_back(one.chunk);
+    }
+  }});
   ASSERT_EQ(chunks.size(), 10U);
   file[chunks[3] + 2] = '\x7f';
   RecordingReader reader = reader_of(file);
@@ -195,11 +192,10 @@ TEST(RecordingReader, TellsHowFarItHasWalked) {
         std::string(magic) + std::string(3'000'000, '\0')}) {
     RecordingReader reader = reader_of(file);
     std::vector<std::uint64_t> walked;
-    ASSERT_TRUE(reader.scan(
-        {.message = {}, .attachment = {}, .metadata = {}, .walked = [&](std::uint64_t bytes) {
-           walked.push_back(bytes);
-           return true;
-         }}));
+    ASSERT_TRUE(reader.scan({.walked = [&](std::uint64_t bytes) {
+      walked.push_back(bytes);
+      return true;
+    }}));
     ASSERT_FALSE(walked.empty());
     EXPECT_TRUE(std::is_sorted(walked.begin(), walked.end()));
     EXPECT_EQ(walked.back(), file.size());
@@ -211,10 +207,7 @@ TEST(RecordingReader, StopsWhereItIsAskedTo) {
   for (const std::string& file : {whole, std::string(magic) + std::string(3'000'000, '\0')}) {
     RecordingReader reader = reader_of(file);
     std::size_t asked = 0;
-    const auto report =
-        reader.scan({.message = {}, .attachment = {}, .metadata = {}, .walked = [&](std::uint64_t) {
-                       return ++asked < 2;
-                     }});
+    const auto report = reader.scan({.walked = [&](std::uint64_t) { return ++asked < 2; }});
     ASSERT_FALSE(report);
     EXPECT_EQ(report.error().code, base::ErrorCode::interrupted);
     EXPECT_EQ(asked, 2U);

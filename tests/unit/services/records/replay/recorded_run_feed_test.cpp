@@ -55,10 +55,7 @@ protected:
     RunEvaluator evaluator(recipe, {.evaluations_at_once = 2, .count = count_});
     RecordedRunFeed feed(reader, index, evaluator, outcome_);
     ASSERT_TRUE(reader.scan(
-        {.message = [&](const recording::MessageInFile& message) { feed.take(message); },
-         .attachment = {},
-         .metadata = {},
-         .walked = {}}));
+        {.message = [&](const recording::MessageInFile& message) { feed.take(message); }}));
     EXPECT_TRUE(outcome_.results.empty());
     if (gives_up) {
       evaluator.give_up();
