@@ -7,15 +7,15 @@
 // frequency depends on it. Any thread.
 #pragma once
 
-#include <optional>
-#include <string_view>
+#include "services/base/per_enumerator.hpp"
 
 namespace dyncal::inline contract {
 
 enum class DutPhase { delay, delay_from_0, delay_from_180, any };
 
 // As bench file and contract spell it: "delay-from-180".
-[[nodiscard]] const char* to_string(DutPhase phase);
-[[nodiscard]] std::optional<DutPhase> parse_dut_phase(std::string_view text);
+[[nodiscard]] constexpr const char* to_string(DutPhase phase) {
+  return per_enumerator(phase, {"delay", "delay-from-0", "delay-from-180", "any"});
+}
 
 } // namespace dyncal::inline contract

@@ -4,8 +4,7 @@
 // Plain functions, any thread.
 #pragma once
 
-#include <optional>
-#include <string_view>
+#include "services/base/per_enumerator.hpp"
 
 namespace dyncal::inline contract {
 
@@ -17,8 +16,10 @@ enum class EvaluationMethod {
 };
 
 // As the bench file and result files spell it: "sample-timestamping".
-[[nodiscard]] const char* to_string(EvaluationMethod method);
-[[nodiscard]] std::optional<EvaluationMethod> parse_evaluation_method(std::string_view text);
+[[nodiscard]] constexpr const char* to_string(EvaluationMethod method) {
+  return per_enumerator(
+      method, {"analogue", "sample-timestamping", "series-timestamping", "absolute-time"});
+}
 
 // The steps are found in what the reference's own source records; no other source records sync.
 [[nodiscard]] constexpr bool is_without_sync(EvaluationMethod method) {

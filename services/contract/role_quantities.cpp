@@ -87,7 +87,9 @@ std::vector<Role> roles_in(const RoleNames& names) {
   if (!no_sync) {
     roles.push_back({by_series ? "sync_dso" : "sync_dau", 0, names.sync_sensor, of_sync});
   }
-  roles.push_back({"temperature", 0, names.temperature, of_temperature});
+  if (names.temperature) {
+    roles.push_back({"temperature", 0, *names.temperature, of_temperature});
+  }
   for (std::size_t i = 0; i < names.dut.size(); ++i) {
     roles.push_back({"dut", i, names.dut[i], of_sensor});
   }

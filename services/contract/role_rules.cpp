@@ -79,7 +79,9 @@ std::optional<RoleProblem> find_repeated_channel(const RoleNames& roles) {
   for (const ChannelName& name : roles.dut) {
     used.emplace_back("dut", &name);
   }
-  used.emplace_back("temperature", &roles.temperature);
+  if (roles.temperature) {
+    used.emplace_back("temperature", &*roles.temperature);
+  }
   for (auto later = used.begin(); later != used.end(); ++later) {
     const auto earlier = std::find_if(
         used.begin(), later, [&](const auto& one) { return *one.second == *later->second; });

@@ -20,7 +20,7 @@ struct RoleNames {
   ChannelName sync_acs;         // empty where there is none
   ChannelName sync_sensor;      // sync_dau or sync_dso, by the method; empty where there is none
   std::vector<ChannelName> dut; // the channels under calibration
-  ChannelName temperature{};    // empty where there is none
+  std::optional<ChannelName> temperature{};
 };
 
 struct RoleProblem {

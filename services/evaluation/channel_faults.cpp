@@ -20,10 +20,6 @@ constexpr double may_alternate_quantile = 2.33; // once in 100
 constexpr double least_excess = 2.0;            // of q / n
 constexpr double smallest_difference = 1e-4;    // as of one step
 
-bool has_flag(const StepResult& result, ResultFlag kind) {
-  return std::ranges::any_of(result.flags, [&](const Flag& flag) { return flag.kind == kind; });
-}
-
 // Below an eighth of the sensor's rate: above, filters and folding may hide what is lost.
 bool shows_harmonics(const StepResult& result) {
   const auto& integrity = result.fits.back().integrity;
@@ -56,7 +52,8 @@ void ChannelFaults::add(const StepResult& result) {
            .acceleration = result.fits.front().fit.amplitude(),
            .reference = result.fits.front().channel,
            .alternating = result.fits.back().scatter.alternating};
-  if (has_flag(result, ResultFlag::peaks_bent) && !(result.peaks && result.peaks->of_either)) {
+  if (has_flag(result.flags, ResultFlag::peaks_bent) &&
+      !(result.peaks && result.peaks->of_either)) {
     shown.bent = result.peaks;
   }
 }
@@ -97,13 +94,11 @@ void ChannelFaults::settle_peaks(const std::string& bent, bool is_sensor,
   if (shows_harmonics(result) && is_excluded(*stop, is_sensor, result)) {
     return;
   }
-  result.flags.push_back(
-      {ResultFlag::peaks_bent,
-       fmt::format(
-           "{}: {}: not shown by this step, but by {} steps of {:.3g} m/s^2 and more, where "
-           "{:.2g} % of the amplitude and more are lost",
-           bent, to_string(ResultFlag::peaks_bent), stop->steps, stop->acceleration,
-           100.0 * stop->loss_rel)});
+  result.flags.push_back(flag_of_channel(
+      ResultFlag::peaks_bent, bent,
+      fmt::format("not shown by this step, but by {} steps of {:.3g} m/s^2 and more, where {:.2g} "
+                  "% of the amplitude and more are lost",
+                  stop->steps, stop->acceleration, 100.0 * stop->loss_rel)));
 }
 
 void ChannelFaults::settle_alternation(StepResult& result) const {
@@ -135,12 +130,11 @@ void ChannelFaults::settle_alternation(StepResult& result) const {
   result.u_magnitude = std::hypot(result.u_magnitude, difference * result.magnitude);
   if (difference > smallest_difference &&
       is_beyond(all.q - all.largest, all.n - 1.0, alternates_quantile)) {
-    result.flags.push_back(
-        {ResultFlag::values_off_stamps,
-         fmt::format("{}: {}: over all steps, every second value is of a sine that differs by "
-                     "{:.2g} %: of another sensor, or another gain",
-                     result.channel, to_string(ResultFlag::values_off_stamps),
-                     200.0 * difference)});
+    result.flags.push_back(flag_of_channel(
+        ResultFlag::values_off_stamps, result.channel,
+        fmt::format("over all steps, every second value is of a sine that differs by {:.2g} %: of "
+                    "another sensor, or another gain",
+                    200.0 * difference)));
   }
 }
 
@@ -148,11 +142,11 @@ StepResult ChannelFaults::settled(StepResult result) const {
   if (!result.valid || result.fits.empty()) {
     return result;
   }
-  if (!has_flag(result, ResultFlag::peaks_bent)) {
+  if (!has_flag(result.flags, ResultFlag::peaks_bent)) {
     settle_peaks(result.channel, true, result);
     settle_peaks(result.fits.front().channel, false, result);
   }
-  if (!has_flag(result, ResultFlag::values_off_stamps)) {
+  if (!has_flag(result.flags, ResultFlag::values_off_stamps)) {
     settle_alternation(result);
   }
   return result;

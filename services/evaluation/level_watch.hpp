@@ -6,7 +6,7 @@
 // it exceeds twice the highest level that the recipe plans at this frequency, so that samples of
 // another step that come late raise no alarm. A reference that is not in m/s^2, and steps that
 // nobody announces (recorded files), are not watched: there the result carries a flag
-// (method/level_check.hpp).
+// (method/step_results.cpp).
 //
 // Belongs to one thread; the recipe must outlive it.
 #pragma once

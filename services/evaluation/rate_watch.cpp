@@ -12,12 +12,11 @@ constexpr std::size_t blocks_looked_at = 16;
 } // namespace
 
 RateWatch::RateWatch(const Recipe& recipe) : recipe_(recipe) {
-  RoleNames names = role_names(recipe);
   for (const std::string& source :
-       {names.reference.source, names.sync_acs.source, names.sync_sensor.source}) {
+       {recipe.reference().source, recipe.roles.sync_acs.source, recipe.roles.sync_sensor.source}) {
     unknown_.try_emplace(source);
   }
-  for (const ChannelName& channel : names.dut) {
+  for (const ChannelName& channel : recipe.dut()) {
     unknown_.try_emplace(channel.source);
   }
   unknown_.erase(""); // of a role that the method does not have

@@ -35,7 +35,7 @@ RunEvaluator::RunEvaluator(Recipe recipe, const EvaluationLimits& limits)
     count_->begin("evaluating", "steps", recipe_->steps.size());
   }
   if (auto source = method_->clock_source()) {
-    clock_.emplace(std::move(*source), recipe_->temperature);
+    clock_.emplace(std::move(*source), recipe_->roles.temperature);
   }
 }
 
@@ -179,8 +179,9 @@ void RunEvaluator::keep(const StepResult& result) {
 }
 
 std::optional<double> RunEvaluator::temperature_of_step(std::size_t step) const {
-  return recipe_->temperature ? step_temperature_degc(records_, *recipe_->temperature, step)
-                              : std::nullopt;
+  return recipe_->roles.temperature
+             ? step_temperature_degc(records_, *recipe_->roles.temperature, step)
+             : std::nullopt;
 }
 
 bool RunEvaluator::evaluate_next_steps(EvaluationOutput& output) {

@@ -7,9 +7,7 @@
 
 #include "services/base/printable_text.hpp"
 #include "services/bus/names.hpp"
-#include "services/evaluation/result/clock_report_message.hpp"
-#include "services/evaluation/result/result_message.hpp"
-#include "services/evaluation/result/transfer_function_message.hpp"
+#include "services/evaluation/result/result_messages.hpp"
 #include "services/network/bounded_results.hpp"
 #include "services/network/changes.hpp"
 

@@ -1,13 +1,14 @@
 // The first state of a run that is resumed: it waits until the analysis attends to it, with all of
 // its results so far, or says that it has ended.
 //
-//   a result of it names another recipe                                    fails: bad_file
-//   it is refused; nothing was measured where neither folder nor results tell of any
-//   it has ended                                                           its results are
-//   collected a source is another instrument now                                     fails:
-//   no_source the analysis has ended it by command                                   fails with its
-//   reason nothing comes for StepSequence::away_limit (ArmingWait::limit: from nobody)  fails:
-//   no_analysis
+//   a result of it names another recipe               fails: bad_file
+//   it is refused                                     fails with its reason, or that nothing was
+//                                                     measured, where nothing tells of any
+//   it has ended                                      its results are collected
+//   a source is another instrument now                fails: no_source
+//   the analysis has ended it by command              fails with its reason
+//   nothing comes for StepSequence::away_limit        fails: no_analysis
+//   nobody answers for ArmingWait::limit              fails: no_analysis
 //
 // Where nothing tells yet that the analysis holds the run with this recipe, it is given
 // recipe_limit to refuse another one. Belongs to the conductor's thread.

@@ -13,7 +13,7 @@
 #include "services/contract/run_identity.hpp"
 #include "services/evaluation/outcome_agreement.hpp"
 #include "services/evaluation/recipe/recipe_message.hpp"
-#include "services/evaluation/result/adc_file_message.hpp"
+#include "services/evaluation/result/result_messages.hpp"
 #include "services/run/arming_wait.hpp"
 #include "services/run/results_wait.hpp"
 #include "services/run/resume_wait.hpp"

@@ -5,9 +5,7 @@
 #include "services/contract/contract_versions.hpp"
 #include "services/contract/source_description.hpp"
 #include "services/contract/topics.hpp"
-#include "services/evaluation/result/clock_report_message.hpp"
-#include "services/evaluation/result/result_message.hpp"
-#include "services/evaluation/result/transfer_function_message.hpp"
+#include "services/evaluation/result/result_messages.hpp"
 #include "services/run/run_outlook.hpp"
 
 namespace dyncal::inline run {

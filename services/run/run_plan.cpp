@@ -36,20 +36,6 @@ std::vector<RecipeStep> plan_steps(const BenchFile& file) {
   return steps;
 }
 
-Roles plan_roles(const BenchFile& file,
-                 const std::vector<analysis::AdcCalibrationPoint>& adc_calibration) {
-  const MethodSettings& method = file.method;
-  return make_roles({method.kind, method.reference, method.sync_acs, method.sync_dau, method.dut},
-                    {.adc_calibration = adc_calibration,
-                     .shots = static_cast<std::uint32_t>(method.shots),
-                     .trigger_phase_correction = method.trigger_phase_correction,
-                     .dso_delay_s = file.corrections.dso_delay_s,
-                     .u_dso_delay_s = file.corrections.u_dso_delay_s,
-                     .u_acs_rate_rel = file.uncertainty.acs_rate_rel,
-                     .u_dso_rate_rel = file.uncertainty.dso_rate_rel,
-                     .u_adc_delay_s = file.uncertainty.adc_delay_s});
-}
-
 } // namespace
 
 Expected<Recipe> plan_recipe(const BenchFile& file, const std::string& run,
@@ -57,8 +43,20 @@ Expected<Recipe> plan_recipe(const BenchFile& file, const std::string& run,
   Recipe recipe;
   recipe.bench = file.bench;
   recipe.run = run;
-  recipe.roles = plan_roles(file, adc_calibration);
-  recipe.temperature = file.method.temperature;
+  recipe.roles = {.method = file.method.kind,
+                  .reference = file.method.reference,
+                  .sync_acs = file.method.sync_acs,
+                  .sync_sensor = file.method.sync_dau,
+                  .dut = file.method.dut,
+                  .temperature = file.method.temperature};
+  recipe.adc_calibration = adc_calibration;
+  recipe.u_adc_delay_s = file.uncertainty.adc_delay_s;
+  recipe.series = {.shots = static_cast<std::uint32_t>(file.method.shots),
+                   .trigger_phase_correction = file.method.trigger_phase_correction,
+                   .dso_delay_s = file.corrections.dso_delay_s,
+                   .u_dso_delay_s = file.corrections.u_dso_delay_s,
+                   .u_acs_rate_rel = file.uncertainty.acs_rate_rel,
+                   .u_dso_rate_rel = file.uncertainty.dso_rate_rel};
   recipe.steps = plan_steps(file);
   recipe.settling_from_data = file.excitation.settling_from_data;
   recipe.monte_carlo_trials = file.uncertainty.monte_carlo_trials;

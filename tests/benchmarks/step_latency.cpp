@@ -21,7 +21,7 @@
 #include <fmt/core.h>
 
 #include "idl/dyncal.h"
-#include "services/evaluation/result/result_message.hpp"
+#include "services/evaluation/result/result_messages.hpp"
 #include "services/evaluation/run_evaluator.hpp"
 
 namespace {
@@ -53,12 +53,11 @@ Recipe recipe_of(const Case& one) {
   Recipe recipe;
   recipe.bench = "latency";
   recipe.run = "r1";
-  recipe.roles = SampleStampingRoles{.reference = {"acs", "reference"},
-                                     .sync_acs = {"acs", "sync"},
-                                     .sync_dau = {"dau", "sync"},
-                                     .dut = {{"dau", "x"}, {"dau", "z"}},
-                                     .adc_calibration = {},
-                                     .u_adc_delay_s = 1e-7};
+  recipe.roles = {.reference = {"acs", "reference"},
+                  .sync_acs = {"acs", "sync"},
+                  .sync_sensor = {"dau", "sync"},
+                  .dut = {{"dau", "x"}, {"dau", "z"}}};
+  recipe.u_adc_delay_s = 1e-7;
   for (std::uint32_t step = 1; step <= 2; ++step) {
     recipe.steps.push_back({.step = step,
                             .repetition = 1,

@@ -14,8 +14,7 @@
 
 #include "services/bus/bus.hpp"
 #include "services/contract/topics.hpp"
-#include "services/evaluation/result/result_message.hpp"
-#include "services/evaluation/result/transfer_function_message.hpp"
+#include "services/evaluation/result/result_messages.hpp"
 #include "tests/unit/services/network/messages.hpp"
 #include "tests/unit/services/views/report/example_outcome.hpp"
 

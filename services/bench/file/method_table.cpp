@@ -120,7 +120,7 @@ void check_roles(TomlTable& table, const MethodSettings& method) {
                         .sync_acs = method.sync_acs,
                         .sync_sensor = method.sync_dau,
                         .dut = method.dut,
-                        .temperature = method.temperature.value_or(ChannelName{})};
+                        .temperature = method.temperature};
   auto problem = find_role_problem(roles);
   if (!problem) {
     problem = find_repeated_channel(roles);

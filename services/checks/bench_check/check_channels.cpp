@@ -115,9 +115,8 @@ std::optional<drivers::ChannelDescription> described(const BenchView& view,
 
 void check_quantities(const BenchView& view, Findings& findings) {
   const MethodSettings& method = view.bench.method;
-  const RoleNames names{method.kind,     method.reference,
-                        method.sync_acs, method.sync_dau,
-                        method.dut,      method.temperature.value_or(ChannelName{})};
+  const RoleNames names{method.kind,     method.reference, method.sync_acs,
+                        method.sync_dau, method.dut,       method.temperature};
   const auto look_up = [&](const ChannelName& name) { return described(view, name); };
   for (RoleQuantityProblem& problem : find_quantity_problems(names, look_up)) {
     const auto entry = problem.role == "dut" ? std::optional(problem.entry) : std::nullopt;

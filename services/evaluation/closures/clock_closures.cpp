@@ -155,8 +155,8 @@ std::vector<Closure> clock_closures(const ChannelRun& run) {
     all.push_back(own_oscillator(run));
   } else if (const auto ratios = ratios_of(run);
              method == EvaluationMethod::sample_timestamping && searched && !ratios.empty()) {
-    const auto& roles = std::get<SampleStampingRoles>(run.recipe.roles);
-    const std::string clocks = roles.sync_acs.source + " and " + roles.sync_dau.source;
+    const RoleNames& roles = run.recipe.roles;
+    const std::string clocks = roles.sync_acs.source + " and " + roles.sync_sensor.source;
     all.push_back(rate(clocks, ratios, run.recipe.clock_tolerance_rel));
     all.push_back(in_each_step(run, clocks, ratios));
   } else {

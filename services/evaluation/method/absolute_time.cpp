@@ -1,14 +1,12 @@
-#include "services/evaluation/method/absolute_time.hpp"
-
 #include <fmt/format.h>
 #include <iterator>
 
 #include "analysis/method/analogue_comparison.hpp"
 #include "services/evaluation/method/disturbance_cut.hpp"
+#include "services/evaluation/method/method_kinds.hpp"
 #include "services/evaluation/method/own_clock_sensors.hpp"
 #include "services/evaluation/method/step_results.hpp"
 #include "services/evaluation/method/step_task.hpp"
-#include "services/evaluation/recipe/reference_correction.hpp"
 
 namespace dyncal::inline evaluation {
 namespace {
@@ -71,48 +69,61 @@ std::vector<StepResult> evaluate(const StepTask& task, const SourceInterval& acs
   return results;
 }
 
+// Reference and sensors are all stamped in UTC, and no sync is needed: absolute time
+// (analysis/method/analogue_comparison.hpp).
+class AbsoluteTime : public Method {
+public:
+  using Method::Method;
+
+  [[nodiscard]] std::vector<SearchedChannel> searches() const override {
+    std::vector<std::string> sources = recipe_->dut_sources();
+    sources.insert(sources.begin(), recipe_->excitation().source);
+    return {{recipe_->excitation(), std::move(sources)}};
+  }
+
+  [[nodiscard]] Expected<void> check_time_scales(const RunRecords& records) const override {
+    std::vector<std::string> names = recipe_->dut_sources();
+    names.push_back(roles_.reference.source);
+    for (const std::string& name : names) {
+      const SourceRecord& source = records.of(name);
+      if (source.described() && source.description().time_base == drivers::TimeBase::local) {
+        return fail(
+            ErrorCode::no_source,
+            fmt::format("source '{}' has a clock of its own, but absolute time needs all clocks on "
+                        "UTC; set it to UTC and write time_base = \"utc\", or use a sync signal",
+                        name));
+      }
+    }
+    return {};
+  }
+
+  [[nodiscard]] bool is_complete(std::size_t step, const RunRecords& records) const override {
+    return sensors_have_sent(*recipe_, records, 0, step);
+  }
+
+  [[nodiscard]] Evaluation evaluation(std::size_t step, const RunRecords& records) override {
+    const auto interval = records.interval(0, step);
+    if (!interval) {
+      return not_found(step, records, recipe_->excitation(), roles_.dut);
+    }
+    SourceInterval acs = records.samples(roles_.reference.source, *interval);
+    std::vector<SourceInterval> sensors = sensor_intervals(*recipe_, records, *interval);
+    std::vector<SourceInterval> all{acs};
+    all.insert(all.end(), sensors.begin(), sensors.end());
+    StepTask task = make_step_task(recipe_, step, records, all);
+    return [task = std::move(task), acs = std::move(acs), sensors = std::move(sensors)](
+               const std::stop_token& stop) { return evaluate(task.until(stop), acs, sensors); };
+  }
+
+  [[nodiscard]] std::optional<std::string> clock_source() const override {
+    return roles_.dut.front().source;
+  }
+};
+
 } // namespace
 
-std::vector<SearchedChannel> AbsoluteTime::searches() const {
-  std::vector<std::string> sources = recipe_->dut_sources();
-  sources.insert(sources.begin(), roles_.excitation.source);
-  return {{roles_.excitation, std::move(sources)}};
-}
-
-Expected<void> AbsoluteTime::check_time_scales(const RunRecords& records) const {
-  std::vector<std::string> names = recipe_->dut_sources();
-  names.push_back(roles_.reference.source);
-  for (const std::string& name : names) {
-    const SourceRecord& source = records.of(name);
-    if (source.described() && source.description().time_base == drivers::TimeBase::local) {
-      return fail(
-          ErrorCode::no_source,
-          fmt::format("source '{}' has a clock of its own, but absolute time needs all clocks on "
-                      "UTC; set it to UTC and write time_base = \"utc\", or use a sync signal",
-                      name));
-    }
-  }
-  return {};
-}
-
-bool AbsoluteTime::is_complete(std::size_t step, const RunRecords& records) const {
-  return sensors_have_sent(*recipe_, records, 0, step);
-}
-
-Evaluation AbsoluteTime::evaluation(std::size_t step, const RunRecords& records) {
-  const auto interval = records.interval(0, step);
-  if (!interval) {
-    return [results = results_without_value(records.planned(step), roles_.dut,
-                                            no_sine(*recipe_, records, step, roles_.excitation))](
-               const std::stop_token&) { return results; };
-  }
-  SourceInterval acs = records.samples(roles_.reference.source, *interval);
-  std::vector<SourceInterval> sensors = sensor_intervals(*recipe_, records, *interval);
-  std::vector<SourceInterval> all{acs};
-  all.insert(all.end(), sensors.begin(), sensors.end());
-  StepTask task = make_step_task(recipe_, step, records, all);
-  return [task = std::move(task), acs = std::move(acs), sensors = std::move(sensors)](
-             const std::stop_token& stop) { return evaluate(task.until(stop), acs, sensors); };
+std::unique_ptr<Method> make_absolute_time(std::shared_ptr<const Recipe> recipe) {
+  return std::make_unique<AbsoluteTime>(std::move(recipe));
 }
 
 } // namespace dyncal::inline evaluation

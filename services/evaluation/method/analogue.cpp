@@ -1,32 +1,29 @@
-#include "services/evaluation/method/analogue.hpp"
-
 #include "analysis/method/analogue_comparison.hpp"
 #include "services/evaluation/method/disturbance_cut.hpp"
+#include "services/evaluation/method/method_kinds.hpp"
 #include "services/evaluation/method/step_results.hpp"
 #include "services/evaluation/method/step_settling.hpp"
 #include "services/evaluation/method/step_task.hpp"
-#include "services/evaluation/recipe/reference_correction.hpp"
 
 namespace dyncal::inline evaluation {
 namespace {
 
-bool has_sync(const AnalogueRoles& roles) {
-  return roles.excitation != roles.reference;
+bool has_sync(const Recipe& recipe) {
+  return recipe.excitation() != recipe.reference();
 }
 
 // Of the selected channels.
 std::size_t first_dut(const StepTask& task) {
-  return has_sync(std::get<AnalogueRoles>(task.recipe->roles)) ? 2 : 1;
+  return has_sync(*task.recipe) ? 2 : 1;
 }
 
 // The reference, sync where it is named, then the channels under calibration.
 SelectedChannels select_channels(const Recipe& recipe, SourceInterval source) {
-  const auto& roles = std::get<AnalogueRoles>(recipe.roles);
-  std::vector<ChannelName> names{roles.reference};
-  if (has_sync(roles)) {
-    names.push_back(roles.excitation);
+  std::vector<ChannelName> names{recipe.reference()};
+  if (has_sync(recipe)) {
+    names.push_back(recipe.excitation());
   }
-  names.insert(names.end(), roles.dut.begin(), roles.dut.end());
+  names.insert(names.end(), recipe.dut().begin(), recipe.dut().end());
   return {std::move(source), std::move(names), recipe.mains_hz};
 }
 
@@ -61,7 +58,6 @@ analysis::AnalogueInput input_of(const StepTask& task, const SelectedChannels& c
 }
 
 std::vector<StepResult> evaluate(StepTask task, SourceInterval acs) {
-  const auto& roles = std::get<AnalogueRoles>(task.recipe->roles);
   SelectedChannels channels = select_channels(*task.recipe, std::move(acs));
   if (task.recipe->settling_from_data) {
     leave_settling_out(task, channels);
@@ -79,37 +75,47 @@ std::vector<StepResult> evaluate(StepTask task, SourceInterval acs) {
           return step;
         });
   });
-  StepInput input{.dut = roles.dut,
+  StepInput input{.dut = task.recipe->dut(),
                   .reference_unit = channels.unit(0),
                   .units = units_of(channels, channels, first_dut(task)),
                   .samples = {channels.summary()},
                   .data_sha256 = digest_of({&channels}),
                   .common = {{&channels, 0}},
                   .first_dut = {&channels, first_dut(task)}};
-  if (has_sync(roles)) {
+  if (has_sync(*task.recipe)) {
     input.common.push_back({&channels, 1});
   }
   return make_results(task, input, evaluated);
 }
 
+// Sensor and reference are channels of one system: the analogue method, paper eqs. (1) and (2)
+// (analysis/method/analogue_comparison.hpp). Sync beside them, where it is named, shows where the
+// steps are and gives the frequency.
+class Analogue : public Method {
+public:
+  using Method::Method;
+
+  [[nodiscard]] std::vector<SearchedChannel> searches() const override {
+    return {{recipe_->excitation(), {recipe_->excitation().source}}};
+  }
+
+  [[nodiscard]] Evaluation evaluation(std::size_t step, const RunRecords& records) override {
+    const auto interval = records.interval(0, step);
+    if (!interval) {
+      return not_found(step, records, recipe_->excitation(), roles_.dut);
+    }
+    SourceInterval acs = records.samples(roles_.reference.source, *interval);
+    StepTask task = make_step_task(recipe_, step, records, {acs});
+    return [task = std::move(task), acs = std::move(acs)](const std::stop_token& stop) {
+      return evaluate(task.until(stop), acs);
+    };
+  }
+};
+
 } // namespace
 
-std::vector<SearchedChannel> Analogue::searches() const {
-  return {{roles_.excitation, {roles_.excitation.source}}};
-}
-
-Evaluation Analogue::evaluation(std::size_t step, const RunRecords& records) {
-  const auto interval = records.interval(0, step);
-  if (!interval) {
-    return [results = results_without_value(records.planned(step), roles_.dut,
-                                            no_sine(*recipe_, records, step, roles_.excitation))](
-               const std::stop_token&) { return results; };
-  }
-  SourceInterval acs = records.samples(roles_.reference.source, *interval);
-  StepTask task = make_step_task(recipe_, step, records, {acs});
-  return [task = std::move(task), acs = std::move(acs)](const std::stop_token& stop) {
-    return evaluate(task.until(stop), acs);
-  };
+std::unique_ptr<Method> make_analogue(std::shared_ptr<const Recipe> recipe) {
+  return std::make_unique<Analogue>(std::move(recipe));
 }
 
 } // namespace dyncal::inline evaluation

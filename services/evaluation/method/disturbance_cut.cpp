@@ -12,9 +12,8 @@ bool cut(const analysis::KnockedChannel& found, std::initializer_list<SelectedCh
       part->leave_out({found.knock.first_ns, found.knock.last_ns + 1});
       const double length_ms =
           static_cast<double>(found.knock.last_ns - found.knock.first_ns) * 1e-6;
-      flags.push_back({ResultFlag::disturbance_cut_out,
-                       fmt::format("{}: {}: {:.2g} ms", found.channel,
-                                   to_string(ResultFlag::disturbance_cut_out), length_ms)});
+      flags.push_back(flag_of_channel(ResultFlag::disturbance_cut_out, found.channel,
+                                      fmt::format("{:.2g} ms", length_ms)));
       return true;
     }
   }

@@ -18,10 +18,6 @@ bool is_common(const Count& count) {
   return count.flagged >= 2 && 2 * count.flagged >= count.steps;
 }
 
-bool carries(ResultFlag kind, const StepResult& result) {
-  return std::ranges::any_of(result.flags, [kind](const Flag& flag) { return flag.kind == kind; });
-}
-
 } // namespace
 
 bool add_flag_of_most(ResultFlag kind, std::span<StepResult> results) {
@@ -29,16 +25,16 @@ bool add_flag_of_most(ResultFlag kind, std::span<StepResult> results) {
   for (const StepResult& result : results) {
     Count& count = of_channel[result.channel];
     count.steps += result.valid ? 1 : 0;
-    count.flagged += result.valid && carries(kind, result) ? 1 : 0;
+    count.flagged += result.valid && has_flag(result.flags, kind) ? 1 : 0;
   }
   bool added = false;
   for (StepResult& result : results) {
     const Count& count = of_channel[result.channel];
-    if (result.valid && !carries(kind, result) && is_common(count)) {
-      result.flags.push_back(
-          {kind,
-           fmt::format("{}: {}: so it is in {} of {} steps; here noise or a low frequency hides it",
-                       result.channel, to_string(kind), count.flagged, count.steps)});
+    if (result.valid && !has_flag(result.flags, kind) && is_common(count)) {
+      result.flags.push_back(flag_of_channel(
+          kind, result.channel,
+          fmt::format("so it is in {} of {} steps; here noise or a low frequency hides it",
+                      count.flagged, count.steps)));
       added = true;
     }
   }

@@ -1,11 +1,10 @@
 #include "services/evaluation/method/method.hpp"
 
-#include "services/evaluation/method/absolute_time.hpp"
-#include "services/evaluation/method/analogue.hpp"
 #include "services/evaluation/method/flag_of_most.hpp"
-#include "services/evaluation/method/own_clock_sample_stamping.hpp"
-#include "services/evaluation/method/sample_time_stamping.hpp"
+#include "services/evaluation/method/method_kinds.hpp"
 #include "services/evaluation/method/series_time_stamping.hpp"
+#include "services/evaluation/method/step_results.hpp"
+#include "services/evaluation/method/step_task.hpp"
 
 namespace dyncal::inline evaluation {
 
@@ -23,21 +22,28 @@ bool Method::is_complete(std::size_t /*step*/, const RunRecords& /*records*/) co
   return true;
 }
 
+Evaluation Method::not_found(std::size_t step, const RunRecords& records, const ChannelName& sync,
+                             const std::vector<ChannelName>& dut) const {
+  return [results = results_without_value(records.planned(step), dut,
+                                          no_sine(*recipe_, records, step, sync))](
+             const std::stop_token&) { return results; };
+}
+
 std::unique_ptr<Method> make_method(std::shared_ptr<const Recipe> recipe) {
   switch (recipe->method()) {
   case EvaluationMethod::analogue:
-    return std::make_unique<Analogue>(std::move(recipe));
+    return make_analogue(std::move(recipe));
   case EvaluationMethod::absolute_time:
-    return std::make_unique<AbsoluteTime>(std::move(recipe));
+    return make_absolute_time(std::move(recipe));
   case EvaluationMethod::series_timestamping:
     return std::make_unique<SeriesTimeStamping>(std::move(recipe));
   case EvaluationMethod::sample_timestamping:
     break;
   }
-  if (std::get<SampleStampingRoles>(recipe->roles).own_clocks()) {
-    return std::make_unique<OwnClockSampleStamping>(std::move(recipe));
+  if (has_own_clocks(recipe->dut(), recipe->roles.sync_sensor)) {
+    return make_own_clock_sample_stamping(std::move(recipe));
   }
-  return std::make_unique<SampleTimeStamping>(std::move(recipe));
+  return make_sample_time_stamping(std::move(recipe));
 }
 
 } // namespace dyncal::inline evaluation

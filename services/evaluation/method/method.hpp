@@ -32,6 +32,8 @@ using Evaluation = std::function<std::vector<StepResult>(const std::stop_token& 
 
 class Method {
 public:
+  explicit Method(std::shared_ptr<const Recipe> recipe)
+      : recipe_(std::move(recipe)), roles_(recipe_->roles) {}
   virtual ~Method() = default;
   Method(const Method&) = delete;
   Method& operator=(const Method&) = delete;
@@ -68,7 +70,13 @@ public:
   [[nodiscard]] virtual std::vector<ClockReport> clock_reports() const { return {}; }
 
 protected:
-  Method() = default;
+  // Of a step that was not found in `sync`: results that say so.
+  [[nodiscard]] Evaluation not_found(std::size_t step, const RunRecords& records,
+                                     const ChannelName& sync,
+                                     const std::vector<ChannelName>& dut) const;
+
+  const std::shared_ptr<const Recipe> recipe_;
+  const RoleNames& roles_;
 };
 
 // Of the recipe's method. The recipe does not change any more.

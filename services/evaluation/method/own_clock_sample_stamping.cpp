@@ -1,14 +1,11 @@
-#include "services/evaluation/method/own_clock_sample_stamping.hpp"
-
 #include <iterator>
 
 #include "analysis/method/sample_stamping.hpp"
-#include "services/evaluation/method/adc_correction.hpp"
 #include "services/evaluation/method/disturbance_cut.hpp"
+#include "services/evaluation/method/method_kinds.hpp"
 #include "services/evaluation/method/own_clock_sensors.hpp"
 #include "services/evaluation/method/step_results.hpp"
 #include "services/evaluation/method/step_task.hpp"
-#include "services/evaluation/recipe/reference_correction.hpp"
 
 namespace dyncal::inline evaluation {
 namespace {
@@ -29,8 +26,7 @@ analysis::Expected<EvaluatedStep> evaluate_channels(const StepTask& task,
                                                     const StepChannels& channels) {
   const Recipe& recipe = *task.recipe;
   DYNCAL_TRY(require_samples(channels.dut));
-  DYNCAL_TRY(const auto adc,
-             adc_response(std::get<SampleStampingRoles>(recipe.roles), task.step()));
+  DYNCAL_TRY(const auto adc, adc_response(recipe, task.step()));
   DYNCAL_TRY(const auto reference, reference_response(recipe, task.step()));
   analysis::SampleStampingInput input{.frequency = task.step().frequency,
                                       .frequency_search_rel = recipe.frequency_search_rel,
@@ -57,10 +53,10 @@ analysis::Expected<EvaluatedStep> evaluate_channels(const StepTask& task,
 
 std::vector<StepResult> evaluate_sensor(StepTask task, const StepSources& sources,
                                         const SourceInterval& sensor) {
-  const auto& roles = std::get<SampleStampingRoles>(task.recipe->roles);
+  const RoleNames& roles = task.recipe->roles;
   StepChannels channels{
       .acs = {sources.acs, {roles.reference, roles.sync_acs}, task.recipe->mains_hz},
-      .sync = {sources.dau, {roles.sync_dau}, task.recipe->mains_hz},
+      .sync = {sources.dau, {roles.sync_sensor}, task.recipe->mains_hz},
       .dut = select_dut(*task.recipe, sensor)};
   flag_unknown_clock(channels.sync, task.flags);
   flag_unknown_clock(channels.dut, task.flags);
@@ -87,40 +83,53 @@ std::vector<StepResult> evaluate(const StepTask& task, const StepSources& source
   return results;
 }
 
+// Sample time stamping of sensors that have stamps of their own: a DAU on their time scale records
+// sync beside them (analysis/method/sample_stamping.hpp).
+class OwnClockSampleStamping : public Method {
+public:
+  using Method::Method;
+
+  [[nodiscard]] std::vector<SearchedChannel> searches() const override {
+    std::vector<std::string> beside = recipe_->dut_sources();
+    beside.insert(beside.begin(), roles_.sync_sensor.source);
+    return {{roles_.sync_acs, {roles_.sync_acs.source}}, {roles_.sync_sensor, std::move(beside)}};
+  }
+
+  [[nodiscard]] Expected<void> check_time_scales(const RunRecords& records) const override {
+    return check_one_time_scale(*recipe_, records, roles_.sync_sensor.source);
+  }
+
+  [[nodiscard]] bool is_complete(std::size_t step, const RunRecords& records) const override {
+    return sensors_have_sent(*recipe_, records, 1, step);
+  }
+
+  [[nodiscard]] Evaluation evaluation(std::size_t step, const RunRecords& records) override {
+    const auto of_acs = records.interval(0, step);
+    const auto of_dau = records.interval(1, step);
+    if (!of_acs || !of_dau) {
+      const ChannelName& sync = of_acs ? roles_.sync_sensor : roles_.sync_acs;
+      return not_found(step, records, sync, roles_.dut);
+    }
+    StepSources sources{records.samples(roles_.sync_acs.source, *of_acs),
+                        records.samples(roles_.sync_sensor.source, *of_dau),
+                        sensor_intervals(*recipe_, records, *of_dau)};
+    std::vector<SourceInterval> all{sources.acs, sources.dau};
+    all.insert(all.end(), sources.sensors.begin(), sources.sensors.end());
+    StepTask task = make_step_task(recipe_, step, records, all);
+    return [task = std::move(task), sources = std::move(sources)](const std::stop_token& stop) {
+      return evaluate(task.until(stop), sources);
+    };
+  }
+
+  [[nodiscard]] std::optional<std::string> clock_source() const override {
+    return roles_.dut.front().source;
+  }
+};
+
 } // namespace
 
-std::vector<SearchedChannel> OwnClockSampleStamping::searches() const {
-  std::vector<std::string> beside = recipe_->dut_sources();
-  beside.insert(beside.begin(), roles_.sync_dau.source);
-  return {{roles_.sync_acs, {roles_.sync_acs.source}}, {roles_.sync_dau, std::move(beside)}};
-}
-
-Expected<void> OwnClockSampleStamping::check_time_scales(const RunRecords& records) const {
-  return check_one_time_scale(*recipe_, records, roles_.sync_dau.source);
-}
-
-bool OwnClockSampleStamping::is_complete(std::size_t step, const RunRecords& records) const {
-  return sensors_have_sent(*recipe_, records, 1, step);
-}
-
-Evaluation OwnClockSampleStamping::evaluation(std::size_t step, const RunRecords& records) {
-  const auto of_acs = records.interval(0, step);
-  const auto of_dau = records.interval(1, step);
-  if (!of_acs || !of_dau) {
-    const ChannelName& sync = of_acs ? roles_.sync_dau : roles_.sync_acs;
-    return [results = results_without_value(records.planned(step), roles_.dut,
-                                            no_sine(*recipe_, records, step, sync))](
-               const std::stop_token&) { return results; };
-  }
-  StepSources sources{records.samples(roles_.sync_acs.source, *of_acs),
-                      records.samples(roles_.sync_dau.source, *of_dau),
-                      sensor_intervals(*recipe_, records, *of_dau)};
-  std::vector<SourceInterval> all{sources.acs, sources.dau};
-  all.insert(all.end(), sources.sensors.begin(), sources.sensors.end());
-  StepTask task = make_step_task(recipe_, step, records, all);
-  return [task = std::move(task), sources = std::move(sources)](const std::stop_token& stop) {
-    return evaluate(task.until(stop), sources);
-  };
+std::unique_ptr<Method> make_own_clock_sample_stamping(std::shared_ptr<const Recipe> recipe) {
+  return std::make_unique<OwnClockSampleStamping>(std::move(recipe));
 }
 
 } // namespace dyncal::inline evaluation

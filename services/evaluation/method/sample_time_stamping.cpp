@@ -1,19 +1,16 @@
-#include "services/evaluation/method/sample_time_stamping.hpp"
-
 #include "analysis/method/sample_stamping.hpp"
-#include "services/evaluation/method/adc_correction.hpp"
 #include "services/evaluation/method/disturbance_cut.hpp"
+#include "services/evaluation/method/method_kinds.hpp"
 #include "services/evaluation/method/step_results.hpp"
 #include "services/evaluation/method/step_settling.hpp"
 #include "services/evaluation/method/step_task.hpp"
-#include "services/evaluation/recipe/reference_correction.hpp"
 
 namespace dyncal::inline evaluation {
 namespace {
 
 // The recipe's, or all of the DAU but sync, temperature and analogue inputs.
 std::vector<ChannelName> channels_under_calibration(const Recipe& recipe, const SourceRecord& dau) {
-  const auto& roles = std::get<SampleStampingRoles>(recipe.roles);
+  const RoleNames& roles = recipe.roles;
   if (!roles.dut.empty() || !dau.described()) {
     return roles.dut;
   }
@@ -22,7 +19,7 @@ std::vector<ChannelName> channels_under_calibration(const Recipe& recipe, const 
     const ChannelName name{dau.source(), channel.name};
     const bool thermometer = channel.unit == R"(\degreecelsius)" || channel.unit == R"(\kelvin)";
     const bool analogue_input = channel.unit == R"(\volt)";
-    if (name != roles.sync_dau && name != recipe.temperature && !thermometer && !analogue_input) {
+    if (name != roles.sync_sensor && name != roles.temperature && !thermometer && !analogue_input) {
       names.push_back(name);
     }
   }
@@ -43,8 +40,7 @@ void leave_settling_out(StepTask& task, SelectedChannels& acs, SelectedChannels&
 analysis::Expected<EvaluatedStep>
 evaluate_channels(const StepTask& task, const SelectedChannels& acs, const SelectedChannels& dau) {
   const Recipe& recipe = *task.recipe;
-  DYNCAL_TRY(const auto adc,
-             adc_response(std::get<SampleStampingRoles>(recipe.roles), task.step()));
+  DYNCAL_TRY(const auto adc, adc_response(recipe, task.step()));
   DYNCAL_TRY(const auto reference, reference_response(recipe, task.step()));
   analysis::SampleStampingInput input{.frequency = task.step().frequency,
                                       .frequency_search_rel = recipe.frequency_search_rel,
@@ -68,9 +64,9 @@ evaluate_channels(const StepTask& task, const SelectedChannels& acs, const Selec
 
 std::vector<StepResult> evaluate(StepTask task, SourceInterval acs_source,
                                  SourceInterval dau_source) {
-  const auto& roles = std::get<SampleStampingRoles>(task.recipe->roles);
+  const RoleNames& roles = task.recipe->roles;
   const std::vector<ChannelName> dut = channels_under_calibration(*task.recipe, *dau_source.record);
-  std::vector<ChannelName> of_dau{roles.sync_dau};
+  std::vector<ChannelName> of_dau{roles.sync_sensor};
   of_dau.insert(of_dau.end(), dut.begin(), dut.end());
   SelectedChannels acs(std::move(acs_source), {roles.reference, roles.sync_acs},
                        task.recipe->mains_hz);
@@ -91,27 +87,44 @@ std::vector<StepResult> evaluate(StepTask task, SourceInterval acs_source,
                       step);
 }
 
+// The DAU stamps every sample of the sensor and of sync; sync links its clock to that of the ACS:
+// sample time stamping, paper eqs. (1), (3), (4) (analysis/method/sample_stamping.hpp).
+//
+// Without channels under calibration in the recipe, all channels of the DAU but sync and
+// temperature are. The response of the DAU's sync ADC is corrected by the recipe's calibration.
+class SampleTimeStamping : public Method {
+public:
+  using Method::Method;
+
+  [[nodiscard]] std::vector<SearchedChannel> searches() const override {
+    return {{roles_.sync_acs, {roles_.sync_acs.source}},
+            {roles_.sync_sensor, {roles_.sync_sensor.source}}};
+  }
+
+  [[nodiscard]] Evaluation evaluation(std::size_t step, const RunRecords& records) override {
+    const auto of_acs = records.interval(0, step);
+    const auto of_dau = records.interval(1, step);
+    if (!of_acs || !of_dau) {
+      const auto dut = channels_under_calibration(*recipe_, records.of(roles_.sync_sensor.source));
+      const ChannelName& sync = of_acs ? roles_.sync_sensor : roles_.sync_acs;
+      return not_found(step, records, sync, dut);
+    }
+    SourceInterval acs = records.samples(roles_.sync_acs.source, *of_acs);
+    SourceInterval dau = records.samples(roles_.sync_sensor.source, *of_dau);
+    StepTask task = make_step_task(recipe_, step, records, {acs, dau});
+    return [task = std::move(task), acs = std::move(acs), dau = std::move(dau)](
+               const std::stop_token& stop) { return evaluate(task.until(stop), acs, dau); };
+  }
+
+  [[nodiscard]] std::optional<std::string> clock_source() const override {
+    return roles_.sync_sensor.source;
+  }
+};
+
 } // namespace
 
-std::vector<SearchedChannel> SampleTimeStamping::searches() const {
-  return {{roles_.sync_acs, {roles_.sync_acs.source}}, {roles_.sync_dau, {roles_.sync_dau.source}}};
-}
-
-Evaluation SampleTimeStamping::evaluation(std::size_t step, const RunRecords& records) {
-  const auto of_acs = records.interval(0, step);
-  const auto of_dau = records.interval(1, step);
-  if (!of_acs || !of_dau) {
-    const auto dut = channels_under_calibration(*recipe_, records.of(roles_.sync_dau.source));
-    const ChannelName& sync = of_acs ? roles_.sync_dau : roles_.sync_acs;
-    return [results = results_without_value(records.planned(step), dut,
-                                            no_sine(*recipe_, records, step, sync))](
-               const std::stop_token&) { return results; };
-  }
-  SourceInterval acs = records.samples(roles_.sync_acs.source, *of_acs);
-  SourceInterval dau = records.samples(roles_.sync_dau.source, *of_dau);
-  StepTask task = make_step_task(recipe_, step, records, {acs, dau});
-  return [task = std::move(task), acs = std::move(acs), dau = std::move(dau)](
-             const std::stop_token& stop) { return evaluate(task.until(stop), acs, dau); };
+std::unique_ptr<Method> make_sample_time_stamping(std::shared_ptr<const Recipe> recipe) {
+  return std::make_unique<SampleTimeStamping>(std::move(recipe));
 }
 
 } // namespace dyncal::inline evaluation

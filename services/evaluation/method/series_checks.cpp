@@ -63,9 +63,8 @@ SignalCheck check_trace(const TriggeredRecord& trace, std::span<const double> va
   check.refusal.clear();
   if (check.flags.empty() && analysis::periods_of({trace.first_sample_s, trace.interval_s, values},
                                                   frequency.hz()) < whole_period) {
-    check.flags.push_back({ResultFlag::signal_not_judged,
-                           fmt::format("{}: {}: its trace is shorter than a period", name,
-                                       to_string(ResultFlag::signal_not_judged))});
+    check.flags.push_back(
+        flag_of_channel(ResultFlag::signal_not_judged, name, "its trace is shorter than a period"));
   }
   return check;
 }
@@ -138,9 +137,8 @@ std::vector<Flag> flags_of_agreement(const analysis::SeriesChannelResult& channe
   if (found.magnitudes_change) {
     what.emplace_back("the magnitude changes within all series alike");
   }
-  return {{ResultFlag::shots_disagree,
-           fmt::format("{}: {}: {}", channel.channel, to_string(ResultFlag::shots_disagree),
-                       fmt::join(what, "; "))}};
+  return {flag_of_channel(ResultFlag::shots_disagree, channel.channel,
+                          fmt::format("{}", fmt::join(what, "; ")))};
 }
 
 } // namespace dyncal::inline evaluation

@@ -14,7 +14,6 @@
 #include "services/evaluation/method/series_shots.hpp"
 #include "services/evaluation/method/shape_check.hpp"
 #include "services/evaluation/method/step_results.hpp"
-#include "services/evaluation/recipe/reference_correction.hpp"
 
 namespace dyncal::inline evaluation {
 namespace {
@@ -99,16 +98,15 @@ void add_shots(const std::vector<ShotRecord::Shot>& shots, std::size_t sync,
 }
 
 void add_corrections(const Recipe& recipe, analysis::SeriesStampingInput& input) {
-  const auto& roles = std::get<SeriesRoles>(recipe.roles);
   input.frequency_search_rel = recipe.frequency_search_rel;
-  input.dso_delay_s = roles.dso_delay_s;
-  input.u_dso_delay_s = roles.u_dso_delay_s;
-  input.u_dso_rate_rel = roles.u_dso_rate_rel;
+  input.dso_delay_s = recipe.series.dso_delay_s;
+  input.u_dso_delay_s = recipe.series.u_dso_delay_s;
+  input.u_dso_rate_rel = recipe.series.u_dso_rate_rel;
   input.reference_magnitude_rel = recipe.systematic.reference_magnitude_rel;
   input.reference_phase_rad = recipe.systematic.reference_phase_rad;
   input.acs_delay_s = recipe.systematic.acs_delay_s;
   input.reference_delay_s = recipe.reference_delay_s;
-  input.correct_trigger_phase = roles.trigger_phase_correction;
+  input.correct_trigger_phase = recipe.series.trigger_phase_correction;
 }
 
 struct EvaluatedSeries {
@@ -136,16 +134,17 @@ double u_phase_of(const std::vector<analysis::Contribution>& budget) {
   return std::min(any_phase, u_phase_rad);
 }
 
-void add_value(const SeriesRoles& roles, const EvaluatedSeries& evaluated,
+void add_value(const SeriesSettings& settings, const EvaluatedSeries& evaluated,
                const analysis::SeriesChannelResult& channel, StepResult& result) {
   double u_magnitude_rel = 0.0;
   result.valid = true;
   result.magnitude = channel.mean.magnitude;
   result.phase_rad = channel.mean.phase_rad;
   const analysis::NominalFrequency& rate = evaluated.result.rate;
-  result.series = SeriesFinding{
-      rate.real_rate_hz, std::hypot(rate.u_real_rate_hz, roles.u_acs_rate_rel * rate.real_rate_hz),
-      to_string(evaluated.start.kind), evaluated.start.scatter_s};
+  result.series =
+      SeriesFinding{rate.real_rate_hz,
+                    std::hypot(rate.u_real_rate_hz, settings.u_acs_rate_rel * rate.real_rate_hz),
+                    to_string(evaluated.start.kind), evaluated.start.scatter_s};
   result.fits = {evaluated.result.reference, evaluated.result.sync_acs};
   result.budget = budget_of(channel);
   for (const analysis::Contribution& row : result.budget) {
@@ -158,9 +157,9 @@ void add_value(const SeriesRoles& roles, const EvaluatedSeries& evaluated,
 // What a reader of the result should know of its shots.
 void add_flags(const SeriesStepInput& input, const EvaluatedSeries& evaluated, std::size_t shots,
                std::vector<Flag>& flags) {
-  const auto& roles = std::get<SeriesRoles>(input.task.recipe->roles);
-  if (shots < roles.shots) {
-    flags.push_back({ResultFlag::shots_missing, fmt::format("{} of {} {}", shots, roles.shots,
+  const SeriesSettings& planned = input.task.recipe->series;
+  if (shots < planned.shots) {
+    flags.push_back({ResultFlag::shots_missing, fmt::format("{} of {} {}", shots, planned.shots,
                                                             to_string(ResultFlag::shots_missing))});
   }
   if (input.lost.traces.records > 0) {
@@ -172,7 +171,7 @@ void add_flags(const SeriesStepInput& input, const EvaluatedSeries& evaluated, s
   if (evaluated.start.kind == analysis::StartKind::undecided) {
     flags.push_back(flag_with_reason(ResultFlag::start_undecided, to_string(evaluated.start.kind)));
   }
-  if (!roles.trigger_phase_correction) {
+  if (!planned.trigger_phase_correction) {
     flags.push_back(make_flag(ResultFlag::trigger_phase_not_corrected));
   }
 }
@@ -238,21 +237,21 @@ std::vector<StepResult> results_of(const SeriesStepInput& input, const SelectedC
                                    const std::vector<ShotRecord::Shot>& shots,
                                    const EvaluatedSeries& evaluated,
                                    const std::vector<Flag>& flags) {
-  const auto& roles = std::get<SeriesRoles>(input.task.recipe->roles);
+  const RoleNames& roles = input.task.recipe->roles;
   const StepTask task{input.task.recipe, input.task.index, flags};
   const StepInput of_step = made_of(input, acs, shots);
   const CheckedShots checked{task, input.oscilloscope, input.sensor, shots, evaluated.result};
   const SignalCheck reference = check_signal(evaluated.result.reference);
   SignalCheck sync = check_signal(evaluated.result.sync_acs);
   sync.refusal.clear(); // it carries phase only
-  const SignalCheck traces = check_traces(checked, roles.sync_dso);
+  const SignalCheck traces = check_traces(checked, roles.sync_sensor);
   const std::vector<ChannelLines> common_lines{
       check_lines(*task.recipe, {"the reference"}, evaluated.result.reference, acs, 0),
       check_lines(*task.recipe, {"the ACS sync", false}, evaluated.result.sync_acs, acs, 1)};
   std::vector<StepResult> results;
   for (std::size_t i = 0; i < roles.dut.size(); ++i) {
     StepResult result = result_head(task.step(), roles.dut[i]);
-    add_value(roles, evaluated, evaluated.result.channels[i], result);
+    add_value(task.recipe->series, evaluated, evaluated.result.channels[i], result);
     const std::size_t column = *input.sensor.channel(roles.dut[i].channel);
     result.unit = ratio_unit(acs.unit(0), input.sensor.description().channels[column].unit);
     add_input(task, of_step, result);
@@ -276,7 +275,7 @@ std::vector<StepResult> results_of(const SeriesStepInput& input, const SelectedC
 } // namespace
 
 SeriesStepOutput evaluate_series_step(const SeriesStepInput& step) {
-  const auto& roles = std::get<SeriesRoles>(step.task.recipe->roles);
+  const RoleNames& roles = step.task.recipe->roles;
   if (step.shots.empty()) {
     return without_result(step, fmt::format("no shot of {} and {} was triggered in this step",
                                             step.oscilloscope.source(), step.sensor.source()));
@@ -284,7 +283,7 @@ SeriesStepOutput evaluate_series_step(const SeriesStepInput& step) {
   const SelectedChannels acs(step.acs, {roles.reference, roles.sync_acs},
                              step.task.recipe->mains_hz);
   const std::vector<std::size_t> columns = columns_of(step.sensor, roles.dut);
-  const std::size_t sync = *step.oscilloscope.channel(roles.sync_dso.channel);
+  const std::size_t sync = *step.oscilloscope.channel(roles.sync_sensor.channel);
   std::vector<Flag> flags = step.task.flags;
   const auto shots =
       shots_of_usual_length(step.shots, *std::ranges::max_element(columns) + 1, sync + 1, flags);
@@ -308,8 +307,7 @@ SeriesStepOutput evaluate_series_step(const SeriesStepInput& step) {
 
 void add_shared_start(const analysis::SharedStartScatter& start, StepResult& result) {
   constexpr double microseconds = 1e6;
-  const bool undecided = std::ranges::any_of(
-      result.flags, [](const Flag& flag) { return flag.kind == ResultFlag::start_undecided; });
+  const bool undecided = has_flag(result.flags, ResultFlag::start_undecided);
   const auto row = std::ranges::find_if(result.budget, [](const auto& one) {
     return one.kind == analysis::ContributionKind::series_start;
   });

@@ -1,13 +1,16 @@
 #include "services/evaluation/method/series_time_stamping.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <iterator>
 #include <string>
 
 #include <fmt/core.h>
 
+#include "analysis/base/chi_squared_limit.hpp"
+#include "analysis/uncertainty/coverage.hpp"
 #include "services/evaluation/method/flag_of_most.hpp"
-#include "services/evaluation/method/series_clock.hpp"
 #include "services/evaluation/method/series_step_evaluation.hpp"
 #include "services/evaluation/method/step_results.hpp"
 #include "services/evaluation/method/step_task.hpp"
@@ -18,11 +21,6 @@ namespace {
 StepAttempt attempt_at(std::size_t step, const RunRecords& records) {
   const StepOrder& order = records.excitation().order();
   return {order.step(step).step, order.attempt(step)};
-}
-
-bool has_shots_that_disagree(const StepResult& result) {
-  return std::any_of(result.flags.begin(), result.flags.end(),
-                     [](const Flag& flag) { return flag.kind == ResultFlag::shots_disagree; });
 }
 
 // A drift of the sensor's clock that another step shows.
@@ -37,18 +35,62 @@ bool add_disagreement_of_another(const std::map<std::uint32_t, analysis::StepBen
   bool added = false;
   for (StepResult& result : results) {
     const auto found = result.channel == channel ? bends.find(result.step) : bends.end();
-    if (found == bends.end() || !result.valid || has_shots_that_disagree(result) ||
+    if (found == bends.end() || !result.valid ||
+        has_flag(result.flags, ResultFlag::shots_disagree) ||
         !bend[static_cast<std::size_t>(std::distance(bends.begin(), found))]) {
       continue;
     }
-    result.flags.push_back(
-        {ResultFlag::shots_disagree,
-         fmt::format("{}: {}: the clock drifts within the series, as other steps show; here it is "
-                     "hidden in their noise",
-                     channel, to_string(ResultFlag::shots_disagree))});
+    result.flags.push_back(flag_of_channel(
+        ResultFlag::shots_disagree, channel,
+        "the clock drifts within the series, as other steps show; here it is hidden in their "
+        "noise"));
     added = true;
   }
   return added;
+}
+
+constexpr double once_in_twenty = 1.645; // normal quantile
+
+// What the run says of the sensor's sample clock: the rates of its steps, paper eq. (6), taken
+// together.
+//
+// Mean weighted by their uncertainties; where they scatter by more than these say, its uncertainty
+// is what the scatter says (Birge), with n - 1 degrees of freedom from where chance does so once in
+// twenty times on. The clock of the ACS, in which all of them were measured, is common to them:
+// `u_acs_rate_rel`. REQUIRES: at least one rate.
+ClockReport series_clock_report(const std::string& sensor, double u_acs_rate_rel,
+                                std::span<const analysis::NominalFrequency> rates) {
+  double weights = 0.0;
+  double sum = 0.0;
+  const auto weight_of = [](const analysis::NominalFrequency& rate) {
+    return 1.0 / (rate.u_real_rate_hz * rate.u_real_rate_hz);
+  };
+  for (const analysis::NominalFrequency& rate : rates) {
+    weights += weight_of(rate);
+    sum += weight_of(rate) * rate.real_rate_hz;
+  }
+  const double mean_hz = sum / weights;
+  double chi_square = 0.0;
+  for (const analysis::NominalFrequency& rate : rates) {
+    chi_square += weight_of(rate) * std::pow(rate.real_rate_hz - mean_hz, 2);
+  }
+  const double freedom = static_cast<double>(rates.size()) - 1.0;
+  const double birge = rates.size() > 1 ? std::sqrt(chi_square / freedom) : 1.0;
+  analysis::UncertaintyPart of_steps{std::max(1.0, birge) / std::sqrt(weights) / mean_hz};
+  if (birge * birge > analysis::chi_squared_limit(std::max(1.0, freedom), once_in_twenty)) {
+    of_steps.degrees_of_freedom = freedom; // it is known by their scatter alone
+  }
+  const std::array parts{of_steps, analysis::UncertaintyPart{u_acs_rate_rel}};
+  const analysis::CombinedUncertainty of_rate = analysis::combine(parts);
+  ClockReport report;
+  report.source = sensor;
+  report.clock.nominal_rate_hz = rates.front().real_rate_hz / rates.front().lambda;
+  report.clock.mean_rate_hz = mean_hz;
+  report.clock.mean_interval_s = 1.0 / mean_hz;
+  report.clock.u_mean_interval_s = of_rate.u / mean_hz;
+  report.clock.degrees_of_freedom_mean_interval = of_rate.degrees_of_freedom;
+  report.clock.k_mean_interval = of_rate.k;
+  return report;
 }
 
 } // namespace
@@ -58,7 +100,7 @@ std::vector<SearchedChannel> SeriesTimeStamping::searches() const {
 }
 
 void SeriesTimeStamping::add(const std::string& source, TriggeredRecord record) {
-  if (source == roles_.sync_dso.source) {
+  if (source == roles_.sync_sensor.source) {
     shots_.add_trace(std::move(record));
   } else if (source == roles_.dut.front().source) {
     shots_.add_series(std::move(record));
@@ -68,7 +110,7 @@ void SeriesTimeStamping::add(const std::string& source, TriggeredRecord record) 
 bool SeriesTimeStamping::is_complete(std::size_t step, const RunRecords& records) const {
   const ExcitationProgress& excitation = records.excitation();
   const bool all_there = excitation.is_announced_over(step) &&
-                         shots_.of_step(attempt_at(step, records)).size() >= roles_.shots;
+                         shots_.of_step(attempt_at(step, records)).size() >= recipe_->series.shots;
   return all_there || records.is_over_in(roles_.sync_acs.source, step);
 }
 
@@ -88,7 +130,7 @@ std::vector<StepResult> SeriesTimeStamping::evaluate(std::size_t step, const Run
   SeriesStepOutput evaluated =
       evaluate_series_step({.task = make_step_task(recipe_, step, records, {acs}),
                             .acs = acs,
-                            .oscilloscope = records.of(roles_.sync_dso.source),
+                            .oscilloscope = records.of(roles_.sync_sensor.source),
                             .sensor = records.of(roles_.dut.front().source),
                             .shots = shots_.of_step(attempt),
                             .lost = shots_.lost_in(attempt),
@@ -139,7 +181,7 @@ std::vector<ClockReport> SeriesTimeStamping::clock_reports() const {
   for (const auto& [step, rate] : rates_) {
     rates.push_back(rate);
   }
-  return {series_clock_report(roles_.dut.front().source, roles_.u_acs_rate_rel, rates)};
+  return {series_clock_report(roles_.dut.front().source, recipe_->series.u_acs_rate_rel, rates)};
 }
 
 } // namespace dyncal::inline evaluation

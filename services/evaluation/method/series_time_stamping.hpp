@@ -24,8 +24,7 @@ namespace dyncal::inline evaluation {
 
 class SeriesTimeStamping : public Method {
 public:
-  explicit SeriesTimeStamping(std::shared_ptr<const Recipe> recipe)
-      : recipe_(std::move(recipe)), roles_(std::get<SeriesRoles>(recipe_->roles)) {}
+  using Method::Method;
 
   [[nodiscard]] std::vector<SearchedChannel> searches() const override;
   void add(const std::string& source, TriggeredRecord record) override;
@@ -43,8 +42,6 @@ public:
 private:
   [[nodiscard]] std::vector<StepResult> evaluate(std::size_t step, const RunRecords& records);
 
-  std::shared_ptr<const Recipe> recipe_;
-  const SeriesRoles& roles_;
   ShotRecord shots_;
   analysis::StartKind start_ = analysis::StartKind::undecided; // as far as the steps so far tell
   // By step of the recipe.

@@ -23,7 +23,7 @@ std::string percent(double part) {
 
 void add_flag(ResultFlag kind, const std::string& channel, const std::string& how_much,
               StepResult& result) {
-  result.flags.push_back({kind, fmt::format("{}: {}: {}", channel, to_string(kind), how_much)});
+  result.flags.push_back(flag_of_channel(kind, channel, how_much));
 }
 
 void check_stamps(const analysis::ChannelFit& fit, double u_magnitude_rel, double u_phase_rad,

@@ -13,10 +13,6 @@ std::string percent(double part) {
   return fmt::format("{:.2g} %", 100.0 * part);
 }
 
-Flag of_channel(ResultFlag kind, const std::string& channel, const std::string& how_much) {
-  return {kind, fmt::format("{}: {}: {}", channel, to_string(kind), how_much)};
-}
-
 ChannelSignal signal_of(const std::string& channel, const analysis::SignalIntegrity& integrity) {
   return {.channel = channel,
           .thd = integrity.thd,
@@ -46,32 +42,33 @@ SignalCheck check_signal(const std::string& channel,
   if (!integrity) {
     if (integrity.error().code != analysis::ErrorCode::no_excitation) {
       check.flags.push_back(
-          of_channel(ResultFlag::signal_not_judged, channel, integrity.error().message));
+          flag_of_channel(ResultFlag::signal_not_judged, channel, integrity.error().message));
     }
     return check;
   }
   check.signal = signal_of(channel, *integrity);
   if (integrity->beyond_range) {
-    check.flags.push_back(of_channel(ResultFlag::signal_not_judged, channel,
-                                     "its values lie beyond the range that is stated for it, which "
-                                     "therefore cannot be its range; state it, or none, with the "
-                                     "key 'ranges'"));
+    check.flags.push_back(
+        flag_of_channel(ResultFlag::signal_not_judged, channel,
+                        "its values lie beyond the range that is stated for it, which "
+                        "therefore cannot be its range; state it, or none, with the "
+                        "key 'ranges'"));
   }
   const analysis::IntegrityFindings findings = analysis::judge_integrity(*integrity);
   if (findings.over_range) {
-    check.flags.push_back(of_channel(
+    check.flags.push_back(flag_of_channel(
         ResultFlag::over_range, channel,
         percent(std::max(integrity->at_range_part, integrity->clipped_part)) + " of the samples"));
   }
   if (findings.stuck) {
     check.flags.push_back(
-        of_channel(ResultFlag::values_stuck, channel,
-                   fmt::format("up to {} samples long",
-                               std::max(integrity->longest_stuck, integrity->longest_repeat))));
+        flag_of_channel(ResultFlag::values_stuck, channel,
+                        fmt::format("up to {} samples long", std::max(integrity->longest_stuck,
+                                                                      integrity->longest_repeat))));
   }
   if (findings.distorted) {
-    check.flags.push_back(of_channel(ResultFlag::distorted, channel,
-                                     "total harmonic distortion " + percent(integrity->thd)));
+    check.flags.push_back(flag_of_channel(ResultFlag::distorted, channel,
+                                          "total harmonic distortion " + percent(integrity->thd)));
   }
   if (findings.refused) {
     check.refusal = refusal_of(channel, *integrity, findings);

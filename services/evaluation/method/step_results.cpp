@@ -1,11 +1,12 @@
 #include "services/evaluation/method/step_results.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/core.h>
 
+#include "services/contract/unit.hpp"
 #include "services/evaluation/method/clock_check.hpp"
-#include "services/evaluation/method/level_check.hpp"
 #include "services/evaluation/method/line_check.hpp"
 #include "services/evaluation/method/monte_carlo_check.hpp"
 #include "services/evaluation/method/shape_check.hpp"
@@ -13,6 +14,23 @@
 
 namespace dyncal::inline evaluation {
 namespace {
+
+// Against the plan, by no more than the recipe's level_deviation_rel. A reference in another unit
+// than m/s^2 cannot be compared with it, and a recipe without a level has none to compare with.
+std::optional<Flag> find_level_deviation(const RecipeStep& step, double level_deviation_rel,
+                                         const analysis::ChannelFit& reference,
+                                         const std::string& reference_unit) {
+  if (!is_acceleration(reference_unit) || !(step.level_m_s2 > 0.0)) {
+    return std::nullopt;
+  }
+  const double measured_m_s2 = reference.fit.amplitude();
+  if (std::abs(measured_m_s2 / step.level_m_s2 - 1.0) <= level_deviation_rel) {
+    return std::nullopt;
+  }
+  return flag_with_reason(
+      ResultFlag::level_off_plan,
+      fmt::format("{:.4g} m/s^2 in place of {:.4g} m/s^2", measured_m_s2, step.level_m_s2));
+}
 
 StepResult point_result(const StepTask& task, const ChannelName& channel,
                         const analysis::TransferPoint& point,
@@ -33,16 +51,14 @@ StepResult point_result(const StepTask& task, const ChannelName& channel,
 void add_findings(const analysis::PointFindings& point, StepResult& result) {
   result.change = point.change;
   if (point.change) {
-    result.flags.push_back({ResultFlag::changed_within_step,
-                            fmt::format("{}: {}: by {:.2g} % and {:.2g} rad after {:.2g} s",
-                                        result.channel, to_string(ResultFlag::changed_within_step),
-                                        100.0 * point.change->magnitude_rel,
-                                        point.change->phase_rad, point.change->at_s)});
+    result.flags.push_back(
+        flag_of_channel(ResultFlag::changed_within_step, result.channel,
+                        fmt::format("by {:.2g} % and {:.2g} rad after {:.2g} s",
+                                    100.0 * point.change->magnitude_rel, point.change->phase_rad,
+                                    point.change->at_s)));
   }
   if (point.too_short_for_noise) {
-    result.flags.push_back(
-        {ResultFlag::too_short_for_noise,
-         fmt::format("{}: {}", result.channel, to_string(ResultFlag::too_short_for_noise))});
+    result.flags.push_back(flag_of_source(ResultFlag::too_short_for_noise, result.channel));
   }
 }
 

@@ -9,7 +9,7 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
-#include "services/evaluation/record/shown_sine.hpp"
+#include "services/evaluation/record/good_samples.hpp"
 
 namespace dyncal::inline evaluation {
 namespace {
@@ -83,6 +83,51 @@ std::string known_cause(const RunRecords& records, std::size_t step, const std::
   return records.excitation().is_broken_off(step) ? ": its excitation was broken off" : "";
 }
 
+constexpr double beside_mains_rel = 0.01; // of the frequency: mains are within it
+constexpr std::int64_t edge_frames = 2;   // at either end, which the search does not fill
+
+bool is_beside_mains(const Recipe& recipe, double hz) {
+  return std::any_of(recipe.mains_hz.begin(), recipe.mains_hz.end(), [&](double line_hz) {
+    const double harmonic_hz = line_hz * std::max(1.0, std::round(hz / line_hz));
+    return std::abs(hz - harmonic_hz) < beside_mains_rel * hz;
+  });
+}
+
+enum class ShownSine {
+  shown,
+  not_shown,
+  unknown, // there are no samples, they have not all come, or are not all held any more
+};
+
+// Whether a channel shows a sine of a step's frequency where the step may have been: between the
+// steps beside it that were found in its source. It tells a step that nobody excited from one whose
+// sync signal is missing. A sine that lasts from the first sample to the last beside a mains line
+// is hum. Costs what the search for the step cost.
+ShownSine shown_sine(const Recipe& recipe, const RunRecords& records, std::size_t step,
+                     const ChannelName& channel) {
+  const SourceRecord& record = records.of(channel.source);
+  const auto column = record.channel(channel.channel);
+  const auto stamps = record.stamps_ns();
+  const TimeInterval where = records.where_missing(channel.source, step);
+  if (!column || stamps.empty() || (record.forgotten() > 0 && stamps.front() > where.begin_ns)) {
+    return ShownSine::unknown;
+  }
+  const analysis::Frequency& frequency = records.planned(step).frequency;
+  analysis::ExcitationWindowFinder finder(frequency);
+  push_good_samples(record, *column, {0, where.begin_ns, where.end_ns}, finder);
+  finder.finish();
+  const auto window = finder.window();
+  if (!window) {
+    return records.is_over_in(channel.source, step) ? ShownSine::not_shown : ShownSine::unknown;
+  }
+  const std::int64_t edge_ns = edge_frames * finder.frame_ns();
+  const bool lasts_throughout =
+      window->excited_begin_ns < std::max(where.begin_ns, stamps.front()) + edge_ns &&
+      window->off_ns > std::min(where.end_ns, stamps.back()) - edge_ns;
+  return lasts_throughout && is_beside_mains(recipe, frequency.hz()) ? ShownSine::not_shown
+                                                                     : ShownSine::shown;
+}
+
 // What the other channels of the run show of it.
 std::string where_it_shows(const Recipe& recipe, const RunRecords& records, std::size_t step,
                            const ChannelName& sync) {
@@ -93,7 +138,7 @@ std::string where_it_shows(const Recipe& recipe, const RunRecords& records, std:
   std::vector<std::string> without;
   bool is_known = true;
   for (const ChannelName& channel : recipe.channels()) {
-    if (channel == recipe.temperature || !records.of(channel.source).newest_stamp_ns()) {
+    if (channel == recipe.roles.temperature || !records.of(channel.source).newest_stamp_ns()) {
       continue;
     }
     const ShownSine shown = shown_sine(recipe, records, step, channel);

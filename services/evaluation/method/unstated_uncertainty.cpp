@@ -29,16 +29,16 @@ std::vector<Flag> flags_of_unstated(const Recipe& recipe) {
                  &analysis::ReferenceContribution::u_phase_rad)) {
     flags.push_back(make_flag(ResultFlag::reference_uncertainty_not_stated));
   }
-  const auto* const stamped = std::get_if<SampleStampingRoles>(&recipe.roles);
-  if (stamped != nullptr && stamped->adc_calibration.empty() && !(stamped->u_adc_delay_s > 0.0)) {
+  if (recipe.method() == EvaluationMethod::sample_timestamping && recipe.adc_calibration.empty() &&
+      !(recipe.u_adc_delay_s > 0.0)) {
     flags.push_back(make_flag(ResultFlag::adc_not_calibrated));
   }
-  const auto* const series = std::get_if<SeriesRoles>(&recipe.roles);
-  if (series != nullptr && !(series->u_dso_delay_s > 0.0)) {
+  if (recipe.method() == EvaluationMethod::series_timestamping &&
+      !(recipe.series.u_dso_delay_s > 0.0)) {
     flags.push_back(make_flag(ResultFlag::trigger_delay_not_stated));
   }
   // Absolute time has a flag of its own, for there the key holds the clock as well.
-  if (!std::holds_alternative<AbsoluteTimeRoles>(recipe.roles) &&
+  if (recipe.method() != EvaluationMethod::absolute_time &&
       !(recipe.systematic.acs_delay_s > 0.0)) {
     flags.push_back(make_flag(ResultFlag::acs_delay_not_stated));
   }

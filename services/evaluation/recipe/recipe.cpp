@@ -4,8 +4,6 @@
 
 #include <fmt/core.h>
 
-#include "services/evaluation/recipe/reference_correction.hpp"
-
 namespace dyncal::inline evaluation {
 namespace {
 
@@ -22,94 +20,16 @@ tl::unexpected<Error> refuse(std::string sentence) {
   return fail(ErrorCode::bad_argument, std::move(sentence));
 }
 
-void add_links(const AnalogueRoles& roles, RoleNames& names) {
-  names.sync_acs = roles.excitation;
-}
-void add_links(const AbsoluteTimeRoles& roles, RoleNames& names) {
-  names.sync_acs = roles.excitation;
-}
-void add_links(const SampleStampingRoles& roles, RoleNames& names) {
-  names.sync_acs = roles.sync_acs;
-  names.sync_sensor = roles.sync_dau;
-}
-void add_links(const SeriesRoles& roles, RoleNames& names) {
-  names.sync_acs = roles.sync_acs;
-  names.sync_sensor = roles.sync_dso;
-}
-
 } // namespace
 
-Roles make_roles(RoleNames names, MethodDetails details) {
-  const ChannelName excitation = names.sync_acs.source.empty() ? names.reference : names.sync_acs;
-  switch (names.method) {
-  case EvaluationMethod::analogue:
-    return AnalogueRoles{std::move(names.reference), excitation, std::move(names.dut)};
-  case EvaluationMethod::absolute_time:
-    return AbsoluteTimeRoles{std::move(names.reference), excitation, std::move(names.dut)};
-  case EvaluationMethod::series_timestamping:
-    return SeriesRoles{std::move(names.reference),
-                       std::move(names.sync_acs),
-                       std::move(names.sync_sensor),
-                       std::move(names.dut),
-                       details.shots,
-                       details.trigger_phase_correction,
-                       details.dso_delay_s,
-                       details.u_dso_delay_s,
-                       details.u_acs_rate_rel,
-                       details.u_dso_rate_rel};
-  case EvaluationMethod::sample_timestamping:
-    break;
-  }
-  return SampleStampingRoles{std::move(names.reference),         std::move(names.sync_acs),
-                             std::move(names.sync_sensor),       std::move(names.dut),
-                             std::move(details.adc_calibration), details.u_adc_delay_s};
-}
-
-EvaluationMethod Recipe::method() const {
-  struct MethodOf {
-    EvaluationMethod operator()(const SampleStampingRoles&) const {
-      return EvaluationMethod::sample_timestamping;
-    }
-    EvaluationMethod operator()(const AnalogueRoles&) const { return EvaluationMethod::analogue; }
-    EvaluationMethod operator()(const SeriesRoles&) const {
-      return EvaluationMethod::series_timestamping;
-    }
-    EvaluationMethod operator()(const AbsoluteTimeRoles&) const {
-      return EvaluationMethod::absolute_time;
-    }
-  };
-  return std::visit(MethodOf{}, roles);
-}
-
-const ChannelName& Recipe::reference() const {
-  return std::visit([](const auto& one) -> const ChannelName& { return one.reference; }, roles);
-}
-
-const std::vector<ChannelName>& Recipe::dut() const {
-  return std::visit([](const auto& one) -> const std::vector<ChannelName>& { return one.dut; },
-                    roles);
-}
-
-RoleNames role_names(const Recipe& recipe) {
-  RoleNames names{.method = recipe.method(),
-                  .reference = recipe.reference(),
-                  .sync_acs = {},
-                  .sync_sensor = {},
-                  .dut = recipe.dut(),
-                  .temperature = recipe.temperature.value_or(ChannelName{})};
-  std::visit([&](const auto& roles) { add_links(roles, names); }, recipe.roles);
-  return names;
-}
-
 std::vector<ChannelName> Recipe::channels() const {
-  RoleNames names = role_names(*this);
-  std::vector<ChannelName> all{std::move(names.reference), std::move(names.sync_acs)};
-  if (!names.sync_sensor.source.empty()) {
-    all.push_back(std::move(names.sync_sensor));
+  std::vector<ChannelName> all{reference(), excitation()};
+  if (!roles.sync_sensor.source.empty()) {
+    all.push_back(roles.sync_sensor);
   }
-  all.insert(all.end(), names.dut.begin(), names.dut.end());
-  if (temperature) {
-    all.push_back(*temperature);
+  all.insert(all.end(), dut().begin(), dut().end());
+  if (roles.temperature) {
+    all.push_back(*roles.temperature);
   }
   return all;
 }
@@ -131,7 +51,7 @@ std::vector<std::string> Recipe::sources() const {
 }
 
 Expected<void> check_recipe(const Recipe& recipe) {
-  if (const auto problem = find_role_problem(role_names(recipe))) {
+  if (const auto problem = find_role_problem(recipe.roles)) {
     return refuse(fmt::format("the recipe's {} {}", problem->role, problem->sentence));
   }
   if (recipe.steps.empty()) {
@@ -154,9 +74,9 @@ Expected<void> check_recipe(const Recipe& recipe) {
         fmt::format("the recipe evaluates whole records but has {} steps; only one is possible",
                     recipe.steps.size()));
   }
-  const auto* const stamped = std::get_if<SampleStampingRoles>(&recipe.roles);
-  const bool own_clocks = stamped != nullptr ? stamped->own_clocks()
-                                             : recipe.method() == EvaluationMethod::absolute_time;
+  const bool own_clocks = recipe.method() == EvaluationMethod::absolute_time ||
+                          (recipe.method() == EvaluationMethod::sample_timestamping &&
+                           has_own_clocks(recipe.dut(), recipe.roles.sync_sensor));
   if (recipe.method() == EvaluationMethod::series_timestamping &&
       (recipe.settling_from_data || recipe.monte_carlo_trials > 0)) {
     return refuse("series time stamping has neither settling = \"from-data\" nor "
@@ -174,6 +94,24 @@ Expected<void> check_recipe(const Recipe& recipe) {
                   "settling_s");
   }
   return {};
+}
+
+analysis::Expected<analysis::ReferenceResponse> reference_response(const Recipe& recipe,
+                                                                   const RecipeStep& step) {
+  if (recipe.reference_calibration.empty()) {
+    return analysis::ReferenceResponse{};
+  }
+  return analysis::reference_response_at(recipe.reference_calibration, step.frequency.hz(),
+                                         step.level_m_s2);
+}
+
+analysis::Expected<analysis::AdcResponse> adc_response(const Recipe& recipe,
+                                                       const RecipeStep& step) {
+  if (recipe.adc_calibration.empty()) {
+    return analysis::AdcResponse{.u_phase_lag_rad =
+                                     step.frequency.angular() * recipe.u_adc_delay_s};
+  }
+  return analysis::adc_response_at(recipe.adc_calibration, step.frequency.hz());
 }
 
 } // namespace dyncal::inline evaluation

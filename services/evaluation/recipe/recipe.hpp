@@ -1,20 +1,19 @@
 // What a run is to measure and how it is evaluated: the plan of its steps, the channels with a
 // role, corrections and known uncertainties.
 //
-// The common part serves every method; what a method alone needs stands in its roles, one of four.
-// `dyncal run` and `dyncal analyse` make a recipe from the bench file (services/run/run_plan.hpp),
-// the analysis service reads it from the contract's message (recipe_message.hpp), so that it
-// evaluates benches it has never heard of. Standard uncertainties begin with u_. Plain data; any
-// thread.
+// What a method does not have is empty, or nothing looks at it. `dyncal run` and `dyncal analyse`
+// make a recipe from the bench file (services/run/run_plan.hpp), the analysis service reads it from
+// the contract's message (recipe_message.hpp), so that it evaluates benches it has never heard of.
+// Standard uncertainties begin with u_. Plain data; any thread.
 #pragma once
 
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
+#include "analysis/base/error.hpp"
 #include "analysis/base/frequency.hpp"
 #include "analysis/instrument/adc_calibration.hpp"
 #include "analysis/instrument/reference_calibration.hpp"
@@ -38,38 +37,9 @@ struct RecipeStep {
   double duration_s = 0.0;
 };
 
-// Sensor and reference are channels of one system.
-struct AnalogueRoles {
-  ChannelName reference;
-  ChannelName excitation; // the steps are found in it: the reference, or sync beside it
-  std::vector<ChannelName> dut;
-};
-
-// Sensors and reference are stamped in UTC.
-struct AbsoluteTimeRoles {
-  ChannelName reference;
-  ChannelName excitation; // as above
-  std::vector<ChannelName> dut;
-};
-
-struct SampleStampingRoles {
-  ChannelName reference;
-  ChannelName sync_acs;
-  ChannelName sync_dau;
-  std::vector<ChannelName> dut; // empty: all channels of the DAU but sync and temperature
-  std::vector<analysis::AdcCalibrationPoint> adc_calibration; // of sync_dau; empty: no correction
-  double u_adc_delay_s = 0.0; // of an ADC without calibration; 0: not stated
-
-  // The sensors have stamps of their own, beside the DAU that records sync.
-  [[nodiscard]] bool own_clocks() const { return has_own_clocks(dut, sync_dau); }
-};
-
-struct SeriesRoles {
-  ChannelName reference;
-  ChannelName sync_acs;
-  ChannelName sync_dso;
-  std::vector<ChannelName> dut; // of one sensor
-  std::uint32_t shots = 0;      // of a step
+// What series time stamping has beside its channels.
+struct SeriesSettings {
+  std::uint32_t shots = 0; // of a step
   bool trigger_phase_correction = true;
   double dso_delay_s = 0.0; // from the oscilloscope's trigger point to its trigger output
   double u_dso_delay_s = 0.0;
@@ -77,29 +47,14 @@ struct SeriesRoles {
   double u_dso_rate_rel = 0.0; // of the oscilloscope's clock
 };
 
-using Roles = std::variant<SampleStampingRoles, AnalogueRoles, SeriesRoles, AbsoluteTimeRoles>;
-
-// What one method or another has beside channels with a role.
-struct MethodDetails {
-  std::vector<analysis::AdcCalibrationPoint> adc_calibration;
-  std::uint32_t shots = 0;
-  bool trigger_phase_correction = true;
-  double dso_delay_s = 0.0;
-  double u_dso_delay_s = 0.0;
-  double u_acs_rate_rel = 0.0;
-  double u_dso_rate_rel = 0.0;
-  double u_adc_delay_s = 0.0;
-};
-
-// Those of the names' method; details that it does not have are dropped. An excitation channel that
-// is not named is the reference.
-[[nodiscard]] Roles make_roles(RoleNames names, MethodDetails details);
-
 struct Recipe {
   std::string bench;
   std::string run;
-  Roles roles;
-  std::optional<ChannelName> temperature;
+  RoleNames roles; // no channels under calibration: all of the DAU but sync and temperature
+  // Of the ADC that records sync in sample time stamping.
+  std::vector<analysis::AdcCalibrationPoint> adc_calibration; // empty: no correction
+  double u_adc_delay_s = 0.0;                                 // without calibration; 0: not stated
+  SeriesSettings series;
   std::vector<RecipeStep> steps;
   bool settling_from_data = false;      // RecipeStep::settling_s is the longest that is left out
   std::uint64_t monte_carlo_trials = 0; // 0: no cross-check
@@ -118,9 +73,13 @@ struct Recipe {
   // What the bench file says of each source, by its name; without one it is not known.
   std::map<std::string, std::string> source_settings;
 
-  [[nodiscard]] EvaluationMethod method() const;
-  [[nodiscard]] const ChannelName& reference() const;
-  [[nodiscard]] const std::vector<ChannelName>& dut() const;
+  [[nodiscard]] EvaluationMethod method() const { return roles.method; }
+  [[nodiscard]] const ChannelName& reference() const { return roles.reference; }
+  [[nodiscard]] const std::vector<ChannelName>& dut() const { return roles.dut; }
+  // The channel of the ACS that the steps are found in: sync, or the reference where there is none.
+  [[nodiscard]] const ChannelName& excitation() const {
+    return roles.sync_acs.source.empty() ? roles.reference : roles.sync_acs;
+  }
   // All with a role, the reference first.
   [[nodiscard]] std::vector<ChannelName> channels() const;
   // The sources of the channels under calibration, each once.
@@ -129,12 +88,17 @@ struct Recipe {
   [[nodiscard]] std::vector<std::string> sources() const;
 };
 
-// The roles as the rules of services/contract/role_rules.hpp look at them.
-[[nodiscard]] RoleNames role_names(const Recipe& recipe);
-
 // Fails (bad_argument) with what this version cannot evaluate: roles that the method does not
 // allow, no steps, settings that the method does not have, steps at which the reference was not
 // calibrated.
 [[nodiscard]] Expected<void> check_recipe(const Recipe& recipe);
+
+// Of the reference at the step's frequency and planned level, by its calibration; without one: 1.
+[[nodiscard]] analysis::Expected<analysis::ReferenceResponse>
+reference_response(const Recipe& recipe, const RecipeStep& step);
+// Of the ADC that records sync at the DAU, at the step's frequency, by its calibration; without
+// one: no correction, and the uncertainty of the delay that the recipe states.
+[[nodiscard]] analysis::Expected<analysis::AdcResponse> adc_response(const Recipe& recipe,
+                                                                     const RecipeStep& step);
 
 } // namespace dyncal::inline evaluation

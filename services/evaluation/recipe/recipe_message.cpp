@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "services/base/per_enumerator.hpp"
 #include "services/contract/evaluation_method_message.hpp"
 #include "services/contract/message_members.hpp"
 
@@ -61,19 +62,19 @@ void message_members(auto& visit, Either<Recipe> auto& recipe, auto& measurement
 
 namespace {
 
-// `own`: roles of the method, or MethodDetails.
-void stamping_members(auto& visit, auto& own, auto& measurement) {
-  visit(own.adc_calibration, measurement.adc_calibration());
-  visit(own.u_adc_delay_s, measurement.u_adc_delay_s());
-}
-
-void series_members(auto& visit, auto& own, auto& measurement) {
-  visit(own.shots, measurement.shots());
-  visit(own.trigger_phase_correction, measurement.trigger_phase_correction());
-  visit(own.dso_delay_s, measurement.dso_delay_s());
-  visit(own.u_dso_delay_s, measurement.u_dso_delay_s());
-  visit(own.u_acs_rate_rel, measurement.u_acs_rate_rel());
-  visit(own.u_dso_rate_rel, measurement.u_dso_rate_rel());
+// What the recipe's method alone has.
+void members_of_method(auto& visit, Either<Recipe> auto& recipe, auto& measurement) {
+  if (recipe.method() == EvaluationMethod::sample_timestamping) {
+    visit(recipe.adc_calibration, measurement.adc_calibration());
+    visit(recipe.u_adc_delay_s, measurement.u_adc_delay_s());
+  } else if (recipe.method() == EvaluationMethod::series_timestamping) {
+    visit(recipe.series.shots, measurement.shots());
+    visit(recipe.series.trigger_phase_correction, measurement.trigger_phase_correction());
+    visit(recipe.series.dso_delay_s, measurement.dso_delay_s());
+    visit(recipe.series.u_dso_delay_s, measurement.u_dso_delay_s());
+    visit(recipe.series.u_acs_rate_rel, measurement.u_acs_rate_rel());
+    visit(recipe.series.u_dso_rate_rel, measurement.u_dso_rate_rel());
+  }
 }
 
 tl::unexpected<Error> refuse(std::string sentence) {
@@ -116,16 +117,11 @@ Expected<RoleNames> read_roles(const wire::Measurement& measurement) {
   for (const std::string& text : measurement.dut()) {
     read = read ? read_role("dut", text, roles.dut.emplace_back()) : read;
   }
+  if (read && !measurement.temperature().empty()) {
+    read = read_role("temperature", measurement.temperature(), roles.temperature.emplace());
+  }
   DYNCAL_TRY(read);
   return roles;
-}
-
-MethodDetails read_details(const wire::Measurement& measurement) {
-  MethodDetails details;
-  MessageReader reader;
-  stamping_members(reader, details, measurement);
-  series_members(reader, details, measurement);
-  return details;
 }
 
 Expected<void> read_steps(const wire::Measurement& measurement, Recipe& recipe) {
@@ -150,7 +146,7 @@ Expected<void> read_dut_phase(const std::string& text, Recipe& recipe) {
   if (text.empty()) {
     return {};
   }
-  const auto phase = parse_dut_phase(text);
+  const auto phase = parse_enumerator<DutPhase>(text);
   if (!phase) {
     return refuse(fmt::format(
         "dut_phase is \"{}\", which this version does not know; install the conductor's", text));
@@ -162,6 +158,7 @@ Expected<void> read_dut_phase(const std::string& text, Recipe& recipe) {
 void read_common_part(const wire::Measurement& measurement, Recipe& recipe) {
   MessageReader reader;
   message_members(reader, recipe, measurement);
+  members_of_method(reader, recipe, measurement);
   if (measurement.frequency_exact()) {
     recipe.frequency_search_rel = 0.0;
   } else if (measurement.frequency_search_rel() > 0.0) {
@@ -184,29 +181,23 @@ void read_common_part(const wire::Measurement& measurement, Recipe& recipe) {
 } // namespace
 
 wire::Measurement to_message(const Recipe& recipe) {
-  const RoleNames roles = role_names(recipe);
+  const RoleNames& roles = recipe.roles;
   wire::Measurement measurement;
   MessageWriter writer;
   message_members(writer, recipe, measurement);
+  members_of_method(writer, recipe, measurement);
   writer(recipe.steps, measurement.steps());
   measurement.excited_axis(recipe.steps.empty() ? "" : recipe.steps.front().excited_axis);
   measurement.method(to_wire(roles.method));
   measurement.reference(roles.reference.text());
-  measurement.sync_acs(text_of(roles.sync_acs));
+  measurement.sync_acs(text_of(recipe.excitation()));
   const bool by_series = roles.method == EvaluationMethod::series_timestamping;
   measurement.sync_dau(by_series ? "" : text_of(roles.sync_sensor));
   measurement.sync_dso(by_series ? text_of(roles.sync_sensor) : "");
   for (const ChannelName& name : roles.dut) {
     measurement.dut().push_back(name.text());
   }
-  if (recipe.temperature) {
-    measurement.temperature(recipe.temperature->text());
-  }
-  if (const auto* own = std::get_if<SampleStampingRoles>(&recipe.roles)) {
-    stamping_members(writer, *own, measurement);
-  } else if (const auto* series = std::get_if<SeriesRoles>(&recipe.roles)) {
-    series_members(writer, *series, measurement);
-  }
+  measurement.temperature(text_of(roles.temperature.value_or(ChannelName{})));
   measurement.frequency_search_rel(recipe.frequency_search_rel);
   measurement.frequency_exact(recipe.frequency_search_rel == 0.0);
   measurement.level_deviation_rel(recipe.level_deviation_rel);
@@ -229,12 +220,8 @@ wire::Measurement to_message(const Recipe& recipe) {
 }
 
 Expected<Recipe> parse_recipe(const wire::Measurement& measurement) {
-  DYNCAL_TRY(auto roles, read_roles(measurement));
   Recipe recipe;
-  recipe.roles = make_roles(std::move(roles), read_details(measurement));
-  if (!measurement.temperature().empty()) {
-    DYNCAL_TRY(read_role("temperature", measurement.temperature(), recipe.temperature.emplace()));
-  }
+  DYNCAL_TRY(recipe.roles, read_roles(measurement));
   read_common_part(measurement, recipe);
   DYNCAL_TRY(read_dut_phase(measurement.dut_phase(), recipe));
   DYNCAL_TRY(read_steps(measurement, recipe).and_then([&] { return check_recipe(recipe); }));

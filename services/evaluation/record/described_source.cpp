@@ -34,7 +34,7 @@ Expected<void> check_quantities(const Recipe& recipe, const RunRecords& records)
     const auto channel = record.described() ? record.channel(name.channel) : std::nullopt;
     return channel ? std::optional(record.description().channels[*channel]) : std::nullopt;
   };
-  const auto problems = find_quantity_problems(role_names(recipe), described);
+  const auto problems = find_quantity_problems(recipe.roles, described);
   return problems.empty() ? Expected<void>{}
                           : fail(ErrorCode::no_source, fmt::format("{} {}", problems.front().role,
                                                                    problems.front().sentence));

@@ -1,4 +1,4 @@
-#include "services/evaluation/result/adc_file_message.hpp"
+#include "services/evaluation/result/result_messages.hpp"
 
 namespace dyncal::inline evaluation {
 

@@ -1,4 +1,4 @@
-#include "services/evaluation/result/clock_report_message.hpp"
+#include "services/evaluation/result/result_messages.hpp"
 
 #include <cmath>
 

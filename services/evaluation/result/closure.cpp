@@ -1,6 +1,5 @@
 #include "services/evaluation/result/closure.hpp"
 
-#include <algorithm>
 #include <array>
 
 #include <fmt/core.h>
@@ -34,12 +33,6 @@ constexpr std::array names{
 
 std::string_view to_string(ClosureKind kind) {
   return names.at(static_cast<std::size_t>(kind)).name;
-}
-
-std::optional<ClosureKind> parse_closure_kind(std::string_view name) {
-  const auto found = std::ranges::find(names, name, &Names::name);
-  return found == names.end() ? std::nullopt
-                              : std::optional(static_cast<ClosureKind>(found - names.begin()));
 }
 
 std::string_view title_of(ClosureKind kind) {

@@ -8,7 +8,6 @@
 // any thread.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,7 +47,6 @@ struct Closure {
 
 // "clock_rate"; "clock rate" for people; "not_possible".
 [[nodiscard]] std::string_view to_string(ClosureKind kind);
-[[nodiscard]] std::optional<ClosureKind> parse_closure_kind(std::string_view name);
 [[nodiscard]] std::string_view title_of(ClosureKind kind);
 [[nodiscard]] std::string_view to_string(Verdict verdict);
 

@@ -213,6 +213,14 @@ Flag flag_with_reason(ResultFlag kind, const std::string& reason) {
   return {kind, to_string(kind) + (": " + reason)};
 }
 
+Flag flag_of_channel(ResultFlag kind, const std::string& channel, const std::string& reason) {
+  return {kind, channel + ": " + to_string(kind) + ": " + reason};
+}
+
+bool has_flag(const std::vector<Flag>& flags, ResultFlag kind) {
+  return std::ranges::find(flags, kind, &Flag::kind) != flags.end();
+}
+
 std::vector<std::string> sentences_of(const std::vector<Flag>& flags) {
   std::vector<std::string> sentences;
   std::ranges::transform(flags, std::back_inserter(sentences),

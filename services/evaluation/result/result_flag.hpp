@@ -78,10 +78,14 @@ struct Flag {
   friend bool operator==(const Flag&, const Flag&) = default;
 };
 
-// The kind's sentence alone; of one source, "dau: samples lost"; with what only this case knows.
+// The kind's sentence alone; of one source or channel, "dau: samples lost"; with what only this
+// case knows.
 [[nodiscard]] Flag make_flag(ResultFlag kind);
 [[nodiscard]] Flag flag_of_source(ResultFlag kind, const std::string& source);
 [[nodiscard]] Flag flag_with_reason(ResultFlag kind, const std::string& reason);
+[[nodiscard]] Flag flag_of_channel(ResultFlag kind, const std::string& channel,
+                                   const std::string& reason);
+[[nodiscard]] bool has_flag(const std::vector<Flag>& flags, ResultFlag kind);
 
 [[nodiscard]] std::vector<std::string> sentences_of(const std::vector<Flag>& flags);
 // One for each flag, in their order.

@@ -1,11 +1,10 @@
-#include "services/evaluation/result/result_message.hpp"
+#include "services/evaluation/result/result_messages.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "services/base/version.hpp"
 #include "services/contract/message_members.hpp"
-#include "services/evaluation/result/contribution_message.hpp"
 #include "services/evaluation/result/flag_message.hpp"
 
 namespace dyncal::inline evaluation {

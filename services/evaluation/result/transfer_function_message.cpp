@@ -1,9 +1,10 @@
-#include "services/evaluation/result/transfer_function_message.hpp"
+#include "services/evaluation/result/result_messages.hpp"
 
 #include <array>
 #include <complex>
 #include <utility>
 
+#include "services/base/per_enumerator.hpp"
 #include "services/base/version.hpp"
 #include "services/contract/evaluation_method_message.hpp"
 #include "services/contract/message_members.hpp"
@@ -128,7 +129,7 @@ TransferFunction from_message(const wire::TransferFunction& message) {
   }
   for (const wire::Closure& closure : message.closures()) {
     // Not of a kind that this version does not know: its flag says what is open.
-    if (const auto kind = parse_closure_kind(closure.kind())) {
+    if (const auto kind = parse_enumerator<ClosureKind>(closure.kind())) {
       message_members(reader, function.closures.emplace_back(), closure);
       function.closures.back().kind = *kind;
     }

@@ -4,9 +4,7 @@
 
 #include "services/base/version.hpp"
 #include "services/contract/topics.hpp"
-#include "services/evaluation/result/clock_report_message.hpp"
-#include "services/evaluation/result/result_message.hpp"
-#include "services/evaluation/result/transfer_function_message.hpp"
+#include "services/evaluation/result/result_messages.hpp"
 
 namespace dyncal::inline programs {
 namespace {

@@ -12,7 +12,7 @@
 #include "services/base/per_enumerator.hpp"
 #include "services/base/version.hpp"
 #include "services/contract/topics.hpp"
-#include "services/evaluation/result/transfer_function_message.hpp"
+#include "services/evaluation/result/result_messages.hpp"
 #include "services/records/capture/recorded_topics.hpp"
 #include "services/views/report/json_members.hpp"
 

@@ -8,7 +8,7 @@
 #include "services/contract/source_description.hpp"
 #include "services/contract/source_kind.hpp"
 #include "services/evaluation/recipe/recipe_message.hpp"
-#include "services/evaluation/result/adc_file_message.hpp"
+#include "services/evaluation/result/result_messages.hpp"
 #include "services/evaluation/run_evaluator.hpp"
 #include "services/records/replay/recorded_run_feed.hpp"
 #include "services/records/replay/recording_index.hpp"
@@ -129,8 +129,6 @@ Expected<RecordedRunOutcome> evaluate_recording(recording::RecordingReader& read
                            feed.take(message);
                          }
                        },
-                   .attachment = {},
-                   .metadata = {},
                    .walked = [&](std::uint64_t /*bytes*/) { return !stop.stop_requested(); }});
   if (!walked && walked.error().code != ErrorCode::interrupted) {
     return fail(walked.error());

@@ -11,9 +11,7 @@
 #include "services/contract/source_description.hpp"
 #include "services/contract/topics.hpp"
 #include "services/contract/triggered_record.hpp"
-#include "services/evaluation/result/clock_report_message.hpp"
-#include "services/evaluation/result/result_message.hpp"
-#include "services/evaluation/result/transfer_function_message.hpp"
+#include "services/evaluation/result/result_messages.hpp"
 #include "services/records/capture/recorded_topics.hpp"
 
 namespace dyncal::inline records {

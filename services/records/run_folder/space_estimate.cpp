@@ -49,8 +49,7 @@ double source_bytes(const RunSource& source, const Recipe& recipe, const BenchFi
     return unknown ? 0.0 : static_cast<double>(size);
   }
   if (is_triggered(source.kind)) {
-    const auto* roles = std::get_if<SeriesRoles>(&recipe.roles);
-    const std::uint64_t shots = roles != nullptr ? std::max<std::uint32_t>(roles->shots, 1) : 1;
+    const std::uint64_t shots = std::max<std::uint32_t>(recipe.series.shots, 1);
     return static_cast<double>(shots * recipe.steps.size() * shot_bytes);
   }
   return sampled_bytes(source, planned_seconds(recipe), rates_hz);

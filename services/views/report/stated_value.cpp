@@ -6,6 +6,7 @@
 
 #include <fmt/core.h>
 
+#include "services/base/per_enumerator.hpp"
 #include "services/base/rounding.hpp"
 #include "services/contract/evaluation_method.hpp"
 
@@ -128,7 +129,7 @@ std::string rounding_rule() {
 }
 
 std::string method_description(const std::string& method) {
-  const auto known = parse_evaluation_method(method);
+  const auto known = parse_enumerator<EvaluationMethod>(method);
   if (!known) {
     return method;
   }

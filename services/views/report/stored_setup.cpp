@@ -4,17 +4,16 @@
 #include <cmath>
 
 #include "analysis/instrument/adc_calibration.hpp"
-#include "services/evaluation/recipe/reference_correction.hpp"
 
 namespace dyncal::inline views {
 namespace {
 
 std::string role_of(const Recipe& recipe, const std::string& channel) {
-  const RoleNames names = role_names(recipe);
+  const RoleNames& names = recipe.roles;
   if (channel == names.reference.text()) {
     return "reference";
   }
-  if (channel == names.sync_acs.text()) {
+  if (channel == recipe.excitation().text()) {
     return is_without_sync(names.method) ? "excitation" : "sync_acs";
   }
   if (!names.sync_sensor.source.empty() && channel == names.sync_sensor.text()) {
@@ -58,12 +57,10 @@ StoredCorrection reference_correction(const analysis::ReferenceResponse& respons
 } // namespace
 
 StoredRoles stored_roles(const Recipe& recipe) {
-  const RoleNames names = role_names(recipe);
+  const RoleNames& names = recipe.roles;
   StoredRoles roles;
   roles.reference = names.reference.text();
-  if (!names.sync_acs.source.empty()) {
-    (is_without_sync(names.method) ? roles.excitation : roles.sync_acs) = names.sync_acs.text();
-  }
+  (is_without_sync(names.method) ? roles.excitation : roles.sync_acs) = recipe.excitation().text();
   if (!names.sync_sensor.source.empty()) {
     const std::string sync = names.sync_sensor.text();
     (role_of(recipe, sync) == "sync_dso" ? roles.sync_dso : roles.sync_dau) = sync;
@@ -71,8 +68,8 @@ StoredRoles stored_roles(const Recipe& recipe) {
   for (const ChannelName& channel : names.dut) {
     roles.dut.push_back(channel.text());
   }
-  if (recipe.temperature) {
-    roles.temperature = recipe.temperature->text();
+  if (names.temperature) {
+    roles.temperature = names.temperature->text();
   }
   return roles;
 }
@@ -80,14 +77,14 @@ StoredRoles stored_roles(const Recipe& recipe) {
 StoredCorrections stored_corrections(const Recipe& recipe, const std::optional<AdcFile>& adc_file) {
   StoredCorrections corrections;
   corrections.reference_delay_s = recipe.reference_delay_s;
-  if (const auto* stamped = std::get_if<SampleStampingRoles>(&recipe.roles)) {
-    corrections.adc_calibration = stamped->adc_calibration;
+  if (recipe.method() == EvaluationMethod::sample_timestamping) {
+    corrections.adc_calibration = recipe.adc_calibration;
     corrections.adc_file = adc_file;
   }
-  if (const auto* series = std::get_if<SeriesRoles>(&recipe.roles)) {
-    corrections.dso_delay_s = series->dso_delay_s;
-    corrections.u_dso_delay_s = series->u_dso_delay_s;
-    corrections.trigger_phase_correction = series->trigger_phase_correction;
+  if (recipe.method() == EvaluationMethod::series_timestamping) {
+    corrections.dso_delay_s = recipe.series.dso_delay_s;
+    corrections.u_dso_delay_s = recipe.series.u_dso_delay_s;
+    corrections.trigger_phase_correction = recipe.series.trigger_phase_correction;
   }
   return corrections;
 }
@@ -107,15 +104,15 @@ std::vector<StoredCorrection> applied_corrections(const Recipe& recipe, const Re
                        {},
                        {}});
   }
-  if (const auto* stamped = std::get_if<SampleStampingRoles>(&recipe.roles);
-      stamped != nullptr && !stamped->adc_calibration.empty()) {
-    if (const auto adc = analysis::adc_response_at(stamped->adc_calibration, step.frequency.hz())) {
+  const EvaluationMethod method = recipe.method();
+  if (method == EvaluationMethod::sample_timestamping && !recipe.adc_calibration.empty()) {
+    if (const auto adc = analysis::adc_response_at(recipe.adc_calibration, step.frequency.hz())) {
       applied.push_back({"adc_phase_lag", -adc->phase_lag_rad, adc->u_phase_lag_rad, {}, {}});
     }
   }
-  if (const auto* series = std::get_if<SeriesRoles>(&recipe.roles);
-      series != nullptr && series->dso_delay_s != 0.0) {
-    applied.push_back({"dso_delay", -w * series->dso_delay_s, w * series->u_dso_delay_s, {}, {}});
+  const SeriesSettings& series = recipe.series;
+  if (method == EvaluationMethod::series_timestamping && series.dso_delay_s != 0.0) {
+    applied.push_back({"dso_delay", -w * series.dso_delay_s, w * series.u_dso_delay_s, {}, {}});
   }
   return applied;
 }

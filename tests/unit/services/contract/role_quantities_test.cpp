@@ -21,7 +21,7 @@ RoleNames sample_stamping() {
           .sync_acs = {"acs", "sync"},
           .sync_sensor = {"dau", "sync"},
           .dut = {{"dau", "acceleration_x"}, {"dau", "acceleration_z"}},
-          .temperature = {"dau", "temperature"}};
+          .temperature = ChannelName{"dau", "temperature"}};
 }
 
 const Units usual{{"acs/reference", "m/s^2"},
@@ -100,13 +100,13 @@ TEST(RoleQuantities, EveryExchangeOfQuantitiesIsFound) {
     right.method = draw % 3 == 0 ? EvaluationMethod::series_timestamping
                                  : EvaluationMethod::sample_timestamping;
     EXPECT_TRUE(problems_of(right, units).empty()) << draw;
-    const std::vector<ChannelName RoleNames::*> others{
-        &RoleNames::sync_acs, &RoleNames::sync_sensor, &RoleNames::temperature};
     RoleNames wrong = right;
-    const auto other = others[random() % others.size()];
+    const std::vector<ChannelName*> others{&wrong.sync_acs, &wrong.sync_sensor,
+                                           &*wrong.temperature};
+    ChannelName& other = *others[random() % others.size()];
     ChannelName& counterpart =
         random() % 2 == 0 ? wrong.reference : wrong.dut[random() % wrong.dut.size()];
-    std::swap(counterpart, wrong.*other);
+    std::swap(counterpart, other);
     const auto problems = problems_of(wrong, units);
     ASSERT_FALSE(problems.empty()) << draw;
     EXPECT_TRUE(std::ranges::any_of(problems, [](const RoleQuantityProblem& problem) {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "services/evaluation/recipe/recipe_message.hpp"
-#include "services/evaluation/result/result_message.hpp"
+#include "services/evaluation/result/result_messages.hpp"
 #include "services/evaluation/run_evaluator.hpp"
 #include "tests/unit/services/evaluation/feed.hpp"
 #include "tests/unit/services/evaluation/synthetic_run.hpp"

@@ -8,9 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "services/evaluation/recipe/recipe_message.hpp"
-#include "services/evaluation/result/clock_report_message.hpp"
-#include "services/evaluation/result/result_message.hpp"
-#include "services/evaluation/result/transfer_function_message.hpp"
+#include "services/evaluation/result/result_messages.hpp"
 #include "tests/unit/services/evaluation/feed.hpp"
 #include "tests/unit/services/evaluation/monte_carlo_agreement.hpp"
 #include "tests/unit/services/evaluation/synthetic_run.hpp"

@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include "services/base/per_enumerator.hpp"
 #include "tests/unit/services/evaluation/closures/drawn_run.hpp"
 
 namespace dyncal::inline evaluation {
@@ -330,10 +331,10 @@ TEST(Closures, OfValuesWithoutNoiseOrLengthCloseOrAreNotPossible) {
 TEST(Closures, KindsHaveNamesThatAreReadBack) {
   for (std::size_t i = 0; i < kinds_of_closures; ++i) {
     const auto kind = static_cast<ClosureKind>(i);
-    EXPECT_EQ(parse_closure_kind(to_string(kind)), kind);
+    EXPECT_EQ(parse_enumerator<ClosureKind>(to_string(kind)), kind);
     EXPECT_FALSE(title_of(kind).empty());
   }
-  EXPECT_FALSE(parse_closure_kind("of a later version").has_value());
+  EXPECT_FALSE(parse_enumerator<ClosureKind>("of a later version").has_value());
 }
 
 } // namespace

@@ -34,12 +34,11 @@ Drawn draw(std::mt19937& random) {
 Recipe make_recipe(const DrawnOptions& options) {
   Recipe recipe;
   const bool by_series = options.method == EvaluationMethod::series_timestamping;
-  recipe.roles = make_roles({.method = options.method,
-                             .reference = {"acs", "reference"},
-                             .sync_acs = ChannelName{"acs", "sync"},
-                             .sync_sensor = ChannelName{by_series ? "dso" : "dau", "sync"},
-                             .dut = {{"dau", "x"}, {"dau", "y"}}},
-                            {});
+  recipe.roles = {.method = options.method,
+                  .reference = {"acs", "reference"},
+                  .sync_acs = ChannelName{"acs", "sync"},
+                  .sync_sensor = ChannelName{by_series ? "dso" : "dau", "sync"},
+                  .dut = {{"dau", "x"}, {"dau", "y"}}};
   const auto add = [&](std::uint32_t sweep, const char* hz) {
     recipe.steps.push_back({.step = static_cast<std::uint32_t>(recipe.steps.size() + 1),
                             .repetition = sweep,

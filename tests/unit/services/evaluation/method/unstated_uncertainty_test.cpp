@@ -11,11 +11,7 @@ using testing::IsEmpty;
 
 Recipe stated() {
   Recipe recipe;
-  recipe.roles = SampleStampingRoles{.reference = {},
-                                     .sync_acs = {},
-                                     .sync_dau = {},
-                                     .dut = {},
-                                     .adc_calibration = {{.frequency_hz = 10.0}}};
+  recipe.adc_calibration = {{.frequency_hz = 10.0}};
   recipe.systematic.reference_magnitude_rel = 1e-3;
   recipe.systematic.reference_phase_rad = 1e-3;
   recipe.systematic.acs_delay_s = 1e-7;
@@ -57,22 +53,21 @@ TEST(UnstatedUncertainty, TheCalibrationOfTheReferenceStatesIt) {
 
 TEST(UnstatedUncertainty, AnAdcIsCalibratedOrItsDelayIsBounded) {
   Recipe recipe = stated();
-  auto& roles = std::get<SampleStampingRoles>(recipe.roles);
-  roles.adc_calibration.clear();
+  recipe.adc_calibration.clear();
   EXPECT_THAT(kinds(recipe), ElementsAre(ResultFlag::adc_not_calibrated));
-  roles.u_adc_delay_s = 1e-6;
+  recipe.u_adc_delay_s = 1e-6;
   EXPECT_THAT(kinds(recipe), IsEmpty());
-  recipe.roles = AnalogueRoles{};
+  recipe.roles.method = EvaluationMethod::analogue;
   EXPECT_THAT(kinds(recipe), IsEmpty());
 }
 
 TEST(UnstatedUncertainty, OfTheTriggerOfAnOscilloscope) {
   Recipe recipe = stated();
-  recipe.roles = SeriesRoles{};
+  recipe.roles.method = EvaluationMethod::series_timestamping;
   EXPECT_THAT(kinds(recipe), ElementsAre(ResultFlag::trigger_delay_not_stated));
-  std::get<SeriesRoles>(recipe.roles).dso_delay_s = 236e-9; // without its uncertainty
+  recipe.series.dso_delay_s = 236e-9; // without its uncertainty
   EXPECT_THAT(kinds(recipe), ElementsAre(ResultFlag::trigger_delay_not_stated));
-  std::get<SeriesRoles>(recipe.roles).u_dso_delay_s = 1e-9;
+  recipe.series.u_dso_delay_s = 1e-9;
   EXPECT_THAT(kinds(recipe), IsEmpty());
 }
 
@@ -80,9 +75,9 @@ TEST(UnstatedUncertainty, OfTheDelayBetweenChannelsOfTheAcsWhereOneIsComparedWit
   Recipe recipe = stated();
   recipe.systematic.acs_delay_s = 0.0;
   EXPECT_THAT(kinds(recipe), ElementsAre(ResultFlag::acs_delay_not_stated));
-  recipe.roles = AnalogueRoles{};
+  recipe.roles.method = EvaluationMethod::analogue;
   EXPECT_THAT(kinds(recipe), ElementsAre(ResultFlag::acs_delay_not_stated));
-  recipe.roles = AbsoluteTimeRoles{};
+  recipe.roles.method = EvaluationMethod::absolute_time;
   EXPECT_THAT(kinds(recipe), IsEmpty());
 }
 

@@ -92,7 +92,7 @@ TEST(RecipeMessage, CarriesTheClockOfTheOscilloscopeInSeriesAlone) {
   measurement.u_dso_rate_rel(1.4e-5);
   const auto recipe = parse_recipe(measurement);
   ASSERT_TRUE(recipe) << recipe.error().message;
-  EXPECT_EQ(std::get<SeriesRoles>(recipe->roles).u_dso_rate_rel, 1.4e-5);
+  EXPECT_EQ(recipe->series.u_dso_rate_rel, 1.4e-5);
   EXPECT_EQ(to_message(*recipe).u_dso_rate_rel(), 1.4e-5);
 }
 

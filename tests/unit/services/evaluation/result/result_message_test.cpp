@@ -1,12 +1,9 @@
 // Results as they come back from the messages that they were sent in.
-#include "services/evaluation/result/result_message.hpp"
+#include "services/evaluation/result/result_messages.hpp"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
-
-#include "services/evaluation/result/clock_report_message.hpp"
-#include "services/evaluation/result/transfer_function_message.hpp"
 
 namespace dyncal::inline evaluation {
 namespace {

@@ -4,9 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "services/bus/memory/stepped_clock.hpp"
-#include "services/evaluation/result/clock_report_message.hpp"
-#include "services/evaluation/result/result_message.hpp"
-#include "services/evaluation/result/transfer_function_message.hpp"
+#include "services/evaluation/result/result_messages.hpp"
 #include "services/network/bus_state.hpp"
 #include "services/views/report/picture_json.hpp"
 #include "services/views/report/run_figures.hpp"

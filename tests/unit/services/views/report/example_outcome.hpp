@@ -60,12 +60,11 @@ inline evaluation::Recipe example_recipe() {
   evaluation::Recipe recipe;
   recipe.bench = "acc-1";
   recipe.run = "r1";
-  recipe.roles = evaluation::SampleStampingRoles{
-      .reference = {"acs", "reference"},
-      .sync_acs = {"acs", "sync"},
-      .sync_dau = {"dau", "sync"},
-      .dut = {{"dau", "acceleration_z"}},
-      .adc_calibration = {{5.0, 19.5, 0.2, 1e-4}, {50.0, 19.5, 0.2, 1e-3}}};
+  recipe.roles = {.reference = {"acs", "reference"},
+                  .sync_acs = {"acs", "sync"},
+                  .sync_sensor = {"dau", "sync"},
+                  .dut = {{"dau", "acceleration_z"}}};
+  recipe.adc_calibration = {{5.0, 19.5, 0.2, 1e-4}, {50.0, 19.5, 0.2, 1e-3}};
   recipe.reference_delay_s = 1e-6;
   for (const char* text : {"10", "20"}) {
     recipe.steps.push_back({.step = static_cast<std::uint32_t>(recipe.steps.size() + 1),
