@@ -2,17 +2,19 @@
 """Installs a build into a temporary prefix and checks what is there. Builds nothing of dyncal and
 needs no network.
 
-    installed_prefix_test.py --build BUILD ... Files|Programs|Library|Uninstall
+    installed_prefix_test.py --build BUILD ... Files|Programs|Library|Packages|Uninstall
 
 Files      every file is where it belongs, units start the programs of the prefix, no file names the
            source or the build tree, no header a DDS library
 Programs   run from the prefix
 Library    deploy/example-library by find_package and by pkg-config, all headers, the bus, the
            mathematics alone by add_subdirectory
+Packages   every file that is installed is in one Debian package, and each of its lists finds some
 Uninstall  removing what install_manifest.txt lists leaves no file
 """
 
 import argparse
+import fnmatch
 import os
 import pathlib
 import re
@@ -243,6 +245,29 @@ def check_library(options, prefix):
     )
 
 
+def check_packages(options, prefix):
+    # Debian has libraries in a folder of the machine's kind.
+    installed = [
+        re.sub("^usr/lib/(cmake|pkgconfig|[^/]*[.]a)", r"usr/lib/any/\1", f"usr/{path}")
+        for path in (path.relative_to(prefix) for path in install(options, prefix))
+    ]
+    debian = TOP / "deploy/debian"
+    packages = {path.name: path.read_text().split() for path in debian.glob("*.install")}
+    packages["not-installed"] = (debian / "not-installed").read_text().split()
+    if not (options.build / "bin/dyncal-web").exists():
+        del packages["dyncal-web.install"]
+
+    def takes(pattern, path):
+        return fnmatch.fnmatch(path, pattern) or fnmatch.fnmatch(path, f"{pattern}/*")
+
+    for path in installed:
+        takers = [n for n, patterns in packages.items() if any(takes(p, path) for p in patterns)]
+        expect(len(takers) == 1, f"{path} is in {takers or 'no package'}")
+    for package, patterns in packages.items():
+        for pattern in patterns:
+            expect(any(takes(pattern, path) for path in installed), f"{package}: no {pattern}")
+
+
 def check_uninstall(options, prefix):
     installed = install(options, prefix)
     for path in installed:
@@ -259,6 +284,7 @@ def main():
         "Files": check_files,
         "Programs": check_programs,
         "Library": check_library,
+        "Packages": check_packages,
         "Uninstall": check_uninstall,
     }
     parser.add_argument("part", choices=checks)
