@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "analysis/base/phasor.hpp"
+#include "analysis/uncertainty/random_effects.hpp"
 #include "analysis/uncertainty/rice.hpp"
 
 namespace dyncal::analysis {

@@ -31,7 +31,7 @@
 
 #include "analysis/base/error.hpp"
 #include "analysis/uncertainty/contribution.hpp"
-#include "analysis/uncertainty/random_effects.hpp"
+#include "analysis/uncertainty/coverage.hpp"
 
 namespace dyncal::analysis {
 

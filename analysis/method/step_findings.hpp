@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "analysis/step/short_disturbance.hpp"
-#include "analysis/uncertainty/ratio_blocks.hpp"
+#include "analysis/uncertainty/ratio_change.hpp"
 
 namespace dyncal::analysis {
 

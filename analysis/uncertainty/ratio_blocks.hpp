@@ -27,6 +27,7 @@
 #include <optional>
 
 #include "analysis/uncertainty/block_series.hpp"
+#include "analysis/uncertainty/ratio_change.hpp"
 
 namespace dyncal::analysis {
 
@@ -42,12 +43,6 @@ struct BlockAlignment {
   // By how the two signals began (sine_onset.hpp): the numerator's onset before its first stamp,
   // less the denominator's. The delay of one behind the other is in it.
   std::optional<SeenOffset> seen{};
-};
-
-struct RatioChange { // after less before
-  double at_s = 0.0; // after the first stamp of the numerator
-  double magnitude_rel = 0.0;
-  double phase_rad = 0.0;
 };
 
 struct RatioInBlocks {
