@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
+#include <utility>
+
+#include "analysis/clock/period_count.hpp"
 
 namespace dyncal::inline evaluation {
 namespace {
@@ -21,6 +24,14 @@ SampleLoss sum(const SampleLoss& a, const SampleLoss& b) {
 }
 
 } // namespace
+
+SourceRecord::SourceRecord(std::string source, std::size_t capacity)
+    : source_(std::move(source)), capacity_(capacity),
+      periods_(std::make_unique<analysis::PeriodCount>()) {}
+
+SourceRecord::~SourceRecord() = default;
+SourceRecord::SourceRecord(SourceRecord&&) noexcept = default;
+SourceRecord& SourceRecord::operator=(SourceRecord&&) noexcept = default;
 
 void SourceRecord::keep_only(std::set<std::size_t> channels) {
   for (std::size_t channel = 0; channel < columns_.size(); ++channel) {
@@ -99,19 +110,19 @@ void SourceRecord::find_unnumbered_gaps(const SourceBlock& block) {
   const auto stamps = std::span(stamps_ns_).last(block.samples);
   const auto flags = std::span(flags_).last(block.samples);
   // Stamps that follow from a clock show nothing within a block.
-  const bool ends_suffice = block.stamps_ns.empty() && periods_.knows_period();
+  const bool ends_suffice = block.stamps_ns.empty() && periods_->knows_period();
   const std::size_t stride = ends_suffice ? std::max<std::size_t>(1, block.samples - 1) : 1;
   for (std::size_t i = 0; i < block.samples; i += stride) {
     if (flags[i] == 0) {
-      periods_.add(block.first_sample + i, stamps[i]);
+      periods_->add(block.first_sample + i, stamps[i]);
       latest_ns_ = std::max(latest_ns_.value_or(stamps[i]), stamps[i]);
       set_back_ns_ = std::max(set_back_ns_, *latest_ns_ - stamps[i]);
     }
   }
   if (block.end_of_stream) {
-    periods_.finish();
+    periods_->finish();
   }
-  for (const analysis::UnnumberedGap& gap : periods_.take_gaps()) {
+  for (const analysis::UnnumberedGap& gap : periods_->take_gaps()) {
     unnumbered_ += gap.missing;
     add_gap(gaps_, {gap.before_ns, gap.after_ns, {.missing = gap.missing}});
   }
@@ -172,7 +183,7 @@ void SourceRecord::restart() {
   newest_ns_.reset();
   latest_ns_.reset();
   set_back_ns_ = 0;
-  periods_ = {};
+  *periods_ = {};
 }
 
 std::span<const double> SourceRecord::column(std::size_t channel) const {

@@ -16,17 +16,22 @@
 
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <set>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "analysis/clock/period_count.hpp"
 #include "drivers/sample_block.hpp"
 #include "services/contract/sample_continuity.hpp"
 #include "services/contract/source_block.hpp"
 #include "services/evaluation/record/time_interval.hpp"
+
+namespace dyncal::analysis {
+class PeriodCount;
+}
 
 namespace dyncal::inline evaluation {
 
@@ -43,8 +48,10 @@ class SourceRecord {
 public:
   static constexpr std::size_t default_capacity = std::size_t{1} << 24U;
 
-  explicit SourceRecord(std::string source, std::size_t capacity = default_capacity)
-      : source_(std::move(source)), capacity_(capacity) {}
+  explicit SourceRecord(std::string source, std::size_t capacity = default_capacity);
+  ~SourceRecord();
+  SourceRecord(SourceRecord&&) noexcept;
+  SourceRecord& operator=(SourceRecord&&) noexcept;
 
   [[nodiscard]] const std::string& source() const { return source_; }
 
@@ -139,7 +146,7 @@ private:
   std::optional<drivers::SourceDescription> description_;
   std::optional<std::set<std::size_t>> kept_channels_; // all when there is no set
   SampleContinuity continuity_;
-  analysis::PeriodCount periods_;
+  std::unique_ptr<analysis::PeriodCount> periods_;
   std::uint64_t unnumbered_ = 0; // missing by their stamps alone
   std::size_t first_ = 0;
   std::vector<std::int64_t> stamps_ns_;
