@@ -23,14 +23,15 @@ Expected<std::unique_ptr<LaboratoryWatch>> LaboratoryWatch::open(bus::Participan
   const AskingPace always_quick{.quick_requests = 1'000'000};
   DYNCAL_TRY(auto asker, ClockAsker::open(participant, own, clock, wake_up, always_quick));
   DYNCAL_TRY(auto meter, LinkMeter::open(participant, own, clock, wake_up));
-  return std::unique_ptr<LaboratoryWatch>(new LaboratoryWatch(
-      participant, own, clock, std::move(wake_up),
-      Readers{std::move(descriptions), std::move(statuses), std::move(services)}, std::move(asker),
-      std::move(meter)));
+  return std::unique_ptr<LaboratoryWatch>(
+      new LaboratoryWatch(participant, own, clock,
+                          Readers{std::move(descriptions), std::move(statuses), std::move(services),
+                                  std::move(wake_up)},
+                          std::move(asker), std::move(meter)));
 }
 
 void LaboratoryWatch::work() {
-  clock_.wait(*wake_up_,
+  clock_.wait(*readers_.wake_up,
               std::min({clock_.now() + max_wait, asker_.next_request(), meter_.next_probe()}));
   const auto feed = [this](const auto& message) { state_.take(message); };
   readers_.descriptions.take(feed);

@@ -34,18 +34,17 @@ private:
     bus::Reader<wire::SourceDescription> descriptions;
     bus::Reader<wire::SourceStatus> statuses;
     bus::Reader<wire::ServiceStatus> services;
+    std::shared_ptr<bus::WakeUp> wake_up; // of all of them
   };
 
   LaboratoryWatch(bus::Participant& participant, ProgramIdentity own, bus::Clock& clock,
-                  std::shared_ptr<bus::WakeUp> wake_up, Readers readers, ClockAsker asker,
-                  LinkMeter meter)
-      : participant_(participant), clock_(clock), wake_up_(std::move(wake_up)),
-        readers_(std::move(readers)), state_(clock, limits), asker_(std::move(asker)),
-        meter_(std::move(meter)), own_(std::move(own)) {}
+                  Readers readers, ClockAsker asker, LinkMeter meter)
+      : participant_(participant), clock_(clock), readers_(std::move(readers)),
+        state_(clock, limits), asker_(std::move(asker)), meter_(std::move(meter)),
+        own_(std::move(own)) {}
 
   bus::Participant& participant_;
   bus::Clock& clock_;
-  std::shared_ptr<bus::WakeUp> wake_up_;
   Readers readers_;
   network::BusState state_;
   ClockAsker asker_;

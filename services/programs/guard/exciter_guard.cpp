@@ -54,15 +54,14 @@ std::string text_of(const OutputSettings& settings) {
 
 Expected<std::unique_ptr<ExciterGuard>>
 ExciterGuard::create(bus::Participant& participant, const ProgramIdentity& own,
-                     const GuardedExciter& exciter, std::chrono::milliseconds unattended_limit,
-                     std::unique_ptr<GuardedOutput> output, DrivenRecord record,
-                     bus::Clock& clock) {
+                     const GuardedExciter& exciter, std::unique_ptr<GuardedOutput> output,
+                     DrivenRecord record, bus::Clock& clock) {
   auto wake_up = std::make_shared<bus::WakeUp>();
   DYNCAL_TRY(auto excitation, participant.reader(bus::topics::excitation, exciter.bench, wake_up));
   DYNCAL_TRY(auto measurement,
              participant.reader(bus::topics::measurement, exciter.bench, wake_up));
   DYNCAL_TRY(auto status, participant.writer(bus::topics::service_status, exciter.bench));
-  ExciterWatch watch(unattended_limit, exciter.planned, record.read(), clock.now());
+  ExciterWatch watch(exciter.planned, record.read(), clock.now());
   if (!watch.run().run.empty()) {
     spdlog::info("bench {}: run {} drove the generator when this guard was last there",
                  exciter.bench, watch.run().run);

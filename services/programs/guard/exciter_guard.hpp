@@ -3,9 +3,9 @@
 //
 // The exciter is driven while the newest Excitation of a run has no end of its window. The
 // conductor repeats it every half second while it has hold of the generator (idl/README.md, "The
-// run protocol"); nothing heard for `unattended_limit` means that nobody attends, whatever else is
-// heard of the run. What is done then, and what the generator is asked for, stands in
-// exciter_watch.hpp; here are the bus, the generator, the record and the log. What the reference
+// run protocol"); nothing heard for ExciterWatch::unattended_limit means that nobody attends,
+// whatever else is heard of the run. What is done then, and what the generator is asked for, stands
+// in exciter_watch.hpp; here are the bus, the generator, the record and the log. What the reference
 // shows of an exciter that goes on although its generator answers that it is off:
 // reference_watch.hpp.
 //
@@ -57,8 +57,8 @@ public:
   // writers do.
   [[nodiscard]] static Expected<std::unique_ptr<ExciterGuard>>
   create(bus::Participant& participant, const ProgramIdentity& own, const GuardedExciter& exciter,
-         std::chrono::milliseconds unattended_limit, std::unique_ptr<GuardedOutput> output,
-         DrivenRecord record, bus::Clock& clock = bus::system_clock());
+         std::unique_ptr<GuardedOutput> output, DrivenRecord record,
+         bus::Clock& clock = bus::system_clock());
 
   // Until `stop` is requested. Calls `turned` at every turn of its loop, which a generator that
   // does not answer holds up.

@@ -29,10 +29,9 @@ bool is_among(const OutputSettings& settings, const std::vector<OutputSettings>&
 
 } // namespace
 
-ExciterWatch::ExciterWatch(std::chrono::milliseconds unattended_limit,
-                           std::vector<OutputSettings> planned, DrivenRun recorded, Instant now)
-    : unattended_limit_(unattended_limit), planned_(std::move(planned)), run_(std::move(recorded)),
-      heard_(now), is_from_record_(!run_.run.empty()), next_question_(now) {
+ExciterWatch::ExciterWatch(std::vector<OutputSettings> planned, DrivenRun recorded, Instant now)
+    : planned_(std::move(planned)), run_(std::move(recorded)), heard_(now),
+      is_from_record_(!run_.run.empty()), next_question_(now) {
   if (is_from_record_ && run_.has_ended) {
     step_to(run_.is_conducted ? State::begins : State::ended, now);
   } else if (is_from_record_) {
@@ -152,7 +151,7 @@ void ExciterWatch::found_on(const OutputReading& reading, Instant now) {
   left_on_.reset();
   on_since_ = on_since_.value_or(now);
   if (state_ == State::silent || state_ == State::begins ||
-      (now - *on_since_ >= unattended_limit_ && now - heard_ >= unattended_limit_)) {
+      (now - *on_since_ >= unattended_limit && now - heard_ >= unattended_limit)) {
     must_be_off_ = true;
     next_attempt_ = now;
   }
@@ -212,11 +211,11 @@ bool ExciterWatch::may_ask(Instant now) const {
   const bool may_connect =
       state_ == State::begins && run_.is_conducted && now - heard_ <= word_limit;
   return state_ != State::idle && now >= next_question_ && !may_connect &&
-         (answers_in_run_ || now - heard_ > unattended_limit_);
+         (answers_in_run_ || now - heard_ > unattended_limit);
 }
 
 ExciterWatch::Action ExciterWatch::due(Instant now) {
-  if (state_ == State::driven && now - heard_ > unattended_limit_) {
+  if (state_ == State::driven && now - heard_ > unattended_limit) {
     const bool was_asked_in_vain = is_from_record_ && failures_ > 0;
     step_to(State::silent, now);
     if (was_asked_in_vain) {

@@ -66,7 +66,8 @@ public:
   enum class State { idle, begins, driven, silent, ended };
   enum class Action { none, ask, switch_off };
 
-  static constexpr std::chrono::seconds interval{1}; // between two questions or attempts
+  static constexpr std::chrono::seconds unattended_limit{2}; // of a driven exciter
+  static constexpr std::chrono::seconds interval{1};         // between two questions or attempts
   // A conductor repeats its Measurement every 2 s.
   static constexpr std::chrono::milliseconds word_limit{2500};
   static constexpr std::chrono::seconds watched_after{120}; // a silence or a run
@@ -74,8 +75,7 @@ public:
   static constexpr std::size_t max_settings = 8;
 
   // `planned`: of the bench file.
-  ExciterWatch(std::chrono::milliseconds unattended_limit, std::vector<OutputSettings> planned,
-               DrivenRun recorded, Instant now);
+  ExciterWatch(std::vector<OutputSettings> planned, DrivenRun recorded, Instant now);
 
   void heard(const ExciterAnnouncement& announcement, Instant now);
   // The Measurement of a run.
@@ -102,7 +102,6 @@ private:
   [[nodiscard]] bool is_of_run(const OutputReading& reading) const;
   [[nodiscard]] bool may_ask(Instant now) const;
 
-  std::chrono::milliseconds unattended_limit_;
   std::vector<OutputSettings> planned_;
   DrivenRun run_;
   State state_ = State::idle;

@@ -1,7 +1,6 @@
 // dyncal-guard BENCH.toml...: runs where the generators of these benches can be reached, and
 // switches an exciter off when the run that drives it has no conductor any more.
 #include <charconv>
-#include <chrono>
 #include <memory>
 #include <thread>
 #include <vector>
@@ -15,8 +14,6 @@
 
 namespace dyncal::inline programs {
 namespace {
-
-constexpr std::chrono::milliseconds unattended_limit{2000};
 
 // The settings of the generator that a bench file plans, and the reference that shows them.
 GuardedExciter exciter_of(const BenchFile& bench) {
@@ -54,7 +51,7 @@ Expected<void> serve(const std::vector<BenchFile>& benches, Daemon& daemon) {
     }
     DYNCAL_TRY(auto guard,
                ExciterGuard::create(
-                   daemon.participant(), daemon.identity(), exciter_of(bench), unattended_limit,
+                   daemon.participant(), daemon.identity(), exciter_of(bench),
                    std::make_unique<GeneratorOutput>(bench.generator.address),
                    DrivenRecord(guard_state_folder(), bench.bench, bench.generator.address)));
     guards.push_back(std::move(guard));

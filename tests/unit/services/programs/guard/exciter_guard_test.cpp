@@ -75,7 +75,7 @@ protected:
     exciter.generator = "192.0.2.7:5025";
     exciter.level_per_volt = 50.0;
     return ExciterGuard::create(
-               bench_side_, own, exciter, 2s, std::make_unique<PlayedGeneratorOutput>(output_),
+               bench_side_, own, exciter, std::make_unique<PlayedGeneratorOutput>(output_),
                DrivenRecord(folder_.path(), exciter.bench, exciter.generator), clock_)
         .value();
   }

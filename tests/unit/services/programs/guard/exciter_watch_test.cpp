@@ -21,7 +21,7 @@ constexpr OutputSettings of_person{100.0, 0.8};
 class ExciterWatchTest : public testing::Test {
 protected:
   ExciterWatch::Instant now_{1h};
-  ExciterWatch watch_{2s, {of_step, of_next_step}, {}, now_};
+  ExciterWatch watch_{{of_step, of_next_step}, {}, now_};
   bool is_on_ = false;
   OutputSettings settings_ = of_step;
   bool answers_ = true;
@@ -30,7 +30,7 @@ protected:
   int attempts_ = 0;
 
   void restart(const DrivenRun& recorded = {}) {
-    watch_ = ExciterWatch(2s, {of_step, of_next_step}, recorded, now_);
+    watch_ = ExciterWatch({of_step, of_next_step}, recorded, now_);
   }
   void say(bool is_driven, const std::string& run = "r1") {
     watch_.heard({run, is_driven, {settings_.frequency_hz, settings_.voltage_vpp}}, now_);
