@@ -11,11 +11,7 @@ set -euo pipefail
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 . "$top/tests/release_root.sh"
 
-reason=$(why_no_root)
-if [[ $reason ]]; then
-  echo "skipped: $reason"
-  exit 77
-fi
+skip_without_root
 codename=${1:-trixie}
 if [[ $# -eq 0 ]] && grep -qsx 'VERSION_CODENAME=trixie' /etc/os-release; then
   codename=bookworm

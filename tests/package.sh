@@ -20,11 +20,7 @@ fi
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 . "$top/tests/release_root.sh"
 
-reason=$(why_no_root)
-if [[ $reason ]]; then
-  echo "skipped: $reason"
-  exit 77
-fi
+skip_without_root
 here=$(. /etc/os-release && echo "$VERSION_CODENAME")
 codename=${1:-$here}
 folder=${2:-}

@@ -44,7 +44,7 @@ enter_root() {
   unshare --mount --pid $network --fork --kill-child bash -c '
     set -e
     root=$1; network=$2; shift 2
-    [[ -z $network ]] || ip link set lo up
+    [[ -z $network ]] || ip link set lo up multicast on
     mount -t proc proc "$root/proc"
     mount --bind /dev "$root/dev"
     exec chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 \
@@ -52,7 +52,16 @@ enter_root() {
   ' enter_root "$root" "$network" "$@"
 }
 
-# why_no_root: one sentence if none can be made here, else nothing.
+# Ends the test with status 77 and one sentence if no such system can be made here.
+skip_without_root() {
+  local reason
+  reason=$(why_no_root)
+  if [[ $reason ]]; then
+    echo "skipped: $reason"
+    exit 77
+  fi
+}
+
 why_no_root() {
   if [[ $EUID -ne 0 ]]; then
     echo "needs root"

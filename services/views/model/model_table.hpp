@@ -1,5 +1,5 @@
 // Models as people read them on the terminal: which kinds were tried, the chosen one with its
-// parameters, the filter, and warnings last. Digits follow u (rounding.hpp). Any thread.
+// parameters, the filter, and warnings last. Digits follow U (rounding.hpp). Any thread.
 #pragma once
 
 #include <string>

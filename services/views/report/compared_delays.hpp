@@ -2,8 +2,8 @@
 // which are known far better than a single phase.
 //
 // Left out are channels whose points are not the same in both, for a delay is that of its
-// frequencies, and those where the phases lie on no line, or on that of another delay as well.
-// Plain function, any thread.
+// frequencies, and those where the phases lie on no line, or on that of another delay as well, and
+// those of which neither U is above 0. Plain function, any thread.
 #pragma once
 
 #include <string>

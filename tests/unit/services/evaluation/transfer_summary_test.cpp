@@ -3,16 +3,26 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <utility>
 
 #include <fmt/core.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "services/evaluation/closures/closures.hpp"
 
 namespace dyncal::inline evaluation {
 namespace {
 
-// Three sweeps of four frequencies, each as late as given beside 2 ms; noise 1e-4 rad.
-analysis::GroupDelay group_delay_of(const std::array<double, 3>& late_s) {
-  const Recipe recipe;
+constexpr double pi = std::numbers::pi;
+using ::testing::Contains;
+using ::testing::Not;
+
+// Three sweeps of four frequencies, each as late as given beside 2 ms, all turned by `turn_rad` and
+// beside the line by `beside_rad` at 40 Hz; noise 1e-4 rad.
+TransferSummary summary_of(const Recipe& recipe, const std::array<double, 3>& late_s,
+                           double turn_rad = 0.0, double beside_rad = 0.0) {
   TransferSummary summary(recipe);
   std::uint32_t step = 0;
   for (std::uint32_t sweep = 1; sweep <= late_s.size(); ++sweep) {
@@ -25,15 +35,22 @@ analysis::GroupDelay group_delay_of(const std::array<double, 3>& late_s) {
       result.frequency_hz = hz;
       result.frequency_text_hz = fmt::format("{}", hz);
       result.magnitude = 1.0;
-      result.phase_rad = std::remainder(-2.0 * std::numbers::pi * hz * (2e-3 + late_s[sweep - 1]),
-                                        2.0 * std::numbers::pi);
+      result.u_magnitude = result.u_phase_rad = 1e-4;
+      result.phase_rad = std::remainder(-2.0 * pi * hz * (2e-3 + late_s[sweep - 1]) + turn_rad +
+                                            (hz == 40.0 ? beside_rad : 0.0),
+                                        2.0 * pi);
       result.budget = {{.kind = analysis::ContributionKind::fit_noise,
                         .u_magnitude_rel = 1e-4,
                         .u_phase_rad = 1e-4}};
       summary.add(result);
     }
   }
-  const auto functions = summary.transfer_functions();
+  return summary;
+}
+
+analysis::GroupDelay group_delay_of(const std::array<double, 3>& late_s) {
+  const Recipe recipe;
+  const auto functions = summary_of(recipe, late_s).transfer_functions();
   EXPECT_EQ(functions.size(), 1U);
   EXPECT_TRUE(functions.front().group_delay) << functions.front().group_delay_problem;
   return functions.front().group_delay.value_or(analysis::GroupDelay{});
@@ -51,6 +68,46 @@ TEST(TransferSummary, TakesADelayThatASweepSharesIntoTheGroupDelay) {
   EXPECT_GE(late.of_delay.k, analysis::coverage_factor(late.of_delay.degrees_of_freedom));
   EXPECT_LT(late.of_delay.k, analysis::coverage_factor(2.0));
   EXPECT_GT(same.of_delay.degrees_of_freedom, 6.0);
+}
+
+TransferFunction with_closures(DutPhase stated, double turn_rad, double beside_rad) {
+  Recipe recipe;
+  recipe.dut_phase = stated;
+  recipe.frequency_search_rel = 0.0; // results here have no fits
+  const TransferSummary summary = summary_of(recipe, {0.0, 0.0, 0.0}, turn_rad, beside_rad);
+  auto functions = summary.transfer_functions();
+  (void)add_closures({recipe, "", [](const std::string&) { return 0.0; }}, summary.results(),
+                     functions);
+  return functions.at(0);
+}
+
+TEST(TransferSummary, IsInvertedWhereTheBenchFileDoesNotSayThatItIs) {
+  const auto flags = [](DutPhase stated, double turn_rad) {
+    return names_of(with_closures(stated, turn_rad, 0.0).flags);
+  };
+  EXPECT_THAT(flags(DutPhase::delay, pi), Contains("polarity_inverted"));
+  EXPECT_THAT(flags(DutPhase::delay_from_0, pi), Contains("polarity_inverted"));
+  for (const auto& [stated, turn_rad] : {std::pair(DutPhase::delay_from_180, pi),
+                                         {DutPhase::any, pi},
+                                         {DutPhase::delay, 0.0},
+                                         {DutPhase::delay_from_0, 0.0}}) {
+    EXPECT_THAT(flags(stated, turn_rad), Not(Contains("polarity_inverted"))) << turn_rad;
+  }
+}
+
+TEST(TransferSummary, StatesADelayAndItsFlagWhereThePhaseIsThatOfOne) {
+  const TransferFunction line = with_closures(DutPhase::delay, 0.0, 0.0);
+  ASSERT_TRUE(line.group_delay) << line.group_delay_problem;
+  EXPECT_THAT(names_of(line.flags), Not(Contains("group_delay_not_constant")));
+  const TransferFunction bent = with_closures(DutPhase::delay, 0.0, 0.05);
+  ASSERT_TRUE(bent.group_delay) << bent.group_delay_problem;
+  EXPECT_THAT(names_of(bent.flags), Contains("group_delay_not_constant"));
+  EXPECT_THAT(names_of(bent.flags), Contains("closure_open"));
+  const TransferFunction other = with_closures(DutPhase::any, 0.0, 0.05);
+  EXPECT_FALSE(other.group_delay);
+  EXPECT_NE(other.group_delay_problem.find("not that of a delay"), std::string::npos);
+  EXPECT_THAT(names_of(other.flags), Not(Contains("group_delay_not_constant")));
+  EXPECT_NEAR(other.points.back().unwrapped_phase_rad, -2.0 * pi * 125.0 * 2e-3, 1e-9);
 }
 
 // One sweep at 10 m/s^2, and at 80 Hz other levels, at which the sensor is 1 % off a level and
