@@ -50,6 +50,7 @@ test_packages=(
   man-db groff-base zsh fish                   # manual pages, completion of the command line
   weasyprint poppler-utils                     # reports as PDF, and their text
   chromium libjs-dygraphs                      # the page in a browser
+  nginx-light                                  # the page behind a proxy
   user-mode-linux busybox-static can-utils     # a kernel with CAN where this one has none
 )
 package_packages=(debhelper dpkg-dev fakeroot lintian)

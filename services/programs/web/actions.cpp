@@ -104,38 +104,9 @@ std::uint64_t drawn_id() {
 } // namespace
 
 Actions::Actions(ActionOptions options, bus::Participant& participant, bus::Clock& clock,
-                 StateCache& cache, RequestRouter& router)
+                 StateCache& cache, RequestRouter& router, Permission& permission)
     : options_(std::move(options)), participant_(participant), clock_(clock), cache_(cache),
-      router_(router) {
-  if (options_.token) {
-    token_.emplace(*options_.token, clock);
-  }
-}
-
-bool Actions::is_permitted(const httplib::Request& request, httplib::Response& response,
-                           TokenUse use) {
-  if (!token_) {
-    router_.refuse(Refusal::not_permitted, 403,
-                   "this daemon takes no actions; it was started without --token-file", request,
-                   response);
-    return false;
-  }
-  switch (token_->check(request.get_header_value("Authorization"), request.remote_addr, use)) {
-  case TokenAnswer::right:
-    return true;
-  case TokenAnswer::wrong:
-    router_.refuse(Refusal::wrong_token, 401, "the token is wrong", request, response);
-    response.set_header("WWW-Authenticate", "Bearer");
-    return false;
-  case TokenAnswer::too_many:
-    break;
-  }
-  router_.refuse(Refusal::too_many_tokens, 429,
-                 "too many wrong tokens from this address; try again in a minute", request,
-                 response);
-  response.set_header("Retry-After", "60");
-  return false;
-}
+      router_(router), permission_(permission) {}
 
 bool Actions::post(const httplib::Request& request, httplib::Response& response) {
   const auto address = bench_address(request.path);
@@ -146,15 +117,18 @@ bool Actions::post(const httplib::Request& request, httplib::Response& response)
   const Json body = Json::parse(request.body, nullptr, false);
   const std::string word = text_of(body, "command");
   const bool stops = is_command && kind_of(word) == wire::COMMAND_ABORT;
-  if (!is_permitted(request, response, stops ? TokenUse::stops_the_exciter : TokenUse::ordinary)) {
+  const auto actor = permission_.actor_of(request, response,
+                                          stops ? TokenUse::stops_the_exciter : TokenUse::ordinary);
+  if (!actor) {
     return true;
   }
+  const std::string by = actor->empty() ? "" : *actor + ", ";
   if (is_command) {
-    command(address->bench, body, request, response);
+    command(address->bench, body, by + options_.sender, request, response);
   } else {
     start_run(text_of(body, "file"), response);
   }
-  spdlog::info("{} of {}: {} {}", request.path, request.remote_addr, response.status,
+  spdlog::info("{} of {}{}: {} {}", request.path, by, request.remote_addr, response.status,
                response.body);
   return true;
 }
@@ -163,14 +137,14 @@ bool Actions::get(const httplib::Request& request, httplib::Response& response) 
   if (request.path != "/api/bench-files") {
     return false;
   }
-  if (is_permitted(request, response)) {
+  if (permission_.actor_of(request, response)) {
     list_bench_files(response);
   }
   return true;
 }
 
-void Actions::command(const std::string& bench, const Json& body, const httplib::Request& request,
-                      httplib::Response& response) {
+void Actions::command(const std::string& bench, const Json& body, const std::string& sender,
+                      const httplib::Request& request, httplib::Response& response) {
   const std::string word = text_of(body, "command");
   const auto kind = kind_of(word);
   const Json step = body.is_object() ? body.value("step", Json()) : Json();
@@ -189,7 +163,7 @@ void Actions::command(const std::string& bench, const Json& body, const httplib:
   message.target(target);
   message.kind(*kind);
   message.run(run.get<std::string>());
-  message.sender(options_.sender);
+  message.sender(sender);
   message.step(has_step ? step.get<std::uint32_t>() : 0);
   message.id(drawn_id());
   send(message, word, response);

@@ -1,11 +1,12 @@
-// What visitors with the token may do: command the conductor of a run, and start a run.
+// What visitors with a token that operates may do: command the conductor of a run, and start a run.
 //
 // A command is repeated until the conductor has answered it, for `answer_limit` at most, and its
 // answer is the visitor's. A step that is to be excited once more may have to wait for the planned
 // ones, longer than any visitor. A run is a `dyncal run` of a
 // bench file of one folder, one at a time of a file; what it prints is in a file beside the runs.
-// It is asked to end when the daemon ends. Every request is logged with its outcome. Any thread;
-// one command at a time, but for an abort, which waits for none.
+// It is asked to end when the daemon ends. Every request is logged with who asked and its outcome;
+// his name goes with a command, too. Any thread; one command at a time, but for an abort, which
+// waits for none.
 #pragma once
 
 #include <filesystem>
@@ -21,14 +22,13 @@
 #include "services/bus/clock.hpp"
 #include "services/daemon/program/child_process.hpp"
 #include "services/daemon/program/program.hpp"
-#include "services/programs/web/access_token.hpp"
+#include "services/programs/web/permission.hpp"
 #include "services/programs/web/request_router.hpp"
 #include "services/programs/web/state_cache.hpp"
 
 namespace dyncal::inline programs::web {
 
 struct ActionOptions {
-  std::optional<std::string> token; // nothing: no actions at all
   std::filesystem::path benches_folder;
   std::filesystem::path runs_folder;
   NetworkOptions network;
@@ -42,18 +42,16 @@ public:
 
   // All outlive the object.
   Actions(ActionOptions options, bus::Participant& participant, bus::Clock& clock,
-          StateCache& cache, RequestRouter& router);
+          StateCache& cache, RequestRouter& router, Permission& permission);
 
-  [[nodiscard]] bool may_act() const { return token_.has_value(); }
   // False: the address is another's.
   [[nodiscard]] bool post(const httplib::Request& request, httplib::Response& response);
   [[nodiscard]] bool get(const httplib::Request& request, httplib::Response& response);
 
 private:
-  [[nodiscard]] bool is_permitted(const httplib::Request& request, httplib::Response& response,
-                                  TokenUse use = TokenUse::ordinary);
   void command(const std::string& bench, const nlohmann::ordered_json& body,
-               const httplib::Request& request, httplib::Response& response);
+               const std::string& sender, const httplib::Request& request,
+               httplib::Response& response);
   void send(const wire::Command& command, const std::string& word, httplib::Response& response);
   // Returns why the conductor does not obey, "" where it does; nothing: it has not answered.
   [[nodiscard]] std::optional<std::string> repeat_until_answered(const wire::Command& command);
@@ -61,11 +59,11 @@ private:
   void list_bench_files(httplib::Response& response) const;
 
   ActionOptions options_;
-  std::optional<AccessToken> token_;
   bus::Participant& participant_;
   bus::Clock& clock_;
   StateCache& cache_;
   RequestRouter& router_;
+  Permission& permission_;
   std::mutex mutex_;
   std::map<std::string, ChildProcess> runs_; // by bench file
 };

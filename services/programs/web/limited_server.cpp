@@ -29,11 +29,6 @@ constexpr std::chrono::milliseconds longest_wait = 200ms;
 constexpr std::string_view continue_text = "HTTP/1.1 100 Continue\r\n\r\n";
 constexpr HeadRefusal too_slow{408, Refusal::slow, "the request did not come in time"};
 
-// Short, into a buffer that is empty unless the visitor does not read: then he is not told.
-void tell(const drivers::FileDescriptor& socket, std::string_view text) {
-  (void)::send(socket.number(), text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
-}
-
 // Without a reason phrase, which nobody has to read (RFC 9112, 4); the body has a sentence.
 std::string text_of(const HeadRefusal& refusal) {
   httplib::Response response;
@@ -46,8 +41,9 @@ std::string text_of(const HeadRefusal& refusal) {
 
 } // namespace
 
-LimitedServer::LimitedServer(Refusals& refusals, OnRefused on_refused)
-    : refusals_(refusals), on_refused_(std::move(on_refused)),
+LimitedServer::LimitedServer(Refusals& refusals, OnRefused on_refused,
+                             std::optional<TlsCertificate> certificate)
+    : refusals_(refusals), on_refused_(std::move(on_refused)), certificate_(std::move(certificate)),
       wake_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
   set_payload_max_length(max_body_bytes);
   set_socket_options([](socket_t socket) {
@@ -183,11 +179,14 @@ void LimitedServer::accept_all(Connections& waiting) {
     }
     const int yes = 1;
     setsockopt(socket.number(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof(yes));
+    VisitorSocket visitor(std::move(socket), certificate_ ? &*certificate_ : nullptr);
+    if (!visitor.is_open()) {
+      continue;
+    }
     ++connections_;
-    waiting.push_back({.socket = std::move(socket),
-                       .bytes = {},
-                       .limit = Clock::now() + idle_limit,
-                       .request = {}});
+    const Clock::duration limit = certificate_ ? request_limit : idle_limit;
+    waiting.push_back(
+        {.socket = std::move(visitor), .bytes = {}, .limit = Clock::now() + limit, .request = {}});
   }
 }
 
@@ -222,9 +221,9 @@ void LimitedServer::take_returned(Connections& waiting) {
 
 void LimitedServer::read_all(Connections& waiting, const std::vector<short>& events) {
   auto one = waiting.begin();
-  for (std::size_t i = 0; i < events.size(); ++i) {
+  for (const short event : events) {
     const auto next = std::next(one);
-    place(waiting, one, events[i] == 0 ? Step::wait : read(*one));
+    place(waiting, one, event == 0 ? Step::wait : read(*one));
     one = next;
   }
 }
@@ -233,9 +232,9 @@ LimitedServer::Step LimitedServer::read(Connection& connection) {
   std::array<char, read_bytes> part{};
   bool has_ended = false;
   while (connection.bytes.size() < max_received_bytes) {
-    const ssize_t count = recv(connection.socket.number(), part.data(), part.size(), MSG_DONTWAIT);
+    const ssize_t count = connection.socket.receive(part.data(), part.size());
     if (count <= 0) {
-      has_ended = count == 0 || (errno != EAGAIN && errno != EINTR);
+      has_ended = count == VisitorSocket::has_ended;
       break;
     }
     if (connection.bytes.empty() && !connection.is_refused) {
@@ -264,7 +263,7 @@ LimitedServer::Step LimitedServer::judge(Connection& connection) {
   const std::size_t whole = head->bytes + head->body_bytes;
   if (connection.bytes.size() < whole) {
     if (head->wants_continue && !connection.is_continued) {
-      tell(connection.socket, continue_text);
+      connection.socket.tell(continue_text);
       connection.is_continued = true;
     }
     return Step::wait;
@@ -279,8 +278,8 @@ LimitedServer::Step LimitedServer::judge(Connection& connection) {
 LimitedServer::Step LimitedServer::refuse(Connection& connection, const HeadRefusal& refusal) {
   refusals_.count(refusal.reason);
   on_refused_(refusal, visitor_of(connection.socket.number()));
-  tell(connection.socket, text_of(refusal));
-  shutdown(connection.socket.number(), SHUT_WR);
+  connection.socket.tell(text_of(refusal));
+  connection.socket.end_sending();
   connection.is_refused = true;
   connection.bytes.clear();
   connection.limit = Clock::now() + idle_limit;
@@ -302,7 +301,7 @@ void LimitedServer::answer_all() {
       count_crowd();
     }
     if (!answer(mine.front())) {
-      shutdown(mine.front().socket.number(), SHUT_RDWR);
+      mine.front().socket.end_sending();
       --connections_;
       continue;
     }
@@ -316,7 +315,7 @@ void LimitedServer::answer_all() {
 
 // False: the connection is closed.
 bool LimitedServer::answer(Connection& connection) {
-  LimitedStream stream(connection.socket.number(), std::move(connection.request), ending_, crowd_);
+  LimitedStream stream(connection.socket, std::move(connection.request), ending_, crowd_);
   connection.request.clear();
   ++connection.requests;
   bool is_closed = false;

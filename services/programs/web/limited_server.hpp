@@ -11,10 +11,10 @@
 //   beyond `max_connections` the one that is nearest to its limit without a request is closed; if
 //   all have requests that are being answered, newcomers wait in the kernel's queue
 //
-// What is refused here is counted and told to `on_refused`. The library's own kernel queue holds
-// five: anyone who came sixth in the same instant waited for seconds until his computer asked
-// again. It also shares its port with any other server that wants it; this one does not. Threads:
-// as httplib::Server.
+// Over TLS, hands are shaken within `request_limit`, too. What is refused here is counted and told
+// to `on_refused`. The library's own kernel queue holds five: anyone who came sixth in the same
+// instant waited for seconds until his computer asked again. It also shares its port with any other
+// server that wants it; this one does not. Threads: as httplib::Server.
 #pragma once
 
 #include <algorithm>
@@ -24,6 +24,7 @@
 #include <functional>
 #include <list>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -33,6 +34,7 @@
 #include "drivers/link/file_descriptor.hpp"
 #include "services/programs/web/refusals.hpp"
 #include "services/programs/web/request_head.hpp"
+#include "services/programs/web/visitor_socket.hpp"
 
 namespace dyncal::inline programs::web {
 
@@ -47,7 +49,9 @@ public:
   static constexpr int max_waiting = 256;             // connections in the kernel's queue
   using OnRefused = std::function<void(const HeadRefusal&, const std::string& visitor)>;
 
-  LimitedServer(Refusals& refusals, OnRefused on_refused);
+  // `certificate`: nothing for plain text.
+  LimitedServer(Refusals& refusals, OnRefused on_refused,
+                std::optional<TlsCertificate> certificate = {});
   ~LimitedServer() override;
   LimitedServer(const LimitedServer&) = delete;
   LimitedServer& operator=(const LimitedServer&) = delete;
@@ -63,7 +67,7 @@ public:
 
 private:
   struct Connection {
-    drivers::FileDescriptor socket;
+    VisitorSocket socket;
     std::string bytes; // that have come, and are not answered yet
     Clock::time_point limit{};
     int requests = 0;
@@ -94,6 +98,7 @@ private:
 
   Refusals& refusals_;
   OnRefused on_refused_;
+  std::optional<TlsCertificate> certificate_;
   drivers::FileDescriptor listening_;
   drivers::FileDescriptor wake_;
   std::atomic<bool> ending_ = false;

@@ -39,7 +39,7 @@ void address_of(socket_t socket, int (*ask)(int, sockaddr*, socklen_t*), std::st
 
 } // namespace
 
-LimitedStream::LimitedStream(socket_t socket, std::string request,
+LimitedStream::LimitedStream(VisitorSocket& socket, std::string request,
                              const std::atomic<bool>& stopping,
                              const std::atomic<std::size_t>& waiting)
     : socket_(socket), request_(std::move(request)), stopping_(stopping), waiting_(waiting) {}
@@ -47,7 +47,7 @@ LimitedStream::LimitedStream(socket_t socket, std::string request,
 bool LimitedStream::is_writable() const {
   const auto began = Clock::now();
   while (!stopping_) {
-    pollfd one{.fd = socket_, .events = POLLOUT, .revents = 0};
+    pollfd one{.fd = socket_.number(), .events = POLLOUT, .revents = 0};
     if (poll(&one, 1, static_cast<int>(look_again.count())) > 0) {
       return (one.revents & (POLLERR | POLLHUP)) == 0;
     }
@@ -71,18 +71,19 @@ ssize_t LimitedStream::read(char* data, size_t size) {
 }
 
 ssize_t LimitedStream::write(const char* data, size_t size) {
-  if (!is_writable()) {
-    return -1;
+  ssize_t count = VisitorSocket::nothing_yet;
+  while (count == VisitorSocket::nothing_yet && is_writable()) {
+    count = socket_.send(data, size);
   }
-  return send(socket_, data, size, MSG_NOSIGNAL | MSG_DONTWAIT);
+  return count > 0 ? count : -1;
 }
 
 void LimitedStream::get_remote_ip_and_port(std::string& ip, int& port) const {
-  address_of(socket_, getpeername, ip, port);
+  address_of(socket_.number(), getpeername, ip, port);
 }
 
 void LimitedStream::get_local_ip_and_port(std::string& ip, int& port) const {
-  address_of(socket_, getsockname, ip, port);
+  address_of(socket_.number(), getsockname, ip, port);
 }
 
 std::string visitor_of(socket_t socket) {

@@ -13,6 +13,8 @@
 
 #include <httplib.h>
 
+#include "services/programs/web/visitor_socket.hpp"
+
 namespace dyncal::inline programs::web {
 
 class LimitedStream final : public httplib::Stream {
@@ -22,9 +24,9 @@ public:
   // 400 who take nothing are through 64 threads in 1.4 s.
   static constexpr std::chrono::milliseconds crowded_write_limit{200};
 
-  // `stopping` and `waiting` (how many wait for a thread) outlive the object, which does not close
-  // the socket.
-  LimitedStream(socket_t socket, std::string request, const std::atomic<bool>& stopping,
+  // `stopping`, `waiting` (how many wait for a thread) and the socket outlive the object, which
+  // does not close it.
+  LimitedStream(VisitorSocket& socket, std::string request, const std::atomic<bool>& stopping,
                 const std::atomic<std::size_t>& waiting);
 
   [[nodiscard]] bool was_slow() const { return was_slow_; }
@@ -36,10 +38,10 @@ public:
   using httplib::Stream::write;
   void get_remote_ip_and_port(std::string& ip, int& port) const override;
   void get_local_ip_and_port(std::string& ip, int& port) const override;
-  [[nodiscard]] socket_t socket() const override { return socket_; }
+  [[nodiscard]] socket_t socket() const override { return socket_.number(); }
 
 private:
-  socket_t socket_;
+  VisitorSocket& socket_;
   std::string request_;
   std::size_t taken_ = 0;
   const std::atomic<bool>& stopping_;

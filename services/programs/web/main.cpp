@@ -23,6 +23,8 @@ constexpr int malloc_arenas = 2;
 struct WebProgram {
   std::string listen = "127.0.0.1:8080";
   web::WebOptions web;
+  std::string tls_certificate;
+  std::string tls_key;
 };
 
 // Where the guide is installed beside the program; empty if it is not.
@@ -33,7 +35,14 @@ std::string installed_guide() {
 
 void add_options(CLI::App& app, WebProgram& program) {
   add_default(app, "--listen", program.listen,
-              "where the page is served; other than loopback: in networks that you trust");
+              "where the page is served; other than loopback: in networks that you trust, or "
+              "over TLS");
+  app.add_option(
+         "--tls-certificate", program.tls_certificate,
+         "certificate (PEM, with those between it and the authority) to serve https:// with")
+      ->envname("DYNCAL_TLS_CERTIFICATE");
+  app.add_option("--tls-key", program.tls_key, "its key (PEM), which others cannot read")
+      ->envname("DYNCAL_TLS_KEY");
   app.add_option("--own-name", program.web.door.own_names,
                  "name of this computer that browsers may use (repeatable; its host name, "
                  "localhost and addresses are known)");
@@ -44,7 +53,9 @@ void add_options(CLI::App& app, WebProgram& program) {
                  "(default: dyncal.sqlite in the folder of all runs)")
       ->envname("DYNCAL_STORE");
   app.add_option("--token-file", program.web.token_file,
-                 "file with the secret that actions need; without one there are no actions");
+                 "file with the secrets that visitors need to act, or to watch; without one "
+                 "everybody watches, and nobody acts")
+      ->envname("DYNCAL_TOKEN_FILE");
   app.add_option("--benches", program.web.benches_folder,
                  "folder of bench files that a run may be started with (needs --token-file)");
   app.add_option("--guide", program.web.door.guide_folder,
@@ -60,6 +71,14 @@ Expected<void> serve(WebProgram& program, Daemon& daemon) {
                 "--listen " + program.listen + " is not ADDRESS:PORT, such as 127.0.0.1:8080");
   }
   program.web.door.listen = *listen;
+  if (program.tls_certificate.empty() != program.tls_key.empty()) {
+    return fail(ErrorCode::bad_argument,
+                "--tls-certificate and --tls-key belong together: one of them is missing");
+  }
+  if (!program.tls_certificate.empty()) {
+    DYNCAL_TRY(program.web.door.certificate,
+               web::TlsCertificate::read(program.tls_certificate, program.tls_key));
+  }
   program.web.door.own_names.push_back(bus::host_name());
   if (program.web.door.guide_folder.empty()) {
     program.web.door.guide_folder = installed_guide();

@@ -62,9 +62,12 @@ void answer_error(int status, const std::string& code, const std::string& messag
 
 RequestRouter::RequestRouter(DoorOptions options, bus::Clock& clock)
     : options_(std::move(options)), clock_(clock),
-      server_(refusals_, [this](const HeadRefusal& refusal, const std::string& visitor) {
-        log_refusal(refusal.reason, fmt::format("a request ({})", refusal.message), visitor);
-      }) {
+      server_(
+          refusals_,
+          [this](const HeadRefusal& refusal, const std::string& visitor) {
+            log_refusal(refusal.reason, fmt::format("a request ({})", refusal.message), visitor);
+          },
+          options_.certificate) {
   set_up();
 }
 
@@ -121,6 +124,11 @@ Expected<void> RequestRouter::start() {
   return {};
 }
 
+std::string RequestRouter::address() const {
+  const drivers::Address at{options_.listen.host, static_cast<std::uint16_t>(port_)};
+  return fmt::format("{}://{}/", options_.certificate ? "https" : "http", at.text());
+}
+
 bool RequestRouter::wait_until(std::chrono::steady_clock::time_point time) {
   std::unique_lock lock(end_mutex_);
   return !end_.wait_until(lock, time, [this] { return server_.is_ending(); });
@@ -172,7 +180,10 @@ Outcome RequestRouter::check(const httplib::Request& request, httplib::Response&
   if (leads_out(request.path)) {
     return refused(Refusal::not_found, 404, "there is no such address");
   }
-  return check_method(request, response);
+  const auto refuses = [&](const Handler& handler) { return handler(request, response); };
+  return std::any_of(request_handlers_.begin(), request_handlers_.end(), refuses)
+             ? Outcome::Handled
+             : check_method(request, response);
 }
 
 Outcome RequestRouter::check_method(const httplib::Request& request, httplib::Response& response) {

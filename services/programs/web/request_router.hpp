@@ -11,6 +11,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,6 +24,7 @@
 #include "services/bus/clock.hpp"
 #include "services/programs/web/limited_server.hpp"
 #include "services/programs/web/refusals.hpp"
+#include "services/programs/web/tls_certificate.hpp"
 
 namespace dyncal::inline programs::web {
 
@@ -35,7 +37,8 @@ struct DoorOptions {
   drivers::Address listen{"127.0.0.1", 8080}; // port 0: any free one
   std::vector<std::string> own_names;         // of this computer, for Host
   std::string javascript_folder = "/usr/share/javascript";
-  std::string guide_folder; // empty: no guide
+  std::string guide_folder{};                  // empty: no guide
+  std::optional<TlsCertificate> certificate{}; // nothing: plain text
 };
 
 class RequestRouter {
@@ -50,7 +53,8 @@ public:
   RequestRouter(const RequestRouter&) = delete;
   RequestRouter& operator=(const RequestRouter&) = delete;
 
-  // Before start().
+  // Before start(). Of each request, before all others: true if it is refused, and answered.
+  void on_request(Handler handler) { request_handlers_.push_back(std::move(handler)); }
   void on_get(Handler handler) { get_handlers_.push_back(std::move(handler)); }
   void on_post(Handler handler) { post_handlers_.push_back(std::move(handler)); }
   // Listens, in threads of its own. Fails (network) when the address cannot be listened at.
@@ -58,6 +62,7 @@ public:
   void stop();
 
   [[nodiscard]] int port() const { return port_; }
+  [[nodiscard]] std::string address() const; // "https://192.0.2.7:8443/"
   [[nodiscard]] std::uint64_t requests() const { return server_.requests(); }
   [[nodiscard]] const Refusals& refusals() const { return refusals_; }
   // Returns false at once if the router is being closed.
@@ -85,6 +90,7 @@ private:
   bus::Clock& clock_;
   Refusals refusals_;
   LimitedServer server_;
+  std::vector<Handler> request_handlers_;
   std::vector<Handler> get_handlers_;
   std::vector<Handler> post_handlers_;
   std::mutex end_mutex_;

@@ -6,11 +6,11 @@
 #include "services/daemon/program/daemon.hpp"
 #include "services/daemon/supervision/supervisor.hpp"
 #include "services/network/bus_readers.hpp"
-#include "services/programs/web/access_token.hpp"
 #include "services/programs/web/actions.hpp"
 #include "services/programs/web/event_stream.hpp"
 #include "services/programs/web/history_answers.hpp"
 #include "services/programs/web/laboratory_answers.hpp"
+#include "services/programs/web/permission.hpp"
 #include "services/programs/web/run_files.hpp"
 #include "services/programs/web/signal_answers.hpp"
 #include "services/programs/web/state_cache.hpp"
@@ -26,17 +26,18 @@ constexpr std::chrono::milliseconds max_wait{100};
 } // namespace
 
 struct WebService::Parts {
-  Parts(Daemon& own, const WebOptions& web, ActionOptions action_options)
+  Parts(Daemon& own, const WebOptions& web, ActionOptions action_options,
+        const std::vector<TokenHolder>& tokens)
       : daemon(own), options(web),
         cache(clock, [this](nlohmann::ordered_json& json) { add_daemon(json); }),
-        files(web.runs_folder), router(web.door, clock), answers(cache, files),
-        tap(participant, clock), signals(cache, tap, clock),
+        files(web.runs_folder), router(web.door, clock), permission(tokens, clock, router),
+        answers(cache, files), tap(participant, clock), signals(cache, tap, clock),
         events(cache, answers, router,
                [this](const std::string& bench, const httplib::Request& request) {
                  return signals.signal(bench, request);
                }),
         history(store_of(web)),
-        actions(std::move(action_options), participant, clock, cache, router) {}
+        actions(std::move(action_options), participant, clock, cache, router, permission) {}
 
   void add_daemon(nlohmann::ordered_json& json) const {
     json["daemon"] = {{"host", identity.host},
@@ -44,7 +45,7 @@ struct WebService::Parts {
                       {"vendor", identity.dds},
                       {"samples_missed", std::to_string(tap.missed())},
                       {"visitors", events.listeners()}};
-    json["may_act"] = actions.may_act();
+    json["may_act"] = permission.may_act();
     json["has_guide"] = !options.door.guide_folder.empty();
   }
   static std::string store_of(const WebOptions& web) {
@@ -64,6 +65,7 @@ struct WebService::Parts {
   StateCache cache;
   RunFiles files;
   RequestRouter router;
+  Permission permission;
   LaboratoryAnswers answers;
   SignalTap tap;
   SignalAnswers signals;
@@ -79,6 +81,9 @@ void WebService::Parts::add_answers() {
       return answers_of.answer(request, response);
     };
   };
+  router.on_request([this](const auto& request, auto& response) {
+    return permission.refuses_to_show(request, response);
+  });
   router.on_get(ask(answers));
   router.on_get(ask(signals));
   router.on_get(ask(events));
@@ -113,15 +118,15 @@ WebService::~WebService() = default;
 Expected<std::unique_ptr<WebService>> WebService::create(Daemon& daemon,
                                                          const WebOptions& options) {
   DYNCAL_TRY(daemon.join());
-  ActionOptions actions{.token = {},
-                        .benches_folder = options.benches_folder,
+  ActionOptions actions{.benches_folder = options.benches_folder,
                         .runs_folder = options.runs_folder,
                         .network = daemon.network,
                         .sender = service_name(daemon.identity())};
+  std::vector<TokenHolder> tokens;
   if (!options.token_file.empty()) {
-    DYNCAL_TRY(actions.token, read_token(options.token_file));
+    DYNCAL_TRY(tokens, read_tokens(options.token_file));
   }
-  auto parts = std::make_unique<Parts>(daemon, options, std::move(actions));
+  auto parts = std::make_unique<Parts>(daemon, options, std::move(actions), tokens);
   DYNCAL_TRY(auto readers,
              network::BusReaders::open(parts->participant, all_benches, parts->identity,
                                        parts->clock, parts->wake_up));
@@ -138,12 +143,10 @@ Expected<void> WebService::serve() {
     spdlog::warn("{}/dygraphs is missing: the page shows no charts (Debian: libjs-dygraphs)",
                  parts.options.door.javascript_folder);
   }
-  const std::string address = drivers::Address{parts.options.door.listen.host,
-                                               static_cast<std::uint16_t>(parts.router.port())}
-                                  .text();
-  parts.daemon.supervisor().describe("page at http://" + address + "/");
+  const std::string page = "page at " + parts.router.address();
+  parts.daemon.supervisor().describe(page);
   parts.daemon.supervisor().serving();
-  spdlog::info("web ready ({}), page at http://{}/", parts.identity.dds, address);
+  spdlog::info("web ready ({}), {}", parts.identity.dds, page);
   while (!stop.stop_requested()) {
     parts.clock.wait(*parts.wake_up, parts.clock.now() + max_wait);
     parts.cache.change([&](network::BusState& laboratory) { parts.readers->work(laboratory); });

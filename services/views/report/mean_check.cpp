@@ -97,7 +97,7 @@ std::optional<std::string> foreign_mean(const StoredResult& result) {
   }
   const bool is_of_this_version = result.analysis_software == software_version();
   for (const auto& [channel, means] : values) {
-    const auto found =
+    auto found =
         is_of_this_version ? difference(means, singles[channel]) : outlier(means, singles[channel]);
     if (found) {
       return found;

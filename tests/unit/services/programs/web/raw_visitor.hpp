@@ -30,6 +30,7 @@ public:
                             sizeof(address)) == 0;
   }
   [[nodiscard]] bool is_connected() const { return is_connected_; }
+  [[nodiscard]] int number() const { return socket_.number(); }
   // False: the other side has closed.
   bool write(std::string_view bytes) const {
     return send(socket_.number(), bytes.data(), bytes.size(), MSG_NOSIGNAL) ==

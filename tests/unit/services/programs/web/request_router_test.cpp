@@ -91,12 +91,13 @@ protected:
   LaboratoryAnswers answers_{cache_, files_};
   EventStream events_{cache_, answers_, router_,
                       [](const std::string&, const httplib::Request&) { return Text(); }};
-  Actions actions_{
-      {.token = secret, .benches_folder = {}, .runs_folder = {}, .network = {}, .sender = "test"},
-      participant_,
-      clock_,
-      cache_,
-      router_};
+  Permission permission_{{{.token = secret}}, clock_, router_};
+  Actions actions_{{.benches_folder = {}, .runs_folder = {}, .network = {}, .sender = "test"},
+                   participant_,
+                   clock_,
+                   cache_,
+                   router_,
+                   permission_};
 };
 
 TEST_F(RequestRouterTest, ServesThePageWithHeadersThatAllowNothingForeign) {
@@ -182,6 +183,7 @@ TEST_F(RequestRouterTest, RefusesWhatIsTooLargeOrNoRequest) {
 TEST_F(RequestRouterTest, EndsARequestThatDoesNotCome) {
   const auto began = Clock::now();
   std::vector<std::thread> visitors;
+  visitors.reserve(10);
   for (int i = 0; i < 10; ++i) {
     visitors.emplace_back([this] { (void)answer_to("GET / HTTP/1.1\r\nHost: localhost\r\nX: "); });
   }
@@ -196,21 +198,22 @@ TEST_F(RequestRouterTest, EndsARequestThatDoesNotCome) {
 
 TEST_F(RequestRouterTest, TakesActionsWithTheTokenOnly) {
   EXPECT_EQ(command("wrong")->status, 401);
-  EXPECT_EQ(visitor().Post("/api/bench/acc-1/command", "{}", "application/json")->status, 401);
+  EXPECT_EQ(visitor().Post("/api/bench/acc-1/command", "{}", "application/json")->status, 401)
+      << "none at all, which is no guess";
   EXPECT_EQ(command(secret)->status, 400) << "the body says nothing";
   const auto nobody = command(secret, {}, R"({"command": "abort", "run": "r1"})");
   EXPECT_EQ(nobody->status, 409);
   EXPECT_EQ(Json::parse(nobody->body)["answer"], "refused");
-  EXPECT_EQ(command("wrong")->status, 401);
-  EXPECT_EQ(command("wrong")->status, 401);
-  EXPECT_EQ(command("wrong")->status, 401);
+  for (std::size_t i = 1; i < AccessTokens::max_wrong; ++i) {
+    EXPECT_EQ(command("wrong")->status, 401) << i;
+  }
   const auto many = command(secret, {}, R"({"command": "pause", "run": "r1"})");
   EXPECT_EQ(many->status, 429);
   EXPECT_EQ(command(secret, {}, R"({"command": "abort", "run": "r1"})")->status, 409)
       << "the emergency stop is never locked";
   EXPECT_EQ(command("wrong", {}, R"({"command": "abort", "run": "r1"})")->status, 429);
   EXPECT_EQ(many->get_header_value("Retry-After"), "60");
-  EXPECT_EQ(refused(Refusal::wrong_token), 5U);
+  EXPECT_EQ(refused(Refusal::wrong_token), 6U);
 }
 
 TEST_F(RequestRouterTest, LetsAsManyListenAsItHasRoomFor) {
@@ -219,6 +222,7 @@ TEST_F(RequestRouterTest, LetsAsManyListenAsItHasRoomFor) {
   std::atomic<int> full = 0;
   const auto end = Clock::now() + 30s;
   std::vector<std::thread> visitors;
+  visitors.reserve(count);
   for (int i = 0; i < count; ++i) {
     visitors.emplace_back([&] {
       httplib::Client client = visitor();
