@@ -178,11 +178,55 @@ Findings check_clocks(const LaboratoryView& view) {
   return findings;
 }
 
+// A computer has one clock. Programs whose clocks differ, whatever the way of the messages took,
+// are on several, as when an image was copied: what goes by their names then takes them for one.
+Findings check_host_names(const LaboratoryView& view) {
+  struct Clocks {
+    double latest_begin_s = 0.0; // of what the offsets leave open
+    double earliest_end_s = 0.0;
+    std::string of_latest;
+    std::string of_earliest;
+  };
+  constexpr double reading_s = 1e-3; // of a clock that is being set
+  std::map<std::string, Clocks> hosts;
+  const std::string ours = service_name(view.own);
+  hosts[view.own.host] = {0.0, 0.0, ours, ours};
+  for (const DiscoveredProgram& program : view.programs) {
+    if (!program.clock) {
+      continue;
+    }
+    const double begin_s = program.clock->offset_s - program.clock->bound_s;
+    const double end_s = program.clock->offset_s + program.clock->bound_s;
+    const std::string name = service_name(program.identity);
+    Clocks& clocks =
+        hosts.try_emplace(program.identity.host, Clocks{begin_s, end_s, name, name}).first->second;
+    if (begin_s > clocks.latest_begin_s) {
+      clocks.latest_begin_s = begin_s;
+      clocks.of_latest = name;
+    }
+    if (end_s < clocks.earliest_end_s) {
+      clocks.earliest_end_s = end_s;
+      clocks.of_earliest = name;
+    }
+  }
+  Findings findings;
+  for (const auto& [host, clocks] : hosts) {
+    if (const double apart_s = clocks.latest_begin_s - clocks.earliest_end_s; apart_s > reading_s) {
+      findings.push_back({Severity::warning, "host names",
+                          fmt::format("'{}' is the name of two computers: the clocks of {} and {} "
+                                      "are {:.3f} s apart or more; give each its own name",
+                                      host, clocks.of_latest, clocks.of_earliest, apart_s)});
+    }
+  }
+  return findings;
+}
+
 } // namespace
 
 Findings check_programs(const LaboratoryView& view) {
   Findings findings = check_presence(view);
-  for (const auto& check : {check_others, check_analysis, check_versions, check_clocks}) {
+  for (const auto& check :
+       {check_others, check_analysis, check_versions, check_clocks, check_host_names}) {
     append(findings, check(view));
   }
   return findings;

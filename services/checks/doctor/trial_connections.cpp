@@ -76,6 +76,8 @@ void begin(const sockaddr_in& place, TriedHost& host, std::vector<Trial>& trials
     ++host.in_time;
   } else if (errno == EINPROGRESS) {
     trials.push_back({std::move(connection), &host, begun});
+  } else if (errno == ENETUNREACH) {
+    host.has_no_route = true;
   }
 }
 

@@ -21,7 +21,8 @@ inline constexpr int discard_port = 9; // RFC 863; whoever listens there takes a
 struct TriedHost { // connections
   unsigned begun = 0;
   unsigned in_time = 0;
-  unsigned late = 0; // answered, but not in time
+  unsigned late = 0;         // answered, but not in time
+  bool has_no_route = false; // this host does not know by which interface it is reached
 
   // 0 to 1; how much of what was begun was not answered in time.
   [[nodiscard]] double missed_part() const {

@@ -111,6 +111,11 @@ std::string about_no_answer(const HostView& host) {
            "direction, or a link that is overloaded)";
   }
   for (const auto& [address, tried] : host.tried) {
+    if (tried.has_no_route) {
+      return fmt::format("this host has no route to {}: give both addresses of one network, or a "
+                         "route (`ip route get {}`)",
+                         address, address);
+    }
     if (tried.in_time == 0) {
       return fmt::format("what this host sends does not arrive there, or nothing comes back; not "
                          "one of {} trial connections to {} was answered: a firewall, or a way "

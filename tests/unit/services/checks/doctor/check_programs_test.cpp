@@ -112,5 +112,24 @@ TEST_F(CheckPrograms, NamesClocksThatAreFarApart) {
               ElementsAre(HasSubstr("the clock of lab-2 is -300.000000 s from ours")));
 }
 
+TEST_F(CheckPrograms, NamesComputersOfOneNameByTheirClocks) {
+  DiscoveredProgram& ours = view_.programs.front(); // on lab-1, as the doctor
+  ours.clock = {.offset_s = 10.0, .bound_s = 0.001};
+  EXPECT_THAT(warnings(check_programs(view_)),
+              ElementsAre(AllOf(HasSubstr("'lab-1' is the name of two computers"),
+                                HasSubstr("dyncal-analysis:2@lab-1"), HasSubstr("9.999 s apart"))));
+  ours.clock = {.offset_s = -0.0002, .bound_s = 0.0003};
+  EXPECT_THAT(warnings(check_programs(view_)), IsEmpty());
+  // Two others, of which neither is far from this one.
+  view_.programs.push_back(view_.programs.back());
+  view_.programs.back().identity.process_id = 4;
+  view_.programs[1].clock = {.offset_s = 0.3, .bound_s = 0.01};
+  view_.programs[2].clock = {.offset_s = 0.305, .bound_s = 0.01};
+  EXPECT_THAT(warnings(check_programs(view_)), IsEmpty());
+  view_.programs[2].clock = {.offset_s = -0.3, .bound_s = 0.01};
+  EXPECT_THAT(warnings(check_programs(view_)),
+              ElementsAre(HasSubstr("'lab-2' is the name of two computers")));
+}
+
 } // namespace
 } // namespace dyncal::inline checks::doctor

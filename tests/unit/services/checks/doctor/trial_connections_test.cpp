@@ -2,10 +2,13 @@
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
+#include <sched.h>
 #include <sys/socket.h>
 
 #include <array>
 #include <chrono>
+#include <optional>
+#include <thread>
 
 #include <gtest/gtest.h>
 
@@ -67,6 +70,23 @@ TEST(TrialConnections, BeginNoneOnceTheyAreStopped) {
 
 TEST(TrialConnections, LeaveOutWhatIsNoAddress) {
   EXPECT_TRUE(try_hosts({"lab-2", ""}, {}).empty());
+}
+
+// A network of its own, with loopback alone, for the thread.
+TEST(TrialConnections, TellAHostThatNoRouteLeadsTo) {
+  std::optional<TriedHost> tried;
+  std::thread([&] {
+    if (unshare(CLONE_NEWNET) == 0) {
+      tried = try_hosts({"192.0.2.7"}, {}).at("192.0.2.7");
+    }
+  }).join();
+  if (!tried) {
+    GTEST_SKIP() << "skipped: a network namespace needs root";
+  }
+  EXPECT_TRUE(tried->has_no_route);
+  EXPECT_EQ(tried->in_time + tried->late, 0U);
+  const Listener listener(100);
+  EXPECT_FALSE(try_hosts({here}, {}, listener.port).at(here).has_no_route);
 }
 
 } // namespace

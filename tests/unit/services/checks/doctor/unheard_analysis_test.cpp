@@ -82,6 +82,12 @@ TEST_F(UnheardAnalysis, TellsAFirewallThatLetsTcpThrough) {
   EXPECT_THAT(why(), AllOf(HasSubstr("does not let UDP through"), Not(HasSubstr("overloaded"))));
 }
 
+TEST_F(UnheardAnalysis, TellsAnAddressOfAnotherNetwork) {
+  view_.announced_from.insert("192.0.2.7");
+  host_.tried["192.0.2.7"] = {.begun = 40, .has_no_route = true};
+  EXPECT_THAT(why(), AllOf(HasSubstr("no route to 192.0.2.7"), Not(HasSubstr("firewall"))));
+}
+
 TEST_F(UnheardAnalysis, JudgesEachHostByItself) {
   view_.announced_from = {"10.98.0.1", "10.98.0.2", "10.98.0.3"};
   host_.tried["10.98.0.1"] = {.begun = 40, .in_time = 40, .late = 0};
