@@ -41,6 +41,7 @@
 #include "services/bus/refused_packets.hpp"
 #include "services/bus/type_support.hpp"
 #include "services/bus/wake_up.hpp"
+#include "services/bus/writer_id.hpp"
 #include "services/contract/topics.hpp"
 
 namespace dyncal::bus {
@@ -77,8 +78,9 @@ public:
 
 class UntypedReader {
 public:
-  // A sample, and the bytes that it came as; both until the call returns.
-  using Consume = std::function<void(const void* sample, std::string_view bytes)>;
+  // A sample, the bytes that it came as, and who wrote it; all until the call returns.
+  using Consume =
+      std::function<void(const void* sample, std::string_view bytes, const WriterId& writer)>;
 
   virtual ~UntypedReader() = default;
   virtual std::size_t take(const Consume& consume) = 0;
@@ -142,24 +144,39 @@ public:
   // none.
   template <class Consume>
   std::size_t take(Consume&& consume) {
-    return take_with_bytes([&](const T& message, std::string_view) { consume(message); });
+    return take_whole(
+        [&](const T& message, std::string_view, const WriterId&) { consume(message); });
   }
   // The same with the bytes that each message came as; they last until `consume` returns.
   template <class Consume>
   std::size_t take_with_bytes(Consume&& consume) {
-    std::size_t taken = 0;
-    untyped_->take([&](const void* sample, std::string_view bytes) {
-      const T& message = *static_cast<const T*>(sample);
-      if (bench_.empty() || message.bench() == bench_ || message.bench() == "") {
-        ++taken;
-        consume(message, bytes);
-      }
+    return take_whole([&](const T& message, std::string_view bytes, const WriterId&) {
+      consume(message, bytes);
     });
-    return taken;
+  }
+  // The same with the writer that each message came from.
+  template <class Consume>
+  std::size_t take_with_writer(Consume&& consume) {
+    return take_whole([&](const T& message, std::string_view, const WriterId& writer) {
+      consume(message, writer);
+    });
   }
   [[nodiscard]] int matched_writers() const { return untyped_->matched_writers(); }
 
 private:
+  template <class Consume>
+  std::size_t take_whole(Consume&& consume) {
+    std::size_t taken = 0;
+    untyped_->take([&](const void* sample, std::string_view bytes, const WriterId& writer) {
+      const T& message = *static_cast<const T*>(sample);
+      if (bench_.empty() || message.bench() == bench_ || message.bench() == "") {
+        ++taken;
+        consume(message, bytes, writer);
+      }
+    });
+    return taken;
+  }
+
   std::unique_ptr<UntypedReader> untyped_;
   std::string bench_;
 };

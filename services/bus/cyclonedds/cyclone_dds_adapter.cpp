@@ -1,5 +1,7 @@
 // The bus over Cyclone DDS 0.10.
+#include <algorithm>
 #include <dds/dds.h>
+#include <iterator>
 #include <map>
 #include <mutex>
 
@@ -177,6 +179,12 @@ struct SerdataDeleter {
 };
 using Serdata = std::unique_ptr<ddsi_serdata, SerdataDeleter>;
 
+struct EndpointDeleter {
+  void operator()(dds_builtintopic_endpoint_t* endpoint) const {
+    dds_builtintopic_free_endpoint(endpoint);
+  }
+};
+
 void ring(dds_entity_t /*reader*/, void* wake_up) {
   static_cast<WakeUp*>(wake_up)->ring();
 }
@@ -207,7 +215,7 @@ public:
       const Serdata owned(serdata);
       if (info.valid_data && read_cyclone_serdata(type_, serdata, sample_.get())) {
         ++taken;
-        consume(sample_.get(), payload_of(serdata));
+        consume(sample_.get(), payload_of(serdata), writer_of(info.publication_handle));
       } else if (info.valid_data) { // otherwise it is the end of an instance
         participant_->malformed->add(type_.name);
       }
@@ -222,12 +230,41 @@ public:
   }
 
 private:
+  // Asked for once; a handle is never given again.
+  WriterId writer_of(dds_instance_handle_t handle) {
+    if (handle == last_handle_) {
+      return last_writer_;
+    }
+    if (const auto known = writers_.find(handle); known != writers_.end()) {
+      last_handle_ = handle;
+      last_writer_ = known->second;
+      return last_writer_;
+    }
+    const std::unique_ptr<dds_builtintopic_endpoint_t, EndpointDeleter> endpoint(
+        dds_get_matched_publication_data(reader_.get(), handle));
+    if (!endpoint) {
+      return {};
+    }
+    if (writers_.size() >= max_known_writers) {
+      writers_.clear();
+    }
+    WriterId writer;
+    std::copy(std::begin(endpoint->key.v), std::end(endpoint->key.v), writer.guid.begin());
+    writers_.emplace(handle, writer);
+    return writer;
+  }
+
+  static constexpr std::size_t max_known_writers = 1000; // asked for again beyond
+
   std::shared_ptr<CycloneParticipantHandle> participant_;
   std::shared_ptr<WakeUp> wake_up_; // the listener has its address: it must outlive the reader
   const TypeSupport& type_;
   std::unique_ptr<void, void (*)(void*)> sample_;
   Entity topic_;
   Entity reader_;
+  std::map<dds_instance_handle_t, WriterId> writers_;
+  dds_instance_handle_t last_handle_ = 0; // of no writer
+  WriterId last_writer_;
 };
 
 class CycloneParticipant : public UntypedParticipant {

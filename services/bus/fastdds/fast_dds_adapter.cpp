@@ -1,5 +1,6 @@
 // The bus over Fast DDS. The settings differ from its defaults wherever those lose samples,
 // wait for seconds or do not reach Cyclone DDS; a comment at each gives the reason.
+#include <algorithm>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/publisher/DataWriter.hpp>
@@ -11,6 +12,7 @@
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <fastdds/dds/subscriber/qos/DataReaderQos.hpp>
 #include <fastdds/dds/topic/Topic.hpp>
+#include <iterator>
 #include <map>
 #include <mutex>
 #include <set>
@@ -220,6 +222,15 @@ private:
   std::shared_ptr<WakeUp> wake_up_;
 };
 
+WriterId writer_of(const dds::SampleInfo& info) {
+  const auto& guid = info.sample_identity.writer_guid();
+  WriterId writer;
+  const auto entity = std::copy(std::begin(guid.guidPrefix.value), std::end(guid.guidPrefix.value),
+                                writer.guid.begin());
+  std::copy(std::begin(guid.entityId.value), std::end(guid.entityId.value), entity);
+  return writer;
+}
+
 class FastDdsReader : public UntypedReader {
 public:
   FastDdsReader(std::shared_ptr<FastDdsParticipantHandle> participant, dds::Subscriber* subscriber,
@@ -248,7 +259,7 @@ public:
     while (reader_->take_next_sample(&sample_, &info) == fast_dds::ok) {
       if (info.valid_data) {
         ++taken;
-        consume(sample_.message, sample_.bytes);
+        consume(sample_.message, sample_.bytes, writer_of(info));
       }
     }
     return taken;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstring>
 #include <fnmatch.h>
 
 namespace dyncal::bus {
@@ -19,6 +20,13 @@ bool matches(const MemoryEndpoint& writer, const MemoryEndpoint& reader) {
          (writer.qos.reliable || !reader.qos.reliable) && is_in(writer.partitions, reader);
 }
 
+WriterId writer_id(std::uint32_t participant, std::uint32_t writer) {
+  WriterId id;
+  std::memcpy(id.guid.data(), &participant, sizeof participant);
+  std::memcpy(id.guid.data() + guid_prefix_bytes, &writer, sizeof writer);
+  return id;
+}
+
 void ring(const MemoryEndpoint& endpoint) {
   if (endpoint.wake_up) {
     endpoint.wake_up->ring();
@@ -27,10 +35,16 @@ void ring(const MemoryEndpoint& endpoint) {
 
 } // namespace
 
+std::uint32_t MemoryExchange::join() {
+  const std::lock_guard lock(mutex_);
+  return ++participants_;
+}
+
 std::shared_ptr<MemoryWriterState> MemoryExchange::open_writer(MemoryEndpoint endpoint) {
   const std::lock_guard lock(mutex_);
   auto writer = std::make_shared<MemoryWriterState>();
   static_cast<MemoryEndpoint&>(*writer) = std::move(endpoint);
+  writer->id = writer_id(writer->participant_number, ++writers_so_far_);
   writers_.push_back(writer);
   for (const auto& reader : readers_) {
     match(*writer, reader);
@@ -94,6 +108,7 @@ bool MemoryExchange::write(MemoryWriterState& writer, MemoryMessage message) {
     return false;
   }
   message.number = writer.next_number++;
+  message.writer = writer.id;
   const auto sent = std::make_shared<MemoryMessage>(std::move(message));
   writer.history.emplace(sent->number, sent);
   writer.numbers_of_key[sent->key].push_back(sent->number);

@@ -28,6 +28,7 @@ namespace dyncal::bus {
 struct MemoryMessage {
   std::string key;
   EncodedMessage payload;
+  WriterId writer{};
   std::uint64_t number = 0;
   int in_transit_to = 0; // readers that have not accepted it
 };
@@ -39,6 +40,7 @@ struct MemoryEndpoint {
   std::string type_name;
   std::vector<std::string> partitions; // of a reader: one pattern
   std::string participant;
+  std::uint32_t participant_number = 0; // from 1, of all that joined
   EndpointQos qos{};
   std::shared_ptr<WakeUp> wake_up; // of a writer: rings when there may be room; never empty
 };
@@ -58,6 +60,7 @@ struct MemoryLink {
 };
 
 struct MemoryWriterState : MemoryEndpoint {
+  WriterId id;
   std::uint64_t next_number = 0;
   std::map<std::uint64_t, MemoryMessagePointer> history;
   std::map<std::string, std::deque<std::uint64_t>> numbers_of_key;
@@ -69,6 +72,7 @@ public:
   MemoryExchange(Clock& clock, SteppedClock* stepped) : clock_(clock), stepped_(stepped) {}
 
   [[nodiscard]] Clock& clock() { return clock_; }
+  std::uint32_t join(); // the number of a new participant
   std::shared_ptr<MemoryWriterState> open_writer(MemoryEndpoint endpoint);
   std::shared_ptr<MemoryReaderState> open_reader(MemoryEndpoint endpoint);
   void close(const std::shared_ptr<MemoryWriterState>& writer);
@@ -102,6 +106,8 @@ private:
   Clock& clock_;
   SteppedClock* stepped_; // the same clock, where time is stepped
   std::mutex mutex_;
+  std::uint32_t participants_ = 0;   // that have joined so far
+  std::uint32_t writers_so_far_ = 0; // opened
   std::vector<std::shared_ptr<MemoryWriterState>> writers_;
   std::vector<std::shared_ptr<MemoryReaderState>> readers_;
   MemoryNetwork::Rule lost_;

@@ -70,7 +70,7 @@ public:
         continue;
       }
       ++taken;
-      consume(sample_.get(), *message->payload);
+      consume(sample_.get(), *message->payload, message->writer);
     }
     return taken;
   }
@@ -95,7 +95,7 @@ class MemoryParticipant : public UntypedParticipant {
 public:
   MemoryParticipant(std::shared_ptr<MemoryExchange> exchange, std::string name,
                     std::function<void(const std::string&)> warn)
-      : exchange_(std::move(exchange)), name_(std::move(name)),
+      : exchange_(std::move(exchange)), name_(std::move(name)), number_(exchange_->join()),
         malformed_(std::make_shared<MalformedMessages>(std::move(warn))) {}
 
   base::Expected<std::unique_ptr<UntypedWriter>>
@@ -125,12 +125,14 @@ private:
             .type_name = type.name,
             .partitions = std::move(partitions),
             .participant = name_,
+            .participant_number = number_,
             .qos = qos,
             .wake_up = std::move(wake_up)};
   }
 
   std::shared_ptr<MemoryExchange> exchange_;
   std::string name_;
+  std::uint32_t number_;
   std::shared_ptr<MalformedMessages> malformed_;
 };
 

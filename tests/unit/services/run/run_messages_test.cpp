@@ -24,7 +24,7 @@ public:
   std::size_t take(const std::string& topic, const bus::UntypedReader::Consume& consume) {
     const auto taken = std::exchange(messages_[topic], {});
     for (const auto& message : taken) {
-      consume(message.get(), {});
+      consume(message.get(), {}, {});
     }
     const bool of_analysis =
         topic == bus::topics::service_status.name || topic == bus::topics::calibration_result.name;
