@@ -1,8 +1,9 @@
 // Makes the TypeSupport of a struct of the contract. Only type_support.cpp and tests with types of
 // their own need it.
 //
-// A struct whose last member is `checksum` gets one when it is written. When it is read, a wrong
-// one is an error; then the member is 0, so that a message is equal to the one that was written.
+// A struct whose last member is `checksum`, or `checksum_3` where contract 3 has appended members,
+// gets one when it is written. When it is read, a wrong one is an error; then the member is 0, so
+// that a message is equal to the one that was written.
 #pragma once
 
 #include <string>
@@ -20,10 +21,17 @@ concept HasChecksum = requires(T sample) {
   sample.checksum();
 };
 
+template <class T>
+concept HasChecksumOfContract3 = requires(T sample) {
+  sample.checksum_3();
+};
+
 // Bytes of the members that were appended to a topic's type since its first release, when they are
 // empty: only these may be missing in a message. A type that grows more has one of its own.
 template <class T>
-inline constexpr std::size_t appended_bytes = HasChecksum<T> ? checksum_bytes : 0;
+inline constexpr std::size_t appended_bytes = HasChecksumOfContract3<T> ? 64
+                                              : HasChecksum<T>          ? checksum_bytes
+                                                                        : 0;
 
 template <class T>
 struct Encoder {
@@ -63,7 +71,7 @@ struct Encoder {
     // padding to 4 bytes) it comes from a program whose type has fewer members; otherwise it is
     // damaged.
     const std::size_t understood = reader.size();
-    if (count - understood >= 4) {
+    if (count - understood >= 4 || !take_older_checksum(members, bytes, understood)) {
       return false;
     }
     // Zeros read as 0, "" and empty.
@@ -77,12 +85,28 @@ struct Encoder {
 private:
   // Returns false if there is one and it is wrong.
   static bool take_checksum(T& sample, const char* bytes, std::size_t end) {
-    if constexpr (HasChecksum<T>) {
+    if constexpr (HasChecksumOfContract3<T>) {
+      const std::uint32_t given = sample.checksum_3();
+      sample.checksum_3(0);
+      return is_right(given, bytes, end);
+    } else if constexpr (HasChecksum<T>) {
       const std::uint32_t given = sample.checksum();
       sample.checksum(0);
-      return given == 0 || given == payload_checksum(bytes, end - checksum_bytes);
+      return is_right(given, bytes, end);
     }
     return true;
+  }
+  // Of a message that may have ended with it before contract 3.
+  static bool take_older_checksum(T& sample, const char* bytes, std::size_t end) {
+    if constexpr (HasChecksumOfContract3<T>) {
+      const std::uint32_t given = sample.checksum();
+      sample.checksum(0);
+      return is_right(given, bytes, end);
+    }
+    return true;
+  }
+  static bool is_right(std::uint32_t given, const char* bytes, std::size_t end) {
+    return given == 0 || given == payload_checksum(bytes, end - checksum_bytes);
   }
 };
 

@@ -52,6 +52,45 @@ TEST(TypeSupport, ReadsWhatItWrites) {
   EXPECT_EQ(read_back, written);
 }
 
+// As contract 2 had it.
+struct OlderExcitation : wire::Excitation {
+  template <class Message, class Visit>
+  static void visit_members(Message& message, Visit&& visit) {
+    visit(message.bench());
+    visit(message.run());
+    visit(message.step());
+    visit(message.frequency_text_hz());
+    visit(message.level_m_s2());
+    visit(message.repetition());
+    visit(message.state());
+    visit(message.window_begin_utc_ns());
+    visit(message.window_end_utc_ns());
+    visit(message.attempt());
+    visit(message.repeated_steps());
+    visit(message.checksum());
+  }
+};
+
+TEST(TypeSupport, HoldsAMessageOfContract2AgainstItsChecksum) {
+  for (std::uint32_t repeated = 0; repeated < 3; ++repeated) { // the next member is aligned to 8
+    OlderExcitation older;
+    older.bench("acc-1");
+    older.run("run-1");
+    older.step(3);
+    older.repeated_steps().resize(repeated, 2);
+    std::string bytes(Encoder<OlderExcitation>::serialized_size(&older), '\0');
+    Encoder<OlderExcitation>::serialize(&older, bytes.data(), bytes.size());
+    wire::Excitation excitation;
+    ASSERT_TRUE(read(excitation, bytes));
+    EXPECT_EQ(excitation, static_cast<const wire::Excitation&>(older));
+    for (std::size_t at = cdr_header_bytes; at < bytes.size(); ++at) {
+      std::string changed = bytes;
+      changed[at] = static_cast<char>(changed[at] ^ 1);
+      EXPECT_FALSE(read(excitation, changed)) << at;
+    }
+  }
+}
+
 TEST(TypeSupport, ReadsIntoASampleThatHeldAnother) {
   wire::SampleBlock sample = example_block();
   wire::SampleBlock empty;
