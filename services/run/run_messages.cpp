@@ -29,8 +29,12 @@ Expected<RunMessages> RunMessages::open(bus::Participant& participant, bus::Cloc
   DYNCAL_TRY(auto status, participant.reader(topics::service_status, bench, wake_up));
   DYNCAL_TRY(auto published, open_readers(participant, bench, run, wake_up));
   DYNCAL_TRY(auto sources, participant.reader(topics::source_description, bench, wake_up));
+  std::optional<AttendanceLinks> links;
+  if (!generator.empty()) {
+    DYNCAL_TRY(links, AttendanceLinks::draw());
+  }
   return RunMessages(participant, clock, GuardWatch(bench, std::move(generator), clock.now()),
-                     bench, std::move(run), wake_up,
+                     std::move(links), bench, std::move(run), wake_up,
                      Endpoints{std::move(measurement), std::move(excitation), std::move(status),
                                std::move(sources)},
                      std::move(published));
@@ -61,10 +65,21 @@ void RunMessages::collect_again() {
   }
 }
 
-void RunMessages::publish(const wire::Measurement& measurement) {
+void RunMessages::publish(wire::Measurement measurement) {
   was_planned_here_ = was_planned_here_ || measurement.state() == wire::MEASUREMENT_PLANNED;
   has_begun_ = has_begun_ || measurement.state() == wire::MEASUREMENT_RUNNING;
+  conductor_ = measurement.conductor();
+  if (links_) {
+    links_->show(measurement);
+  }
   endpoints_.measurement.write(measurement);
+}
+
+void RunMessages::write_announcement() {
+  if (links_) {
+    links_->show(excitation_);
+  }
+  endpoints_.excitation.write(excitation_);
 }
 
 void RunMessages::announce(const wire::PlannedStep& step, std::uint32_t attempt,
@@ -88,21 +103,21 @@ void RunMessages::announce(const wire::PlannedStep& step, std::uint32_t attempt,
   excitation_.state(state);
   excitation_.window_end_utc_ns(is_over(state) && !output_may_be_on ? clock_->utc_now_ns() : 0);
   excitation_.attempt(attempt);
-  endpoints_.excitation.write(excitation_);
+  write_announcement();
   announced_ = clock_->now();
 }
 
 void RunMessages::confirm_off() {
   if (is_over(excitation_.state()) && excitation_.window_end_utc_ns() == 0) {
     excitation_.window_end_utc_ns(clock_->utc_now_ns());
-    endpoints_.excitation.write(excitation_);
+    write_announcement();
   }
 }
 
 void RunMessages::repeat_announcement() {
   const bool driven = excitation_.step() != 0 && !is_over(excitation_.state());
   if (driven && clock_->now() - announced_ >= announcement_interval) {
-    endpoints_.excitation.write(excitation_);
+    write_announcement();
     announced_ = clock_->now();
   }
 }

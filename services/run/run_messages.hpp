@@ -30,15 +30,17 @@
 namespace dyncal::inline run {
 
 class RunMessages {
+#include "services/run/attendance_links.hpp"
 public:
-  // `generator`: the address that the run drives, as GuardWatch wants it. `participant` and `clock`
-  // outlive the object. Fails (network) as writers and readers do.
+  // `generator`: the address that the run drives, as GuardWatch wants it; empty: none that a guard
+  // could switch off. `participant` and `clock` outlive the object. Fails (network) as writers and
+  // readers do, and as AttendanceLinks.
   [[nodiscard]] static Expected<RunMessages> open(bus::Participant& participant, bus::Clock& clock,
                                                   const std::string& bench, std::string run,
                                                   std::string generator,
                                                   const std::shared_ptr<bus::WakeUp>& wake_up);
 
-  void publish(const wire::Measurement& measurement);
+  void publish(wire::Measurement measurement);
   // `state` of the step that is excited, or was to be. One that is over while the output may be on
   // has no end of its window yet.
   void announce(const wire::PlannedStep& step, std::uint32_t attempt, wire::ExcitationState state,
@@ -97,12 +99,12 @@ private:
     bus::Reader<wire::SourceDescription> sources;
   };
 
-  RunMessages(bus::Participant& participant, bus::Clock& clock, GuardWatch guard, std::string bench,
-              std::string run, std::shared_ptr<bus::WakeUp> wake_up, Endpoints endpoints,
-              ResultReaders published)
+  RunMessages(bus::Participant& participant, bus::Clock& clock, GuardWatch guard,
+              std::optional<AttendanceLinks> links, std::string bench, std::string run,
+              std::shared_ptr<bus::WakeUp> wake_up, Endpoints endpoints, ResultReaders published)
       : participant_(&participant), clock_(&clock), bench_(std::move(bench)), run_(std::move(run)),
-        guard_(std::move(guard)), wake_up_(std::move(wake_up)), endpoints_(std::move(endpoints)),
-        published_(std::move(published)) {}
+        guard_(std::move(guard)), links_(std::move(links)), wake_up_(std::move(wake_up)),
+        endpoints_(std::move(endpoints)), published_(std::move(published)) {}
   // Without a run: of all of the bench.
   static Expected<ResultReaders> open_readers(bus::Participant& participant,
                                               const std::string& bench,
@@ -117,6 +119,7 @@ private:
   [[nodiscard]] static bool was_excited(const Result& /*result*/,
                                         const std::vector<Result>& /*known*/) {
     return true;
+  void write_announcement();
   }
   [[nodiscard]] bool follows(const wire::ServiceStatus& status) const;
   template <class Message, class Result, class SameKey>
@@ -140,6 +143,7 @@ private:
   bool other_recipe_ = false; // in a result of this run
   std::size_t unplanned_ = 0;
   bool was_planned_here_ = false; // else the run is resumed, and another made attempts before
+  std::optional<AttendanceLinks> links_; // of a run that a guard may watch over
   bool has_begun_ = false;        // RUNNING
   std::set<std::string> described_;
   std::map<std::string, std::string> other_instruments_; // sentences by source
@@ -149,3 +153,4 @@ private:
 };
 
 } // namespace dyncal::inline run
+  std::string conductor_; // by its Measurement

@@ -1,5 +1,6 @@
 #include "services/programs/guard/driven_record.hpp"
 
+#include <array>
 #include <cstdlib>
 #include <fstream>
 #include <system_error>
@@ -44,6 +45,29 @@ DrivenRun run_of(const json& kept) {
   return run;
 }
 
+constexpr std::array link_names{"measurement_link", "excitation_link"}; // by ChainTopic
+
+Conductor conductor_of(const json& kept) {
+  Conductor conductor{kept.at("run").get<std::string>(), kept.at("participant").get<std::string>()};
+  for (std::size_t topic = 0; topic < link_names.size(); ++topic) {
+    if (const auto shown = kept.find(link_names[topic]); shown != kept.end()) {
+      const auto link = parse_chain_link(shown->at("link").get<std::string>());
+      conductor.links[topic] = {shown->at("number").get<std::uint64_t>(),
+                                link.value_or(ChainLink{})};
+    }
+  }
+  return conductor;
+}
+
+void add_conductor(const Conductor& conductor, json& to) {
+  to["participant"] = conductor.participant;
+  for (std::size_t topic = 0; topic < link_names.size(); ++topic) {
+    if (const auto& shown = conductor.links[topic]) {
+      to[link_names[topic]] = {{"number", shown->number}, {"link", to_string(shown->link)}};
+    }
+  }
+}
+
 } // namespace
 
 std::filesystem::path guard_state_folder() {
@@ -76,7 +100,18 @@ DrivenRun DrivenRecord::read() const {
   }
 }
 
-Expected<void> DrivenRecord::write(const DrivenRun& run) const {
+Conductor DrivenRecord::read_conductor() const {
+  std::ifstream in(path_);
+  const json kept = json::parse(in, nullptr, false);
+  try {
+    return kept.is_object() && kept.at("generator") == generator_ ? conductor_of(kept)
+                                                                  : Conductor{};
+  } catch (const json::exception&) {
+    return {}; // damaged, or of a guard that kept none
+  }
+}
+
+Expected<void> DrivenRecord::write(const DrivenRun& run, const Conductor& conductor) const {
   std::error_code failure;
   if (run.run.empty()) {
     std::filesystem::remove(path_, failure);
@@ -91,11 +126,15 @@ Expected<void> DrivenRecord::write(const DrivenRun& run) const {
     }
     settings.push_back(std::move(entry));
   }
-  return write_output_file(path_, json_text(json{{"generator", generator_},
-                                                 {"run", run.run},
-                                                 {"has_ended", run.has_ended},
-                                                 {"is_conducted", run.is_conducted},
-                                                 {"settings", std::move(settings)}}));
+  json kept{{"generator", generator_},
+            {"run", run.run},
+            {"has_ended", run.has_ended},
+            {"is_conducted", run.is_conducted},
+            {"settings", std::move(settings)}};
+  if (conductor.run == run.run) {
+    add_conductor(conductor, kept);
+  }
+  return write_output_file(path_, json_text(kept));
 }
 
 } // namespace dyncal::inline programs

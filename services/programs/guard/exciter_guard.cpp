@@ -124,27 +124,93 @@ OutputSettings ExciterGuard::settings_of(const wire::Excitation& excitation) con
 }
 
 void ExciterGuard::take_messages() {
-  endpoints_.excitation.take([&](const wire::Excitation& excitation) {
-    if (excitation.bench().to_string() != exciter_.bench) {
-      return;
-    }
-    const std::string name = excitation.run().to_string();
-    if (is_driven(excitation) && name != watched_run_) {
-      watched_run_ = name;
-      spdlog::info("bench {}: watching over run {}", exciter_.bench, name);
-    }
-    const bool is_broken_off = excitation.state() == wire::EXCITATION_ABORTED;
-    watch_.heard({.run = name,
-                  .is_driven = is_driven(excitation),
-                  .settings = settings_of(excitation),
-                  .is_in_hand = !is_driven(excitation) || !is_broken_off},
-                 clock_.now());
-  });
-  endpoints_.measurement.take([&](const wire::Measurement& measurement) {
-    if (measurement.bench().to_string() == exciter_.bench) {
-      watch_.heard_run(measurement.run().to_string(), phase_of(measurement.state()), clock_.now());
-    }
-  });
+  endpoints_.measurement.take_with_writer(
+      [&](const wire::Measurement& measurement, const bus::WriterId& writer) {
+        if (measurement.bench().to_string() == exciter_.bench) {
+          take(measurement, writer);
+        }
+      });
+  take_passed_over();
+  endpoints_.excitation.take_with_writer(
+      [&](const wire::Excitation& excitation, const bus::WriterId& writer) {
+        if (excitation.bench().to_string() == exciter_.bench) {
+          take(excitation, writer);
+        }
+      });
+  if (conductor_.passed_over() > passed_over_said_ && clock_.now() >= next_passed_over_) {
+    next_passed_over_ = clock_.now() + report_interval;
+    spdlog::warn("bench {}: messages about its runs come from other programs than the conductor of "
+                 "run {}, or are repeated; so far {} were passed over",
+                 exciter_.bench, conductor_.conductor().run, conductor_.passed_over());
+    passed_over_said_ = conductor_.passed_over();
+  }
+}
+
+bool ExciterGuard::may_conductor_change() const {
+  const bool is_alive =
+      watch_.run().is_conducted && clock_.now() - conductor_.heard_at() <= ExciterWatch::word_limit;
+  return conductor_.conductor().run.empty() || (watch_.is_known_off() && !is_alive);
+}
+
+void ExciterGuard::take(const wire::Measurement& measurement, const bus::WriterId& writer) {
+  const std::string run = measurement.run().to_string();
+  const RunPhase phase = phase_of(measurement.state());
+  if (conductor_.believes(measurement, writer, phase != RunPhase::over && may_conductor_change(),
+                          clock_.now())) {
+    watch_.heard_run(run, phase, clock_.now());
+  } else if (phase == RunPhase::running && run != conductor_.conductor().run) {
+    other_run_ = {run, clock_.now()};
+  }
+}
+
+void ExciterGuard::take(const wire::Excitation& excitation, const bus::WriterId& writer) {
+  if (conductor_.believes(excitation, writer, may_conductor_change(), clock_.now())) {
+    heard(excitation);
+    return;
+  }
+  const std::string run = excitation.run().to_string();
+  if (is_driven(excitation) && run != conductor_.conductor().run) {
+    other_run_ = {run, clock_.now()};
+  } else if (!is_driven(excitation) && writer.participant() != conductor_.conductor().participant) {
+    passed_over_ = {excitation, writer, clock_.now()};
+  }
+}
+
+void ExciterGuard::take_passed_over() {
+  if (!passed_over_) {
+    return;
+  }
+  const bool is_of_conductor =
+      passed_over_->writer.participant() == conductor_.conductor().participant;
+  if (is_of_conductor &&
+      conductor_.believes(passed_over_->excitation, passed_over_->writer, false, clock_.now())) {
+    heard(passed_over_->excitation);
+    passed_over_.reset();
+  } else if (is_of_conductor || clock_.now() - passed_over_->at > passed_over_for) {
+    passed_over_.reset();
+  }
+}
+
+void ExciterGuard::heard(const wire::Excitation& excitation) {
+  const std::string name = excitation.run().to_string();
+  if (is_driven(excitation) && name != watched_run_) {
+    watched_run_ = name;
+    spdlog::info("bench {}: watching over run {}", exciter_.bench, name);
+  }
+  const bool is_broken_off = excitation.state() == wire::EXCITATION_ABORTED;
+  watch_.heard({.run = name,
+                .is_driven = is_driven(excitation),
+                .settings = settings_of(excitation),
+                .is_in_hand = !is_driven(excitation) || !is_broken_off},
+               clock_.now());
+}
+
+std::string ExciterGuard::unheard_run() const {
+  if (watch_.state() == State::silent) {
+    return watch_.run().run;
+  }
+  const bool is_there = clock_.now() - other_run_.heard <= ExciterWatch::word_limit;
+  return is_there && other_run_.run != conductor_.conductor().run ? other_run_.run : "";
 }
 
 void ExciterGuard::act() {
@@ -214,7 +280,7 @@ void ExciterGuard::keep_record() {
     return;
   }
   recorded_ = watch_.run();
-  const auto written = record_.write(recorded_);
+  const auto written = record_.write(recorded_, conductor_.conductor());
   if (!written && !std::exchange(record_failed_, true)) {
     spdlog::error("bench {}: after a restart this guard will not know what was driven: {}",
                   exciter_.bench, written.error().message);
@@ -262,7 +328,7 @@ void ExciterGuard::report() {
   } else if (!has_failed) {
     next_report_ = {};
   }
-  const std::string unheard = watch_.state() == State::silent ? watch_.run().run : "";
+  const std::string unheard = unheard_run();
   const auto health = has_failed ? wire::HEALTH_FAILED : wire::HEALTH_OK;
   const std::string now = message();
   if (status_.health() == health && status_.message() == now &&

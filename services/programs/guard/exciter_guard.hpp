@@ -4,7 +4,9 @@
 // The exciter is driven while the newest Excitation of a run has no end of its window. The
 // conductor repeats it every half second while it has hold of the generator (idl/README.md, "The
 // run protocol"); nothing heard for ExciterWatch::unattended_limit means that nobody attends,
-// whatever else is heard of the run. What is done then, and what the generator is asked for, stands
+// whatever else is heard of the run. Whose Excitations count: believed_conductor.hpp. A run that
+// drives the exciter and is not that conductor's is named like one that is not heard. What is done
+// then, and what the generator is asked for, stands
 // in exciter_watch.hpp; here are the bus, the generator, the record and the log. What the reference
 // shows of an exciter that goes on although its generator answers that it is off:
 // reference_watch.hpp.
@@ -30,6 +32,7 @@
 #include "services/bus/clock.hpp"
 #include "services/contract/program_identity.hpp"
 #include "services/daemon/supervision/daemon_metrics.hpp"
+#include "services/programs/guard/believed_conductor.hpp"
 #include "services/programs/guard/driven_record.hpp"
 #include "services/programs/guard/exciter_watch.hpp"
 #include "services/programs/guard/guarded_output.hpp"
@@ -52,6 +55,9 @@ public:
 
   static constexpr std::chrono::seconds report_interval{60}; // while it cannot be switched off
   static constexpr std::chrono::seconds status_interval{1};
+  // What a program says before it may conduct counts once it may: who resumes a run says once that
+  // the step that was driven is over.
+  static constexpr std::chrono::seconds passed_over_for{5};
 
   // `own`: the program that guards. `clock` outlives the guard. Fails (network) as readers and
   // writers do.
@@ -79,11 +85,18 @@ private:
   ExciterGuard(wire::ServiceStatus status, GuardedExciter exciter, ExciterWatch watch,
                std::optional<ReferenceWatch> reference, std::unique_ptr<GuardedOutput> output,
                DrivenRecord record, bus::Clock& clock, Endpoints endpoints)
-      : exciter_(std::move(exciter)), watch_(std::move(watch)), reference_(std::move(reference)),
+      : exciter_(std::move(exciter)), watch_(std::move(watch)),
+        conductor_(record.read_conductor(), clock.now()), reference_(std::move(reference)),
         output_(std::move(output)), record_(std::move(record)), clock_(clock),
         endpoints_(std::move(endpoints)), status_(std::move(status)), recorded_(watch_.run()) {}
 
   void take_messages();
+  void take(const wire::Measurement& measurement, const bus::WriterId& writer);
+  void take(const wire::Excitation& excitation, const bus::WriterId& writer);
+  void heard(const wire::Excitation& excitation);
+  void take_passed_over();
+  [[nodiscard]] bool may_conductor_change() const;
+  [[nodiscard]] std::string unheard_run() const;
   void act();
   void look_at_reference();
   [[nodiscard]] bool is_between_steps() const;
@@ -94,8 +107,24 @@ private:
   [[nodiscard]] bool may_be_on() const;
   [[nodiscard]] std::string message() const;
 
+  // Of another program than the conductor.
+  struct PassedOver {
+    wire::Excitation excitation;
+    bus::WriterId writer;
+    Instant at{};
+  };
+  struct OtherRun {
+    std::string run; // drives, or is about to
+    Instant heard{};
+  };
+
   GuardedExciter exciter_;
   ExciterWatch watch_;
+  BelievedConductor conductor_;
+  std::optional<PassedOver> passed_over_;
+  OtherRun other_run_;
+  std::uint64_t passed_over_said_ = 0;
+  Instant next_passed_over_{};
   std::optional<ReferenceWatch> reference_;
   std::unique_ptr<GuardedOutput> output_;
   DrivenRecord record_;

@@ -207,6 +207,13 @@ void ExciterWatch::switched_off(const Expected<void>& outcome, Instant now) {
   next_question_ = now + interval;
 }
 
+bool ExciterWatch::is_known_off() const {
+  if (must_be_off_ || !may_be_on_.empty() || state_ == State::driven) {
+    return false;
+  }
+  return state_ != State::silent || idle_from_; // the generator has answered since
+}
+
 bool ExciterWatch::may_ask(Instant now) const {
   const bool may_connect =
       state_ == State::begins && run_.is_conducted && now - heard_ <= word_limit;

@@ -88,6 +88,8 @@ public:
   [[nodiscard]] State state() const { return state_; }
   [[nodiscard]] const DrivenRun& run() const { return run_; }
   [[nodiscard]] Instant heard_at() const { return heard_; }
+  // The run drives nothing, and its output is off, as far as it says and the generator answers.
+  [[nodiscard]] bool is_known_off() const;
   // Why nobody knows that the output is off; empty: nothing speaks for it.
   [[nodiscard]] const std::string& may_be_on() const { return may_be_on_; }
   // An output that is on and is a person's.

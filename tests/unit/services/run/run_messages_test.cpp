@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "services/bus/memory/memory_network.hpp"
 #include "services/bus/memory/stepped_clock.hpp"
 
 namespace dyncal::inline run {
@@ -99,6 +100,50 @@ wire::ServiceStatus status_of(wire::ArmState arm) {
   status.arm(arm);
   status.contract_version(wire::CONTRACT_VERSION);
   return status;
+}
+
+// A chain each for what it plans and what it excites.
+TEST(RunMessages, ShowsItsGuardALinkInEveryMessage) {
+  bus::SteppedClock clock;
+  bus::MemoryNetwork network(clock);
+  bus::Participant conductor = network.join("conductor");
+  bus::Participant guard = network.join("guard");
+  auto plans = guard.reader(bus::topics::measurement, "b", nullptr).value();
+  auto excitations = guard.reader(bus::topics::excitation, "b", nullptr).value();
+  auto messages = RunMessages::open(conductor, clock, "b", "r", "192.0.2.7:5025", nullptr);
+  ASSERT_TRUE(messages) << messages.error().message;
+  wire::Measurement plan;
+  plan.bench("b");
+  plan.run("r");
+  wire::PlannedStep step;
+  step.step(1);
+  std::optional<ChainFollower> planned;
+  std::optional<ChainFollower> excited;
+  for (std::uint64_t round = 1; round <= 5; ++round) {
+    messages->publish(plan);
+    messages->announce(step, 1, wire::EXCITATION_STEADY);
+    plans.take([&](const wire::Measurement& message) {
+      const NumberedLink shown{message.link_number(), parse_chain_link(message.link()).value()};
+      if (!planned) {
+        planned.emplace(shown);
+        excited.emplace(NumberedLink{0, parse_chain_link(message.excitation_anchor()).value()});
+      } else {
+        EXPECT_TRUE(planned->accept(shown, 1));
+      }
+    });
+    clock.advance(std::chrono::milliseconds(500));
+    const auto take = [&] {
+      return excitations.take([&](const wire::Excitation& message) {
+        EXPECT_TRUE(
+            excited->accept({message.link_number(), parse_chain_link(message.link()).value()}, 1));
+      });
+    };
+    EXPECT_EQ(take(), 1U);
+    messages->repeat_announcement();
+    EXPECT_EQ(take(), 1U);
+  }
+  EXPECT_EQ(planned->latest().number, 5U);
+  EXPECT_EQ(excited->latest().number, 10U);
 }
 
 bool has_finished(const RunMessages& messages) {

@@ -21,6 +21,23 @@ TEST(DrivenRecord, GivesBackWhatWasWritten) {
   EXPECT_TRUE(record.write({})) << "that is gone already";
 }
 
+TEST(DrivenRecord, GivesBackTheConductorOfItsRun) {
+  const tests::TemporaryFolder folder;
+  const DrivenRecord record(folder.path(), "b", "g");
+  EXPECT_EQ(record.read_conductor(), Conductor{});
+  ASSERT_TRUE(record.write(driven));
+  EXPECT_EQ(record.read_conductor(), Conductor{}) << "as a guard of 0.2.0 writes it";
+  Conductor conductor{"r1", "0110aa"};
+  for (const auto& link : {std::optional<NumberedLink>{}, std::optional(NumberedLink{7, {1, 2}})}) {
+    conductor.links[1] = link;
+    ASSERT_TRUE(record.write(driven, conductor));
+    EXPECT_EQ(record.read_conductor(), conductor);
+    EXPECT_EQ(record.read(), driven);
+  }
+  ASSERT_TRUE(record.write(driven, {"r2", "0110aa"}));
+  EXPECT_EQ(record.read_conductor(), Conductor{});
+}
+
 TEST(DrivenRecord, IsOneFileForEachBenchAndOfOneGenerator) {
   const tests::TemporaryFolder folder;
   ASSERT_TRUE(DrivenRecord(folder.path(), "a b", "192.0.2.7:5025").write(driven));
