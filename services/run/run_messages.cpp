@@ -175,8 +175,12 @@ template <class Message, class Result, class SameKey>
 std::size_t RunMessages::take_newest(bus::Reader<Message>& reader, std::vector<Result>& all,
                                      const std::optional<Recipe>& planned, SameKey same_key) {
   std::size_t taken = 0;
-  reader.take([&](const Message& message) {
+  reader.take_with_writer([&](const Message& message, const bus::WriterId& writer) {
     if (message.run().to_string() != run_) {
+      return;
+    }
+    if (!analysis_ || writer.participant() != analysis_participant_) {
+      leave_out(writer);
       return;
     }
     if (is_of_other_recipe(message, recipe_sha256_)) {
@@ -248,7 +252,6 @@ void RunMessages::take_sources(RunOutcome& outcome) {
 std::size_t RunMessages::take(RunOutcome& outcome) {
   take_sources(outcome);
   take_status(outcome); // first: with FINISHED all results are there
-  recipe_sha256_ = outcome.recipe_sha256;
   const std::size_t results = take_newest(
       published_.results, outcome.results, outcome.recipe, [](const auto& a, const auto& b) {
         return a.step == b.step && a.repetition == b.repetition && a.channel == b.channel;
@@ -265,34 +268,59 @@ std::size_t RunMessages::take(RunOutcome& outcome) {
 
 void RunMessages::take_status(RunOutcome& outcome) {
   bool is_of_older_contract = false;
-  endpoints_.status.take([&](const wire::ServiceStatus& status) {
-    if (!status.guarded_generator().empty()) {
-      guard_.take(status, clock_->now());
-    } else if (status.run().to_string() == run_ && follows(status)) {
-      is_of_older_contract = status.contract_version() < contract_versions::partitions_of_runs;
-      const bool reports_work = !status.message().empty() && status.health() != wire::HEALTH_FAILED;
-      const bool is_news = !analysis_ || analysis_->message() != status.message();
-      signs_of_work_ += reports_work && is_news ? 1 : 0;
-      analysis_ = status;
-      analysis_heard_ = clock_->now();
-      outcome.analysis_dds = status.dds();
-      outcome.analysis_software = status.software();
-      outcome.analysis_host = status.host();
-    }
-  });
-  if (is_of_older_contract && !reads_whole_bench_) {
-    reads_whole_bench_ = true;
+  const std::string before = analysis_participant_;
+  recipe_sha256_ = outcome.recipe_sha256;
+  endpoints_.status.take_with_writer(
+      [&](const wire::ServiceStatus& status, const bus::WriterId& writer) {
+        if (!status.guarded_generator().empty()) {
+          guard_.take(status, clock_->now());
+        } else if (status.run().to_string() == run_ && follows(status, writer)) {
+          is_of_older_contract = status.contract_version() < contract_versions::partitions_of_runs;
+          follow(status, writer.participant());
+          outcome.analysis_dds = status.dds();
+          outcome.analysis_software = status.software();
+          outcome.analysis_host = status.host();
+        } else if (status.run().to_string() == run_) {
+          leave_out(writer);
+        }
+      });
+  const bool is_of_older_for_the_first_time = is_of_older_contract && !reads_whole_bench_;
+  reads_whole_bench_ = reads_whole_bench_ || is_of_older_contract;
+  const bool was_left_out =
+      analysis_participant_ != before && left_out_.erase(analysis_participant_) > 0;
+  if (is_of_older_for_the_first_time || was_left_out) {
     collect_again();
   }
 }
 
-bool RunMessages::follows(const wire::ServiceStatus& status) const {
-  if (!analysis_ || status.service() == analysis_->service()) {
+bool RunMessages::follows(const wire::ServiceStatus& status, const bus::WriterId& writer) const {
+  if (!analysis_ || writer.participant() == analysis_participant_) {
     return true;
   }
   const bool evaluates =
       analysis_->arm() == wire::ARM_ARMED || analysis_->arm() == wire::ARM_FINISHED;
-  return !evaluates || clock_->now() - analysis_heard_ > attention_limit;
+  const bool is_free = !evaluates || clock_->now() - analysis_heard_ > attention_limit;
+  // Not told before contract 3.
+  const bool is_of_this_run =
+      status.conductor().empty() || status.recipe_sha256().empty() ||
+      (status.conductor() == conductor_ && status.recipe_sha256() == recipe_sha256_);
+  return is_free && is_of_this_run;
+}
+
+void RunMessages::follow(const wire::ServiceStatus& status, const std::string& participant) {
+  const bool reports_work = !status.message().empty() && status.health() != wire::HEALTH_FAILED;
+  const bool is_news = !analysis_ || analysis_->message() != status.message();
+  signs_of_work_ += reports_work && is_news ? 1 : 0;
+  analysis_ = status;
+  analysis_participant_ = participant;
+  analysis_heard_ = clock_->now();
+}
+
+void RunMessages::leave_out(const bus::WriterId& writer) {
+  of_others_ += analysis_ ? 1 : 0;
+  if (left_out_.size() < max_left_out) {
+    left_out_.insert(writer.participant());
+  }
 }
 
 } // namespace dyncal::inline run

@@ -1,6 +1,11 @@
 // The messages of one run as its conductor sends and receives them: the plan and the excitation go
 // out, status and results of the analysis come in.
 //
+// The analysis of the run is the participant whose ServiceStatus has armed it; when it is not heard
+// any more, the one that takes the run over, for the same conductor and recipe. What other
+// participants say as an analysis of this run is left out and counted, their results too; when one
+// of them becomes the analysis, it is asked for once more.
+//
 // Of everything that comes the newest of every key is kept, but no result of an earlier attempt at
 // its step (an analysis that was restarted publishes them all again); messages of other runs on the
 // bench are left out, and results of them not even asked for: an analysis keeps those of some runs,
@@ -25,12 +30,12 @@
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
 #include "services/evaluation/result/run_outcome.hpp"
+#include "services/run/attendance_links.hpp"
 #include "services/run/guard_watch.hpp"
 
 namespace dyncal::inline run {
 
 class RunMessages {
-#include "services/run/attendance_links.hpp"
 public:
   // `generator`: the address that the run drives, as GuardWatch wants it; empty: none that a guard
   // could switch off. `participant` and `clock` outlive the object. Fails (network) as writers and
@@ -72,6 +77,8 @@ public:
   }
   // Results of this run that it did not plan or excite.
   [[nodiscard]] std::size_t unplanned() const { return unplanned_; }
+  // Statuses and results of this run from others than its analysis.
+  [[nodiscard]] std::size_t of_others() const { return of_others_; }
   // The newest status of the analysis service that evaluates this run; nothing before the first. It
   // is the one that is armed, until it has been silent for attention_limit; then whichever reports.
   [[nodiscard]] const std::optional<wire::ServiceStatus>& analysis() const { return analysis_; }
@@ -87,6 +94,8 @@ public:
   }
 
 private:
+  static constexpr std::size_t max_left_out = 100; // participants to know
+
   struct ResultReaders {
     bus::Reader<wire::CalibrationResult> results;
     bus::Reader<wire::TransferFunction> transfer_functions;
@@ -110,6 +119,7 @@ private:
                                               const std::string& bench,
                                               const std::optional<std::string>& run,
                                               const std::shared_ptr<bus::WakeUp>& wake_up);
+  void write_announcement();
   void take_sources(RunOutcome& outcome);
   void take_status(RunOutcome& outcome);
   void take_source(RunSource source, std::vector<RunSource>& sources);
@@ -119,9 +129,10 @@ private:
   [[nodiscard]] static bool was_excited(const Result& /*result*/,
                                         const std::vector<Result>& /*known*/) {
     return true;
-  void write_announcement();
   }
-  [[nodiscard]] bool follows(const wire::ServiceStatus& status) const;
+  [[nodiscard]] bool follows(const wire::ServiceStatus& status, const bus::WriterId& writer) const;
+  void follow(const wire::ServiceStatus& status, const std::string& participant);
+  void leave_out(const bus::WriterId& writer);
   template <class Message, class Result, class SameKey>
   std::size_t take_newest(bus::Reader<Message>& reader, std::vector<Result>& all,
                           const std::optional<Recipe>& planned,
@@ -132,18 +143,22 @@ private:
   std::string bench_;
   std::string run_;
   GuardWatch guard_;
+  std::optional<AttendanceLinks> links_; // of a run that a guard may watch over
   std::shared_ptr<bus::WakeUp> wake_up_;
   Endpoints endpoints_;
   ResultReaders published_;
   bool reads_whole_bench_ = false; // because of an analysis of an older contract
   std::optional<wire::ServiceStatus> analysis_;
+  std::string analysis_participant_;
+  std::set<std::string> left_out_; // participants, at most max_left_out
+  std::size_t of_others_ = 0;
   bus::Clock::Instant analysis_heard_;
   std::size_t signs_of_work_ = 0;
+  std::string conductor_; // by its Measurement
   std::string recipe_sha256_;
   bool other_recipe_ = false; // in a result of this run
   std::size_t unplanned_ = 0;
   bool was_planned_here_ = false; // else the run is resumed, and another made attempts before
-  std::optional<AttendanceLinks> links_; // of a run that a guard may watch over
   bool has_begun_ = false;        // RUNNING
   std::set<std::string> described_;
   std::map<std::string, std::string> other_instruments_; // sentences by source
@@ -153,4 +168,3 @@ private:
 };
 
 } // namespace dyncal::inline run
-  std::string conductor_; // by its Measurement

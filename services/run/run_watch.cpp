@@ -67,6 +67,10 @@ void RunWatch::look_without_hold() {
            "another program "
            "publish as the analysis of this run?");
   }
+  if (messages_.of_others() > 0 && !std::exchange(others_said_, true)) {
+    notice("another program than the analysis of this run publishes about it; what it says is left "
+           "out: 'dyncal doctor' names the programs that are there");
+  }
   if (measurement_.state() == wire::MEASUREMENT_RUNNING) {
     if (const auto sentence = messages_.notice_of_guard()) {
       notice(*sentence);

@@ -101,6 +101,7 @@ private:
   std::uint32_t attempt_ = 1;
   Instant first_step_began_;
   bool unplanned_said_ = false;
+  bool others_said_ = false;
 };
 
 } // namespace dyncal::inline run

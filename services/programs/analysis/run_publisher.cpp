@@ -35,6 +35,8 @@ void RunPublisher::publish(const RunState& state) {
   status.health(state.health);
   status.arm(state.arm);
   status.message(state.message);
+  status.conductor(state.conductor);
+  status.recipe_sha256(state.recipe_sha256);
   status.software(software_version());
   status.contract_version(wire::CONTRACT_VERSION);
   status.dds(identity_.dds);

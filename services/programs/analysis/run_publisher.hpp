@@ -30,6 +30,9 @@ struct RunState {
   wire::ArmState arm = wire::ARM_WAITING;
   wire::HealthState health = wire::HEALTH_OK;
   std::string message;
+  // Of the run, so that its conductor knows its analysis.
+  std::string conductor = {};
+  std::string recipe_sha256 = {};
 };
 
 class RunPublisher {

@@ -371,7 +371,8 @@ void RunSession::enter(SessionState state, std::string message) {
 }
 
 void RunSession::publish() {
-  publisher_.publish({arm_of(state_), health_of(state_), message_});
+  publisher_.publish({arm_of(state_), health_of(state_), message_, conductor_.name(),
+                      measurement_.recipe_sha256()});
 }
 
 void RunSession::begin_arming_again(Instant now) {

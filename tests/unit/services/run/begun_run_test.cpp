@@ -360,7 +360,8 @@ TEST_F(ConductedRun, LeavesOutAnAttemptThatItNeverMade) {
   describe_both("1");
   tests::PlayedAnalysis forger(network_, "b", "r1");
   clock_.at(1s, [&] { forger.publish(result(2, 1, 42.0)); }); // of a step to come
-  clock_.at(8s, [&] { forger.publish(result(1, 9, 42.0)); });
+  clock_.at(7s, [&] { forger.publish(result(1, 1, 42.0)); });
+  clock_.at(8s, [&] { analysis_.publish(result(1, 9, 42.0)); });
   clock_.at(9s, [&] {
     analysis_.publish(result(1, 1, 1.0));
     analysis_.publish(result(2, 1, 1.0));
@@ -371,6 +372,7 @@ TEST_F(ConductedRun, LeavesOutAnAttemptThatItNeverMade) {
   EXPECT_DOUBLE_EQ(outcome->results[0].magnitude, 1.0);
   EXPECT_DOUBLE_EQ(outcome->results[1].magnitude, 1.0);
   EXPECT_THAT(notices_, testing::Contains(HasSubstr("that it did not plan or excite")));
+  EXPECT_THAT(notices_, testing::Contains(HasSubstr("another program than the analysis")));
 }
 
 TEST_F(ConductedRun, TakesTheAttemptsThatItMade) {

@@ -131,7 +131,7 @@ protected:
     if (over && (known == published_.end() || known->second.attempt() < attempt.second)) {
       published_[attempt.first] = evaluate_(attempt);
       if (published_[attempt.first].step() != 0) {
-        analysis_.publish(published_[attempt.first]);
+        (silent_ && standby_serves_ ? standby_ : analysis_).publish(published_[attempt.first]);
       }
     }
   }

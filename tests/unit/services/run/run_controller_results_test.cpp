@@ -178,6 +178,50 @@ TEST_F(RunControllerResultsTest, LeavesOutMessagesOfAnotherRunOnTheBench) {
   EXPECT_TRUE(outcome->results.empty());
 }
 
+// A program that calls itself as the analysis of the run.
+TEST_F(RunControllerResultsTest, LeavesOutWhatAnotherProgramPublishesAboutTheRun) {
+  tests::PlayedAnalysis other(network_, bench_name, run_name);
+  play_analysis();
+  for (const auto at : {1300ms, 2300ms, 4300ms}) { // not beside what it would replace in a reader
+    clock_.at(at, [&] {
+      other.report(wire::ARM_ARMED, "it says");
+      other.publish_result(1);
+      other.publish_result(2);
+      other.publish_transfer_function("dau/acceleration_x");
+    });
+  }
+  clock_.at(7s, [this] { analysis_.publish_result(1); });
+  clock_.at(8s, [this] { finish(); });
+  const auto outcome = conduct();
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  EXPECT_EQ(outcome->problem, "");
+  EXPECT_EQ(outcome->results.size(), 1U);
+  EXPECT_TRUE(outcome->transfer_functions.empty());
+  EXPECT_THAT(notices_, testing::Contains(testing::HasSubstr("another program than the analysis "
+                                                             "of this run"))
+                            .Times(1));
+}
+
+// All of them come once more from the one that takes the run over, some before it is heard.
+TEST_F(RunControllerResultsTest, TakesTheResultsOfTheAnalysisThatTakesTheRunOver) {
+  tests::PlayedAnalysis next(network_, bench_name, run_name, "analysis@other:1");
+  play_analysis();
+  clock_.at(2s, [this] {
+    analysis_.publish_result(1);
+    finished_ = true; // and says nothing any more
+  });
+  clock_.at(4s, [&] { next.publish_result(1, "dau/acceleration_y"); });
+  clock_.every(1s, [&] {
+    if (clock_.elapsed() > 5s) {
+      next.report(clock_.elapsed() < 30s ? wire::ARM_ARMED : wire::ARM_FINISHED);
+    }
+  });
+  const auto outcome = conduct();
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  EXPECT_EQ(outcome->results.size(), 2U);
+  EXPECT_EQ(outcome->analysis_software, "dyncal of the test");
+}
+
 // An analysis keeps the results of past runs: on a slow link they would come before all else.
 TEST_F(RunControllerResultsTest, IsSentNoResultsOfRunsBefore) {
   tests::PlayedAnalysis before(network_, bench_name, "r0");
