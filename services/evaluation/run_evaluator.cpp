@@ -131,6 +131,12 @@ bool RunEvaluator::is_evaluated(const TriggeredRecord& record) const {
   return place && *place < next_step_;
 }
 
+void RunEvaluator::note_second_writer(const std::string& source) {
+  if (SourceRecord* record = records_.find(source); record != nullptr && !finished_) {
+    record->note_second_writer();
+  }
+}
+
 void RunEvaluator::add(const std::string& source, TriggeredRecord record) {
   if (!finished_ && !is_evaluated(record)) {
     method_->add(source, std::move(record));

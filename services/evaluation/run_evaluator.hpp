@@ -103,6 +103,8 @@ public:
   // (record/announced_instants.hpp).
   void add(const std::string& source, const SourceBlock& block,
            const std::optional<BlockTimes>& times = {});
+  // A block of this source came from another program than those before it, and is not added.
+  void note_second_writer(const std::string& source);
   // Whether a block of this session may be added without the loss of a step that has come but
   // cannot be evaluated yet, because another source is behind: a new session drops what is held.
   // It is for the caller to wait with the block, and for how long.

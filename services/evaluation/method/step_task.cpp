@@ -180,6 +180,9 @@ StepTask make_step_task(std::shared_ptr<const Recipe> recipe, std::size_t step,
     if (record->lost_in(interval).all() > 0) {
       task.flags.push_back(flag_of_source(ResultFlag::samples_lost, record->source()));
     }
+    if (record->has_second_writer_in(interval)) {
+      task.flags.push_back(flag_of_source(ResultFlag::two_writers, record->source()));
+    }
     if (!task.recipe->whole_record && static_cast<double>(interval.end_ns - interval.begin_ns) <
                                           0.95e9 * task.step().duration_s) {
       task.flags.push_back(flag_of_source(ResultFlag::shorter_than_planned, record->source()));

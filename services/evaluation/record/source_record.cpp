@@ -84,6 +84,22 @@ bool SourceRecord::add(const SourceBlock& block) {
   return true;
 }
 
+void SourceRecord::note_second_writer() {
+  const std::int64_t at_ns = newest_ns_.value_or(beginning_of_time);
+  if (second_writer_ns_.empty() || second_writer_ns_.back() != at_ns) {
+    second_writer_ns_.push_back(at_ns);
+  }
+  if (second_writer_ns_.size() > max_gaps) {
+    second_writer_ns_.pop_front();
+  }
+}
+
+bool SourceRecord::has_second_writer_in(const TimeInterval& interval) const {
+  return std::ranges::any_of(second_writer_ns_, [&](std::int64_t at_ns) {
+    return at_ns >= interval.begin_ns && at_ns <= interval.end_ns;
+  });
+}
+
 void SourceRecord::append(const SourceBlock& block) {
   columns_.resize(block.channels);
   append_stamps(block);
@@ -179,6 +195,7 @@ void SourceRecord::restart() {
   forget(stamps_ns().size());
   gaps_.clear();
   overflow_.clear();
+  second_writer_ns_.clear();
   began_ns_.reset();
   newest_ns_.reset();
   latest_ns_.reset();
@@ -197,6 +214,9 @@ void SourceRecord::forget_before(std::int64_t stamp_ns) {
   const auto keep =
       std::ranges::find_if(stamps, [&](std::int64_t stamp) { return stamp >= stamp_ns; });
   forget(static_cast<std::size_t>(keep - stamps.begin()));
+  while (!second_writer_ns_.empty() && second_writer_ns_.front() < stamp_ns) {
+    second_writer_ns_.pop_front();
+  }
   for (std::deque<Gap>* gaps : {&gaps_, &overflow_}) {
     while (!gaps->empty() && gaps->front().after_ns < stamp_ns) {
       gaps->pop_front();
@@ -218,6 +238,7 @@ SourceRecord SourceRecord::part(const TimeInterval& interval) const {
   part.kept_channels_ = kept_channels_;
   part.gaps_ = gaps_;
   part.overflow_ = overflow_;
+  part.second_writer_ns_ = second_writer_ns_;
   if (const auto open = open_gap()) {
     part.gaps_.push_back(*open);
   }

@@ -71,6 +71,10 @@ public:
   // or one whose sizes contradict each other or earlier blocks; samples of the last are lost.
   bool add(const SourceBlock& block);
 
+  // A block of the session came from another program than the others, and is not added: something
+  // else sends as this source now.
+  void note_second_writer();
+
   // Whether a block of this session would drop what is held.
   [[nodiscard]] bool is_new_session(std::uint64_t session) const {
     return continuity_.is_new_session(session);
@@ -100,6 +104,9 @@ public:
 
   // Samples known to be lost in the interval.
   [[nodiscard]] SampleLoss lost_in(const TimeInterval& interval) const;
+
+  // Whether a second writer was noted while samples of the interval came.
+  [[nodiscard]] bool has_second_writer_in(const TimeInterval& interval) const;
 
   [[nodiscard]] bool ended() const { return ended_; }
   [[nodiscard]] std::uint32_t restarts() const { return restarts_; }
@@ -154,8 +161,9 @@ private:
   // 0: not known for this sample; empty while none is known.
   std::vector<std::uint32_t> stamp_uncertainties_ns_;
   std::vector<std::vector<double>> columns_;
-  std::deque<Gap> gaps_;     // samples that did not come, in their order
-  std::deque<Gap> overflow_; // samples that the buffer dropped, in their order
+  std::deque<Gap> gaps_;                      // samples that did not come, in their order
+  std::deque<Gap> overflow_;                  // samples that the buffer dropped, in their order
+  std::deque<std::int64_t> second_writer_ns_; // the newest stamps when one was noted
   std::optional<std::int64_t> began_ns_;
   std::optional<std::int64_t> newest_ns_;
   std::optional<std::int64_t> latest_ns_; // of the trusted stamps

@@ -160,6 +160,11 @@ constexpr std::array rows{
     Row{ResultFlag::closure_open, "closure_open", "what must hold over the run does not",
         "two things that were measured independently of each other disagree by more than chance "
         "and the tolerances of instruments leave them; its sentence says which, and what to do"},
+    Row{ResultFlag::two_writers, "two_writers", "another program sends in its name",
+        "blocks of the same session of this source came from two programs; those of the one that "
+        "was there first were used, and nothing shows that it is the instrument; end the other "
+        "one, which dyncal doctor names, and repeat the step",
+        true},
     Row{ResultFlag::from_message, "other", "",
         "a newer version of dyncal made this result; its sentence says what it found"},
 };

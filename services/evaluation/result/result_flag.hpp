@@ -51,6 +51,7 @@ enum class ResultFlag {
   group_delay_ambiguous,
   group_delay_not_constant,
   closure_open,
+  two_writers,
   from_message // read from the bus, and not known to this version
 };
 

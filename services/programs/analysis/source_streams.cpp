@@ -219,14 +219,16 @@ void SourceStreams::take_samples(Instant now) {
 
 template <class Message, class Take>
 void SourceStreams::take(bus::Reader<Message>& reader, Take take) {
-  reader.take([&](const Message& message) {
+  reader.take_with_writer([&](const Message& message, const bus::WriterId& writer) {
     // What is given again comes in a partition of this run's own, regardless of who writes there.
     const auto found =
         message.bench() == bench_ ? streams_.find(message.source().to_string()) : streams_.end();
     if (found == streams_.end() || !found->second.follower) {
       return;
     }
-    if (auto* follower = std::get_if<StreamFollower<Message>>(&*found->second.follower)) {
+    if (!found->second.writers.takes(message.session(), writer)) {
+      evaluator_.note_second_writer(found->first);
+    } else if (auto* follower = std::get_if<StreamFollower<Message>>(&*found->second.follower)) {
       take(found->second, message, *follower);
     }
   });
@@ -362,7 +364,7 @@ std::optional<LostSource> SourceStreams::lost_source(Instant now, Instant watche
                                                      std::chrono::seconds silence_limit,
                                                      bool may_not_end) const {
   for (const auto& [name, stream] : streams_) {
-    if (stream.twins.twins()) {
+    if (stream.twins.twins() || (is_triggered(stream) && stream.writers.of_others() > 0)) {
       return LostSource{two_send_as(bench_, name, stream.service_before, stream.service), false};
     }
     if (stream.unfit) {

@@ -11,7 +11,9 @@
 // file, another instrument) counts as lost until it describes itself otherwise. Samples wait
 // meanwhile (waiting_blocks.hpp). Those of a session that describes itself in no way are left out
 // after `session_limit`, and its source counts as lost: another's description says nothing of them.
-// Belongs to the run's one thread.
+// A session has one writer: the program that was heard first in it. Blocks of another one are left
+// out and counted, and the steps that they come in are flagged; records of another one end the run,
+// for nothing tells which step they spoil. Belongs to the run's one thread.
 #pragma once
 
 #include <chrono>
@@ -29,6 +31,7 @@
 #include "services/contract/known_sources.hpp"
 #include "services/evaluation/run_evaluator.hpp"
 #include "services/programs/analysis/described_sessions.hpp"
+#include "services/programs/analysis/session_writers.hpp"
 #include "services/programs/analysis/stream_follower.hpp"
 #include "services/programs/analysis/waiting_blocks.hpp"
 
@@ -119,6 +122,7 @@ private:
     Instant waiting_since{};
     std::optional<Follower> follower; // from the first description on
     DuplicateSourceDetector twins;
+    SessionWriters writers{};
     std::string service{}; // that described it last, host and process; empty: not known
     std::string service_before{};
   };

@@ -80,6 +80,8 @@ constexpr std::array rows{
         "phases are stated at each frequency; the delay is not certified"},
     Row{ResultFlag::closure_open, true,
         "what was measured independently of the value disagrees with it"},
+    Row{ResultFlag::two_writers, true,
+        "two programs sent as one instrument, and nothing shows which of them it is"},
     Row{ResultFlag::from_message, true, "this version does not know the flag and cannot judge it"},
 };
 

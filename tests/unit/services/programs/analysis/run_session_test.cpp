@@ -306,8 +306,7 @@ TEST_F(RunSessionTest, DoesNotTakeBlocksThatNameAnotherBench) {
   writer.write(last);
   work();
   EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_OK);
-  last.bench(tests::played_bench);
-  writer.write(last);
+  dau_.end_stream();
   work();
   EXPECT_NE(published_.newest_status().health(), wire::HEALTH_OK) << "else nothing was tried";
 }
@@ -398,6 +397,37 @@ TEST_F(RunSessionTest, PublishesWhatItEvaluatesAndCountsIt) {
   EXPECT_EQ(published_.newest_status().results_published(), 1U);
   EXPECT_EQ(published_.newest_status().transfer_functions_published(), 1U);
   EXPECT_EQ(published_.newest_status().clock_reports_published(), 1U);
+}
+
+// In the same session, a block ahead each time: those of the source itself would be duplicates.
+TEST_F(RunSessionTest, LeavesOutWhatAnotherProgramSendsAsASourceAndFlagsIt) {
+  arm_and_run();
+  session_->announce({});
+  PlayedSource forger(network_, dau_.description(), "forger");
+  forger.send_nothing(); // as the source has answered
+  acs_.send(synthetic_.acs_blocks());
+  const auto blocks = synthetic_.dau_blocks();
+  ASSERT_GT(blocks.size(), 5U);
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    wire::SampleBlock forged = blocks[i];
+    for (double& value : forged.values()) {
+      value *= 1.1;
+    }
+    forger.send({forged});
+    work();
+    dau_.send({blocks[i]});
+    work();
+  }
+  set_state(wire::MEASUREMENT_DONE);
+  work();
+  work();
+  ASSERT_EQ(published_.results().size(), 1U);
+  const wire::CalibrationResult result = published_.results()[0];
+  EXPECT_TRUE(result.valid()) << result.problem();
+  EXPECT_NEAR(result.magnitude(), synthetic_.magnitude, 0.01);
+  EXPECT_EQ(result.lost(), 0U);
+  EXPECT_THAT(result.flag_names(), testing::Contains("two_writers"));
+  EXPECT_THAT(result.flags(), testing::Contains("dau: another program sends in its name"));
 }
 
 TEST_F(RunSessionTest, LeavesOutSamplesFromBeforeASourcesAnswer) {
