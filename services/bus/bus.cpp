@@ -17,15 +17,15 @@ std::string names_in_this_build() {
 }
 
 base::Expected<std::unique_ptr<UntypedParticipant>>
-create_untyped(const ParticipantOptions& options) {
+create_by_vendor(const ParticipantOptions& options, const SecurityFiles* security) {
 #ifdef DYNCAL_HAVE_FAST_DDS
   if (options.vendor == Vendor::fast_dds) {
-    return create_fast_dds_participant(options);
+    return create_fast_dds_participant(options, security);
   }
 #endif
 #ifdef DYNCAL_HAVE_CYCLONE_DDS
   if (options.vendor == Vendor::cyclone_dds) {
-    return create_cyclone_dds_participant(options);
+    return create_cyclone_dds_participant(options, security);
   }
 #endif
   return fail(base::ErrorCode::network,
@@ -35,14 +35,20 @@ create_untyped(const ParticipantOptions& options) {
 
 } // namespace
 
-base::Expected<Participant> Participant::create(const ParticipantOptions& options) {
+base::Expected<std::unique_ptr<UntypedParticipant>>
+create_untyped_participant(const ParticipantOptions& options, const SecurityFiles* security) {
   if (options.domain < 0 || options.domain > max_domain) {
     return fail(base::ErrorCode::network, "invalid DDS domain " + std::to_string(options.domain) +
                                               ": must be between 0 and " +
                                               std::to_string(max_domain));
   }
-  return create_untyped(options).map(
-      [](auto participant) { return Participant(std::move(participant)); });
+  return create_by_vendor(options, security);
+}
+
+base::Expected<Participant> Participant::create(const ParticipantOptions& options) {
+  return create_untyped_participant(options, nullptr).map([](auto participant) {
+    return Participant(std::move(participant));
+  });
 }
 
 base::Expected<Vendor> parse_vendor(const std::string& name) {

@@ -10,6 +10,7 @@
 #include "services/bus/cyclonedds/cyclone_dds_config.hpp"
 #include "services/bus/cyclonedds/cyclone_dds_discovery.hpp"
 #include "services/bus/cyclonedds/cyclone_dds_log.hpp"
+#include "services/bus/cyclonedds/cyclone_dds_security.hpp"
 #include "services/bus/cyclonedds/cyclone_dds_type.hpp"
 #include "services/bus/host_network.hpp"
 #include "services/bus/qos_profiles.hpp"
@@ -353,8 +354,8 @@ private:
 } // namespace
 
 base::Expected<std::unique_ptr<UntypedParticipant>>
-create_cyclone_dds_participant(const ParticipantOptions& options) {
-  DYNCAL_TRY(const auto config, cyclone_dds_config(options));
+create_cyclone_dds_participant(const ParticipantOptions& options, const SecurityFiles* security) {
+  DYNCAL_TRY(const auto config, cyclone_dds_config(options, security != nullptr));
   if (const auto warning = receive_buffer_warning(
           wanted_receive_buffer_bytes, granted_receive_buffer(wanted_receive_buffer_bytes));
       !warning.empty() && options.warn) {
@@ -365,6 +366,9 @@ create_cyclone_dds_participant(const ParticipantOptions& options) {
   DYNCAL_TRY(auto domain, open_domain(options.domain, config));
   const Qos qos(dds_create_qos());
   dds_qset_entity_name(qos.get(), options.name.c_str());
+  if (security != nullptr) {
+    set_cyclone_dds_security(*security, *qos);
+  }
   const dds_entity_t participant =
       dds_create_participant(static_cast<dds_domainid_t>(options.domain), qos.get(), nullptr);
   if (participant < 0) {

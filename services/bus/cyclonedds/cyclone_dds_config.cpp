@@ -12,7 +12,7 @@ std::string element(const std::string& name, const std::string& text) {
   return "<" + name + ">" + text + "</" + name + ">";
 }
 
-std::string general(const ParticipantOptions& options, const std::string& address) {
+std::string general(const ParticipantOptions& options, const std::string& address, bool secured) {
   std::string text;
   if (!address.empty()) {
     text += element("Interfaces", "<NetworkInterface address=\"" + address + "\"/>");
@@ -21,7 +21,8 @@ std::string general(const ParticipantOptions& options, const std::string& addres
   text += element("AllowMulticast", options.multicast ? "spdp" : "false");
   // Packets with headers stay below max_udp_payload_bytes, which is the most that Fast DDS receives
   // here.
-  text += element("MaxMessageSize", "1400B") + element("FragmentSize", "1300B");
+  text += secured ? element("MaxMessageSize", "65000B") + element("FragmentSize", "64000B")
+                  : element("MaxMessageSize", "1400B") + element("FragmentSize", "1300B");
   return element("General", text);
 }
 
@@ -59,14 +60,14 @@ std::string internal() {
 
 } // namespace
 
-base::Expected<std::string> cyclone_dds_config(const ParticipantOptions& options) {
+base::Expected<std::string> cyclone_dds_config(const ParticipantOptions& options, bool secured) {
   std::string address;
   if (!options.interface_name.empty()) {
     DYNCAL_TRY(address, interface_address(options.interface_name));
   }
   DYNCAL_TRY(const auto peers, resolve_peers(options.peers));
 
-  std::string config = "<CycloneDDS><Domain Id=\"any\">" + general(options, address) +
+  std::string config = "<CycloneDDS><Domain Id=\"any\">" + general(options, address, secured) +
                        discovery(address.empty() ? "127.0.0.1" : address, peers) + internal() +
                        "</Domain></CycloneDDS>";
   if (const char* users_own = std::getenv("CYCLONEDDS_URI");

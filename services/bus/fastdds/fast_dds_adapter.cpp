@@ -378,10 +378,10 @@ std::vector<std::string> announced_addresses(const std::string& interface_name) 
 } // namespace
 
 base::Expected<std::unique_ptr<UntypedParticipant>>
-create_fast_dds_participant(const ParticipantOptions& options) {
+create_fast_dds_participant(const ParticipantOptions& options, const SecurityFiles* security) {
   auto transports =
       std::make_shared<TransportState>(std::make_shared<RefusedPackets>(options.warn));
-  DYNCAL_TRY(auto qos, fast_dds_participant_qos(options, transports));
+  DYNCAL_TRY(auto qos, fast_dds_participant_qos(options, security, transports));
   auto addresses = announced_addresses(options.interface_name);
   auto number = std::make_unique<ParticipantNumber>();
   qos.wire_protocol().participant_id = number->value();

@@ -32,6 +32,9 @@ constexpr std::uint32_t discovery_port(int domain) {
 constexpr std::uint32_t locators_per_participant =
     16; // hosts with containers easily have more than the default of 4
 
+// The most that UDP carries, as a multiple of four (participant_security.hpp).
+constexpr int max_secured_message_bytes = 65500;
+
 bool is_loopback(const std::string& address) {
   return address.starts_with("127.");
 }
@@ -82,14 +85,14 @@ Transport with_screen(Transport transport, const std::shared_ptr<TransportState>
 #endif
 }
 
-void set_transport(const std::string& address, const std::shared_ptr<TransportState>& state,
-                   dds::DomainParticipantQos& qos) {
+void set_transport(const std::string& address, bool secured,
+                   const std::shared_ptr<TransportState>& state, dds::DomainParticipantQos& qos) {
   auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
   udp->sendBufferSize = wanted_receive_buffer_bytes;
   udp->receiveBufferSize = wanted_receive_buffer_bytes;
   // Of what is sent. A screened transport receives longer ones, too; without the screen it also
   // caps what can be received, and Cyclone DDS repairs with packets of up to 1456 bytes.
-  udp->maxMessageSize = max_udp_payload_bytes;
+  udp->maxMessageSize = secured ? max_secured_message_bytes : max_udp_payload_bytes;
   udp->maxInitialPeersRange = participants_per_host;
   // With the loopback interface in this list Fast DDS sends nothing at all; the locators keep to
   // it.
@@ -145,10 +148,32 @@ void set_discovery(int domain, bool multicast, const std::string& own_address,
   }
 }
 
+std::string file_url(const std::filesystem::path& path) {
+  return "file://" + std::filesystem::absolute(path).string();
+}
+
+void set_security(const SecurityFiles& files, dds::DomainParticipantQos& qos) {
+  const auto set = [&](const std::string& name, const std::string& value) {
+    qos.properties().properties().emplace_back("dds.sec." + name, value);
+  };
+  const std::string identity = "auth.builtin.PKI-DH.";
+  const std::string access = "access.builtin.Access-Permissions.";
+  set("auth.plugin", "builtin.PKI-DH");
+  set(identity + "identity_ca", file_url(files.authority));
+  set(identity + "identity_certificate", file_url(files.certificate));
+  set(identity + "private_key", file_url(files.private_key));
+  set(identity + "identity_crl", file_url(files.revoked));
+  set("access.plugin", "builtin.Access-Permissions");
+  set(access + "permissions_ca", file_url(files.authority));
+  set(access + "governance", file_url(files.governance));
+  set(access + "permissions", file_url(files.permissions));
+  set("crypto.plugin", "builtin.AES-GCM-GMAC");
+}
+
 } // namespace
 
 base::Expected<dds::DomainParticipantQos>
-fast_dds_participant_qos(const ParticipantOptions& options,
+fast_dds_participant_qos(const ParticipantOptions& options, const SecurityFiles* security,
                          const std::shared_ptr<TransportState>& state) {
   auto* factory = dds::DomainParticipantFactory::get_instance();
   log_to_standard_error();
@@ -161,6 +186,9 @@ fast_dds_participant_qos(const ParticipantOptions& options,
   // Cyclone DDS refuses endpoints that carry information on their type.
   qos.properties().properties().emplace_back(dds::parameter_policy_type_propagation, "disabled");
 #endif
+  if (security != nullptr) {
+    set_security(*security, qos);
+  }
   if (!(factory->get_default_participant_qos() == dds::DomainParticipantQos())) {
     if (options.warn &&
         (!options.peers.empty() || !options.multicast || !options.interface_name.empty())) {
@@ -179,7 +207,7 @@ fast_dds_participant_qos(const ParticipantOptions& options,
   }
   DYNCAL_TRY(const auto peers, resolve_peers(options.peers));
 
-  set_transport(address, options.screened ? state : nullptr, qos);
+  set_transport(address, security != nullptr, options.screened ? state : nullptr, qos);
   const bool multicast = options.multicast && !is_loopback(address);
   set_locators(options.domain, multicast, address, qos);
   set_discovery(options.domain, multicast, address.empty() ? "127.0.0.1" : address, peers, qos);

@@ -1,0 +1,84 @@
+#include "services/bus/participant_security.hpp"
+
+#include <utility>
+
+#include "services/bus/adapters.hpp"
+#include "services/bus/vendor.hpp"
+
+namespace dyncal::bus {
+namespace {
+
+// Says why the vendor may have refused a writer or reader, which it does not say itself.
+class SecuredParticipant : public UntypedParticipant {
+public:
+  SecuredParticipant(std::unique_ptr<UntypedParticipant> participant,
+                     const std::filesystem::path& permissions)
+      : participant_(std::move(participant)), permissions_(permissions.string()) {}
+
+  base::Expected<std::unique_ptr<UntypedWriter>>
+  writer(const TypeSupport& type, const std::string& topic, Profile profile,
+         const std::vector<std::string>& partitions) override {
+    return participant_->writer(type, topic, profile, partitions)
+        .map_error([&](const base::Error& error) {
+          return explained(error, "write", topic, partitions.front());
+        });
+  }
+
+  base::Expected<std::unique_ptr<UntypedReader>> reader(const TypeSupport& type,
+                                                        const std::string& topic, Profile profile,
+                                                        const std::string& partition,
+                                                        std::shared_ptr<WakeUp> wake_up) override {
+    return participant_->reader(type, topic, profile, partition, std::move(wake_up))
+        .map_error(
+            [&](const base::Error& error) { return explained(error, "read", topic, partition); });
+  }
+
+  [[nodiscard]] std::uint64_t malformed_messages() const override {
+    return participant_->malformed_messages();
+  }
+  [[nodiscard]] std::shared_ptr<const RefusedPackets> refused_packets() const override {
+    return participant_->refused_packets();
+  }
+  [[nodiscard]] std::shared_ptr<const OwnAddresses> own_addresses() const override {
+    return participant_->own_addresses();
+  }
+  [[nodiscard]] Discovery discovered() const override { return participant_->discovered(); }
+
+private:
+  [[nodiscard]] base::Error explained(const base::Error& error, const std::string& verb,
+                                      const std::string& topic,
+                                      const std::string& partition) const {
+    return {error.code, error.message + "; does " + permissions_ + " permit to " + verb + " " +
+                            topic + " of bench '" + partition +
+                            "'? It is made for a role and its benches by 'dyncal security issue'"};
+  }
+
+  std::unique_ptr<UntypedParticipant> participant_;
+  std::string permissions_;
+};
+
+} // namespace
+
+base::Expected<Participant> create_secured_participant(const ParticipantOptions& options,
+                                                       const SecurityFiles& files) {
+  return create_untyped_participant(options, &files).map([&](auto participant) {
+    return Participant(
+        std::make_unique<SecuredParticipant>(std::move(participant), files.permissions));
+  });
+}
+
+bool needs_high_subject(Vendor vendor) {
+  return vendor == Vendor::fast_dds;
+}
+
+std::optional<std::string> what_security_lacks(Vendor vendor) {
+#ifdef DYNCAL_HAVE_CYCLONE_DDS
+  if (vendor == Vendor::cyclone_dds) {
+    return what_cyclone_dds_security_lacks();
+  }
+#endif
+  static_cast<void>(vendor); // Fast DDS has it in its own library
+  return std::nullopt;
+}
+
+} // namespace dyncal::bus
