@@ -1,26 +1,24 @@
 #include "services/bus/cyclonedds/cyclone_dds_log.hpp"
 
-#include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <dds/ddsrt/log.h>
 #include <string>
 #include <string_view>
 
+#include "services/bus/line_limit.hpp"
+
 namespace dyncal::bus {
 namespace {
 
-// Of packets that cannot be sent, a hundred a second where this host has no network for a while.
+// Of packets that cannot be sent, a hundred a second where this host has no network for a while:
+// one is enough.
 bool is_said_often(std::string_view message) {
-  using Clock = std::chrono::steady_clock;
-  static std::atomic<Clock::rep> next{0};
-  if (message.find("ddsi_udp_conn_write") == std::string_view::npos) {
-    return false;
-  }
-  const Clock::rep now = Clock::now().time_since_epoch().count();
-  Clock::rep due = next.load();
-  return now < due || !next.compare_exchange_strong(
-                          due, now + Clock::duration(std::chrono::seconds(10)).count());
+  static LineLimit unsent{1};
+  static LineLimit others;
+  LineLimit& limit =
+      message.find("ddsi_udp_conn_write") == std::string_view::npos ? others : unsent;
+  return !limit.passes(std::chrono::steady_clock::now());
 }
 
 void write_or_count(void* refused, const dds_log_data_t* data) {

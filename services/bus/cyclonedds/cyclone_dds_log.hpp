@@ -1,5 +1,6 @@
 // What Cyclone DDS logs: to standard error as by itself, but for malformed packets, which are
-// counted. Left alone it writes up to a kilobyte about each, however many come.
+// counted. Left alone it writes up to a kilobyte about each, however many come. Of the rest as many
+// as line_limit.hpp lets pass.
 //
 // Its log is one a process, so all participants of a process share the count.
 #pragma once
