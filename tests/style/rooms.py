@@ -42,6 +42,7 @@ FLOORS = {
         ["base"],
         ["contract"],
         ["bench", "bus", "evaluation"],
+        ["security"],
         ["daemon"],
         ["network", "stream"],
         ["instruments", "views"],

@@ -4,18 +4,10 @@
 
 #include <fmt/core.h>
 #include <openssl/err.h>
-#include <openssl/pem.h>
-
-#include "services/base/whole_file.hpp"
+#include <openssl/evp.h>
 
 namespace dyncal::inline views {
 namespace {
-
-constexpr std::uintmax_t max_pem_bytes = 1U << 20U;
-
-OpenSslPointer<BIO> reader_of(const std::string& bytes) {
-  return OpenSslPointer<BIO>(BIO_new_mem_buf(bytes.data(), static_cast<int>(bytes.size())));
-}
 
 std::string decoded(const std::string& base64_text) {
   std::string compact;
@@ -40,35 +32,6 @@ std::string decoded(const std::string& base64_text) {
 
 } // namespace
 
-Expected<Certificates> read_certificates(const std::filesystem::path& path) {
-  DYNCAL_TRY(const auto text, read_whole_file(path, max_pem_bytes));
-  const OpenSslPointer<BIO> reader = reader_of(text);
-  Certificates certificates;
-  while (X509* one = PEM_read_bio_X509(reader.get(), nullptr, nullptr, nullptr)) {
-    certificates.emplace_back(one);
-  }
-  ERR_clear_error();
-  if (certificates.empty()) {
-    return fail(ErrorCode::bad_file, fmt::format("{}: holds no X.509 certificate in PEM form "
-                                                 "(-----BEGIN CERTIFICATE-----)",
-                                                 path.string()));
-  }
-  return certificates;
-}
-
-Expected<OpenSslPointer<EVP_PKEY>> read_private_key(const std::filesystem::path& path) {
-  DYNCAL_TRY(const auto text, read_whole_file(path, max_pem_bytes));
-  const OpenSslPointer<BIO> reader = reader_of(text);
-  OpenSslPointer<EVP_PKEY> key(PEM_read_bio_PrivateKey(reader.get(), nullptr, nullptr, nullptr));
-  ERR_clear_error();
-  if (!key) {
-    return fail(ErrorCode::bad_file,
-                fmt::format("{}: holds no private key in PEM form, or its password is wrong",
-                            path.string()));
-  }
-  return key;
-}
-
 Certificates certificates_in(const XmlElement& x509_data) {
   Certificates certificates;
   for (const XmlElement& element : x509_data.children()) {
@@ -90,9 +53,7 @@ std::string name_text(const X509_NAME* name) {
   X509_NAME_print_ex(text.get(), name, 0,
                      (XN_FLAG_RFC2253 & ~static_cast<unsigned long>(ASN1_STRFLGS_ESC_MSB)) |
                          XN_FLAG_SEP_CPLUS_SPC);
-  char* begin = nullptr;
-  const long size = BIO_get_mem_data(text.get(), &begin);
-  return size > 0 ? std::string(begin, static_cast<std::size_t>(size)) : std::string();
+  return written_to(text.get());
 }
 
 std::string end_of_validity(const X509* certificate) {

@@ -1,0 +1,42 @@
+// The folder that a secured program is given (--security): who it is, what it may do, and whom it
+// trusts, for either DDS vendor.
+//
+//   ca.pem                   the authority of the laboratory
+//   governance.p7s           how messages are protected
+//   revoked.pem              certificates that do not count any more
+//   VENDOR.pem, VENDOR_key.pem, VENDOR_permissions.p7s
+//                            its certificate, private key and permissions in this DDS vendor
+//
+// Flat, since service managers hand on files (LoadCredential=). Plain functions; any thread.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "services/bus/participant_security.hpp"
+#include "services/contract/topic_access.hpp"
+
+namespace dyncal::inline security {
+
+inline constexpr const char* authority_file = "ca.pem";
+inline constexpr const char* governance_file = "governance.p7s";
+inline constexpr const char* revoked_file = "revoked.pem";
+
+[[nodiscard]] inline bus::SecurityFiles security_files(const std::filesystem::path& folder,
+                                                       bus::Vendor vendor) {
+  const std::string name = bus::to_string(vendor);
+  return {.authority = folder / authority_file,
+          .certificate = folder / (name + ".pem"),
+          .private_key = folder / (name + "_key.pem"),
+          .governance = folder / governance_file,
+          .permissions = folder / (name + "_permissions.p7s"),
+          .revoked = folder / revoked_file};
+}
+
+// The common name of a certificate is its role, "-", and what tells it from others.
+[[nodiscard]] inline std::optional<SecurityRole> role_called(const std::string& common_name) {
+  return parse_security_role(common_name.substr(0, common_name.find('-')));
+}
+
+} // namespace dyncal::inline security
