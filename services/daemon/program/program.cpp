@@ -5,6 +5,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <csignal>
+#include <ctime>
 #include <mutex>
 #include <thread>
 
@@ -13,6 +14,8 @@
 #include <spdlog/spdlog.h>
 
 #include "services/base/printable_text.hpp"
+#include "services/security/identity_check.hpp"
+#include "services/security/identity_folder.hpp"
 
 namespace dyncal::inline daemon {
 namespace {
@@ -56,6 +59,10 @@ void add_network_options(CLI::App& app, NetworkOptions& options) {
   app.add_flag("--no-multicast", options.no_multicast, "find others by --peer alone");
   app.add_option("--interface", options.interface_name,
                  "network interface to use (name or address)");
+  app.add_option("--security", options.security,
+                 "folder that 'dyncal security issue' made for this program: everything is "
+                 "encrypted, and only who has such a folder takes part")
+      ->envname("DYNCAL_SECURITY");
 }
 
 void add_metrics_option(CLI::App& app, std::string& address) {
@@ -75,7 +82,11 @@ Expected<bus::Participant> join_network(const NetworkOptions& options, const std
   participant.interface_name = options.interface_name;
   participant.watch_discovery = use.watch_discovery;
   participant.warn = [](const std::string& sentence) { spdlog::warn("{}", sentence); };
-  return bus::Participant::create(participant);
+  if (options.security.empty()) {
+    return bus::Participant::create(participant);
+  }
+  DYNCAL_TRY(require_identity(options.security, vendor, program, std::time(nullptr)));
+  return bus::create_secured_participant(participant, security_files(options.security, vendor));
 }
 
 namespace {

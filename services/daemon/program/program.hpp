@@ -22,9 +22,10 @@ struct NetworkOptions {
   std::vector<std::string> peers;
   bool no_multicast = false;
   std::string interface_name;
+  std::string security; // folder (services/security/identity_folder.hpp); empty: not secured
 };
 
-// --dds, --domain, --peer, --no-multicast, --interface
+// --dds, --domain, --peer, --no-multicast, --interface, --security
 void add_network_options(CLI::App& app, NetworkOptions& options);
 
 // --metrics ADDRESS:PORT, for programs that run for long; empty: not given.
@@ -35,7 +36,8 @@ struct NetworkUse {
   bool watch_discovery = false; // Participant::discovered()
 };
 
-// Warnings of the network go to the log.
+// Warnings of the network go to the log. Fails (bad_file) before anything is sent where the folder
+// of --security is wrong.
 [[nodiscard]] Expected<bus::Participant>
 join_network(const NetworkOptions& options, const std::string& program, const NetworkUse& use = {});
 

@@ -1,7 +1,9 @@
 #include "services/programs/command/run_command.hpp"
 
 #include <atomic>
+#include <chrono>
 #include <cstdio>
+#include <ctime>
 #include <utility>
 
 #include <fmt/core.h>
@@ -26,6 +28,7 @@
 #include "services/run/guard_watch.hpp"
 #include "services/run/run_controller.hpp"
 #include "services/run/run_plan.hpp"
+#include "services/security/identity_check.hpp"
 #include "services/views/report/show_outcome.hpp"
 
 namespace dyncal::inline programs {
@@ -234,6 +237,25 @@ std::string why_unheard(const NetworkOptions& network, const std::map<std::strin
   return looked ? why : " (" + looked.error().message + ")";
 }
 
+// Without what is measured again.
+std::chrono::seconds planned_time(const ExcitationSettings& excitation) {
+  const double steps = static_cast<double>(excitation.frequencies_hz.size()) *
+                           static_cast<double>(excitation.repetitions) +
+                       (excitation.repeat_first ? 1.0 : 0.0);
+  return std::chrono::ceil<std::chrono::seconds>(
+      std::chrono::duration<double>(steps * (excitation.settling_s + excitation.duration_s)));
+}
+
+// One DDS vendor falls silent where a certificate ends, the other goes on.
+Expected<void> check_certificate_lasts(const NetworkOptions& network, const BenchFile& bench) {
+  if (network.security.empty()) {
+    return {};
+  }
+  DYNCAL_TRY(const auto vendor, bus::parse_vendor(network.dds));
+  return require_validity(network.security, vendor, planned_time(bench.excitation),
+                          std::time(nullptr));
+}
+
 // What would be excited for nothing.
 Expected<void> check_bench(const BenchFile& bench) {
   const auto errors =
@@ -259,6 +281,7 @@ Expected<RunOutcome> conduct_run(const RunOptions& command, const std::stop_toke
   DYNCAL_TRY(check_outputs(command.output, command.figures));
   NetworkOptions network = command.network;
   add_network_settings(bench.network, network);
+  DYNCAL_TRY(check_certificate_lasts(network, bench));
   const auto links = doctor::link_changes();
   Attempt newest{command.resume};
   std::atomic<bool> excited = !command.resume.empty(); // then the name does not change any more
