@@ -125,6 +125,7 @@ std::string as_text(const Findings& findings) {
     problems += finding.severity == Severity::error ? 1 : 0;
     text += fmt::format("{:<8} {:<11} {}\n",
                         ok                                      ? "ok"
+                        : finding.severity == Severity::note    ? "note"
                         : finding.severity == Severity::warning ? "WARNING"
                                                                 : "PROBLEM",
                         finding.subject, one_line(finding.sentence));

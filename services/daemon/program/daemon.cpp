@@ -1,5 +1,6 @@
 #include "services/daemon/program/daemon.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <utility>
 
@@ -9,11 +10,24 @@
 #include "services/base/version.hpp"
 #include "services/bus/host_clocks/clock_messages.hpp"
 #include "services/bus/host_clocks/clock_responder.hpp"
+#include "services/bus/host_network.hpp"
 #include "services/daemon/program/command_line.hpp"
 #include "services/daemon/program/watched_network.hpp"
 #include "services/daemon/supervision/supervisor.hpp"
 
 namespace dyncal::inline daemon {
+namespace {
+
+// By the interface that was named, or any.
+bool reaches_other_hosts(const std::string& interface_name) {
+  const auto addresses = bus::host_addresses().value_or(std::vector<bus::HostAddress>());
+  return std::ranges::any_of(addresses, [&](const bus::HostAddress& one) {
+    return !one.loopback && (interface_name.empty() || interface_name == one.interface ||
+                             interface_name == one.address);
+  });
+}
+
+} // namespace
 
 Daemon::Daemon(std::string name, NetworkOptions options, std::unique_ptr<Supervisor> supervisor,
                const std::stop_token& signals)
@@ -39,6 +53,10 @@ const ProgramIdentity& Daemon::identity() const {
 Expected<void> Daemon::join() {
   DYNCAL_TRY(joined_, WatchedNetwork::join(network, name_, signals_));
   stopping_.emplace(joined_->stop(), [this] { supervisor_->stopping(); });
+  if (network.security.empty() && reaches_other_hosts(network.interface_name)) {
+    spdlog::info("not secured: whoever is on this network can read and send everything "
+                 "(--security)");
+  }
   refused_ = joined_->participant.refused_packets();
   DYNCAL_TRY(clock_, ClockResponder::start(joined_->participant, identity()));
   return {};

@@ -3,6 +3,7 @@
 //
 // The exit status is for monitoring: 0 nothing is wrong, 3 problems, 4 it could not look, 5
 // warnings and no problem. Belongs to one thread.
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 
@@ -47,7 +48,21 @@ Expected<std::optional<BenchFile>> read_bench(DoctorOptions& command) {
   return std::optional<BenchFile>(std::move(bench));
 }
 
-Findings judge(const LaboratoryLook& look, const std::optional<BenchFile>& bench) {
+// Nothing to say on a computer alone.
+Findings about_security(const NetworkOptions& network, const doctor::HostView& host) {
+  if (!network.security.empty()) {
+    return {{Severity::ok, "security", "encrypted, among programs of this laboratory alone"}};
+  }
+  if (std::ranges::all_of(host.interfaces, &doctor::HostInterface::loopback)) {
+    return {};
+  }
+  return {{Severity::note, "security",
+           "none: whoever is on this network can read and send everything; 'dyncal security' and "
+           "--security keep others out"}};
+}
+
+Findings judge(const LaboratoryLook& look, const NetworkOptions& network,
+               const std::optional<BenchFile>& bench) {
   const doctor::LaboratoryView& view = look.view;
   Findings findings = doctor::check_programs(view);
   if (!doctor::analysis_is_heard(view)) {
@@ -61,6 +76,7 @@ Findings judge(const LaboratoryLook& look, const std::optional<BenchFile>& bench
   append(findings, look.about_multicast);
   append(findings, doctor::check_network(view));
   append(findings, doctor::check_loss(view));
+  append(findings, about_security(network, look.host));
   append(findings, doctor::check_host(look.host, view.domain));
   return findings;
 }
@@ -78,7 +94,7 @@ Expected<void> look_and_judge(DoctorOptions& command, const std::stop_token& sto
   DYNCAL_TRY(const auto bench, read_bench(command));
   return look_at_laboratory(
       command.network, command.seconds, stop, [&](const LaboratoryLook& look) {
-        const Findings findings = judge(look, bench);
+        const Findings findings = judge(look, command.network, bench);
         fmt::print("{}", command.json ? json_text(doctor::as_json(findings, look.view), 2) + "\n"
                                       : doctor::as_text(findings));
         std::fflush(stdout);
