@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::time_t warning_s = 30 * 86400;
+constexpr std::time_t warning_s = 30 * std::time_t{86400};
 constexpr const char* issue_again = "issue it again by 'dyncal security issue'";
 
 // What is read of a folder, one thing after the other.
