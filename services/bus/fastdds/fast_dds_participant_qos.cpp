@@ -9,6 +9,8 @@
 #include <fastdds/LibrarySettings.hpp>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.hpp>
 #include <fastdds/utils/IPLocator.hpp>
+
+#include "services/bus/fastdds/acknack_transport.hpp"
 #else
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
@@ -89,11 +91,11 @@ void deliver_through_sockets_only() {
 
 using Transport = std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface>;
 
-// What version 2.9 needs; newer ones take packets as they come.
+// Version 2.9 needs all of the screen, newer ones what lets readers start over.
 Transport with_screen(Transport transport, const std::shared_ptr<TransportState>& state) {
 #ifdef DYNCAL_FAST_DDS_3
   static_cast<void>(state);
-  return transport;
+  return with_acknacks_rewritten(std::move(transport));
 #else
   return screened(std::move(transport), state);
 #endif

@@ -5,11 +5,11 @@
 //   passed = the reader's count + how often it has started over
 //
 // A reader in Cyclone DDS that has forgotten a writer (its program was silent for a lease) and
-// finds it again says so by an ACKNACK for sample 1 with count 0. Fast DDS 2.9 expects sample 0,
-// and takes no ACKNACK whose count is not greater than the one before (DDSI-RTPS 8.4.15.7 allows
-// that). Where it had not forgotten the reader meanwhile, it therefore sent nothing of what the
-// reader lacked: not even which writers and readers it has, and the two were silent to each other
-// for ever.
+// finds it again says so by an ACKNACK for sample 1 with count 0. Fast DDS, 2.9 as 3.1, expects
+// sample 0, and takes no ACKNACK whose count is not greater than the one before (DDSI-RTPS 8.4.15.7
+// allows that). Where it had not forgotten the reader meanwhile, it therefore sent nothing of what
+// the reader lacked: not even which writers and readers it has, and the two were silent to each
+// other for ever.
 //
 // A reader in Fast DDS goes on counting, and its first ACKNACK is for sample 0; but where a
 // heartbeat of the writer comes before that, it goes without, and asks for what it lacks. The
