@@ -70,7 +70,7 @@ std::string to_string(Vendor vendor) {
   return vendor == Vendor::fast_dds ? "fastdds" : "cyclonedds";
 }
 
-// Cyclone DDS first where there is a choice, because Fast DDS 2.9 lives only behind its screen
+// Cyclone DDS first where there is a choice, because Fast DDS lives only behind its screen
 // (services/bus/fastdds).
 std::vector<Vendor> vendors_in_this_build() {
   return {

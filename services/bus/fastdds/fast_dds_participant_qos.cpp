@@ -9,15 +9,12 @@
 #include <fastdds/LibrarySettings.hpp>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.hpp>
 #include <fastdds/utils/IPLocator.hpp>
-
-#include "services/bus/fastdds/acknack_transport.hpp"
 #else
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
 #include <fastrtps/xmlparser/XMLProfileManager.h>
-
-#include "services/bus/fastdds/screen/screened_transport.hpp"
 #endif
+#include "services/bus/fastdds/screened_transport.hpp"
 #include "services/bus/host_network.hpp"
 #include "services/bus/line_limit.hpp"
 #include "services/bus/qos_profiles.hpp"
@@ -89,18 +86,6 @@ void deliver_through_sockets_only() {
 #endif
 }
 
-using Transport = std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface>;
-
-// Version 2.9 needs all of the screen, newer ones what lets readers start over.
-Transport with_screen(Transport transport, const std::shared_ptr<TransportState>& state) {
-#ifdef DYNCAL_FAST_DDS_3
-  static_cast<void>(state);
-  return with_acknacks_rewritten(std::move(transport));
-#else
-  return screened(std::move(transport), state);
-#endif
-}
-
 void set_transport(const std::string& address, bool secured,
                    const std::shared_ptr<TransportState>& state, dds::DomainParticipantQos& qos) {
   auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
@@ -118,7 +103,7 @@ void set_transport(const std::string& address, bool secured,
   qos.transport().use_builtin_transports =
       false; // no shared memory: it throttles blocks and leaves files behind
   if (state) {
-    qos.transport().user_transports.push_back(with_screen(udp, state));
+    qos.transport().user_transports.push_back(screened(udp, state));
   } else {
     qos.transport().user_transports.push_back(udp);
   }
@@ -212,7 +197,7 @@ fast_dds_participant_qos(const ParticipantOptions& options, const SecurityFiles*
                    "multicast and interface are taken from there");
     }
     for (auto& transport : qos.transport().user_transports) {
-      transport = with_screen(transport, state);
+      transport = screened(transport, state);
     }
     return qos;
   }

@@ -76,13 +76,6 @@ template <class Number>
   }
 }
 
-inline void put_number(unsigned char* at, std::uint32_t value, unsigned char flags) {
-  if ((flags & little_endian_flag) == 0) {
-    value = __builtin_bswap32(value);
-  }
-  std::memcpy(at, &value, sizeof value);
-}
-
 struct Submessage {
   unsigned char id = 0;
   unsigned char flags = 0;

@@ -1,7 +1,7 @@
 #include "services/bus/fastdds/screen/rtps_screen.hpp"
 
 #include <algorithm>
-#include <array>
+#include <chrono>
 #include <cstring>
 #include <optional>
 
@@ -23,6 +23,13 @@ constexpr std::uint32_t min_fragment_bytes = 64;
 // Fast DDS visits each sample of a GAP. Longer than any source runs between two of its heartbeats.
 constexpr std::int64_t max_gap = 1 << 24;
 constexpr std::size_t max_message_bytes = 1U << 20;
+
+void put_number(unsigned char* at, std::uint32_t value, unsigned char flags) {
+  if ((flags & little_endian_flag) == 0) {
+    value = __builtin_bswap32(value);
+  }
+  std::memcpy(at, &value, sizeof value);
+}
 
 bool nack_frag_is_whole(unsigned char flags, Bytes body) {
   constexpr std::size_t bits_at = entities_bytes + sequence_bytes + 4;
@@ -128,17 +135,38 @@ bool RtpsScreen::pass_submessage(unsigned char id, unsigned char flags, Bytes bo
 }
 
 bool RtpsScreen::pass_acknack(unsigned char flags, Bytes body) {
-  const Bytes source = Bytes(buffer_).subspan(header_bytes - prefix_bytes, prefix_bytes);
-  std::array<unsigned char, AcknackRewriter::max_body_bytes> copy{};
-  const std::span<unsigned char> rewritten =
-      std::span(copy).first(std::min(copy.size(), body.size()));
-  std::copy_n(body.begin(), rewritten.size(), rewritten.begin());
-  const auto length = acknacks_.rewrite(source, flags, rewritten);
-  if (!length) {
+  constexpr std::size_t bits_at = entities_bytes + sequence_bytes;
+  const auto words = bitmap_words(body, bits_at, flags);
+  const auto base = words ? sequence_at(body, entities_bytes, flags) : std::nullopt;
+  if (!base || bits_at + 4 + 4 * *words + 4 > body.size()) {
     return false;
   }
-  append_submessage(acknack, flags, rewritten.first(*length));
+  const std::size_t count_at = bits_at + 4 + 4 * *words;
+  const auto count = number_at<std::uint32_t>(body, count_at, flags);
+  const bool begins_count = *base == 1 && count == 0 && (flags & final_flag) == 0;
+  const Bytes source = Bytes(buffer_).subspan(header_bytes - prefix_bytes, prefix_bytes);
+  const AcknackCounts::Pair pair = AcknackCounts::pair(source, body.first(entities_bytes));
+  const auto now = std::chrono::steady_clock::now();
+  if (const auto anew = begins_count ? acknack_counts_.begin_anew(pair, now) : std::nullopt) {
+    append_beginning(flags, body.first(entities_bytes), *anew);
+    return true;
+  }
+  const auto passed = acknack_counts_.continued(pair, {*base, *words > 0, count}, now);
+  if (passed.begins_anew) {
+    append_beginning(flags, body.first(entities_bytes), passed.count);
+  } else {
+    put_number(append_submessage(acknack, flags, body) + count_at, passed.count, flags);
+  }
   return true;
+}
+
+// The ACKNACK of a reader in Fast DDS that has nothing and does not know of anything.
+void RtpsScreen::append_beginning(unsigned char flags, Bytes entities, std::uint32_t count) {
+  flags &= little_endian_flag;
+  unsigned char body[entities_bytes + sequence_bytes + 4 + 4] = {}; // of sample 0, without a list
+  std::copy(entities.begin(), entities.end(), body);
+  put_number(body + entities_bytes + sequence_bytes + 4, count, flags);
+  append_submessage(acknack, flags, body);
 }
 
 bool RtpsScreen::pass_data(unsigned char flags, Bytes body) {

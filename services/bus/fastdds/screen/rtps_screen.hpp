@@ -12,8 +12,8 @@
 // So a fragment without a stamp gets that of its sample, and is left out while the first fragment
 // has not come: the writer sends both again.
 //
-// Where a reader starts over, it may take no notice. So
-//   ACKNACK    of that kind becomes one for sample 0 with a new count (acknack_rewriter.hpp)
+// Where a reader starts over, it may take no notice (acknack_counts.hpp). So
+//   ACKNACK    of that kind becomes one for sample 0 with a new count
 //
 // What would crash it, make it allocate what a packet asks for or keep it busy is dropped: a
 // message whose lengths do not agree, statistics of Fast DDS itself (submessage 0x80, not used
@@ -28,7 +28,7 @@
 #include <span>
 #include <vector>
 
-#include "services/bus/fastdds/screen/acknack_rewriter.hpp"
+#include "services/bus/fastdds/screen/acknack_counts.hpp"
 #include "services/bus/fastdds/screen/sample_stamps.hpp"
 
 namespace dyncal::bus {
@@ -57,6 +57,8 @@ private:
   void append_gap(std::span<const unsigned char> entities, std::int64_t first, std::int64_t end);
   bool pass_submessage(unsigned char id, unsigned char flags, std::span<const unsigned char> body);
   bool pass_acknack(unsigned char flags, std::span<const unsigned char> body);
+  void append_beginning(unsigned char flags, std::span<const unsigned char> entities,
+                        std::uint32_t count);
   bool pass_data(unsigned char flags, std::span<const unsigned char> body);
   bool pass_fragments(unsigned char flags, std::span<const unsigned char> body);
   bool pass_gap(unsigned char flags, std::span<const unsigned char> body);
@@ -70,7 +72,7 @@ private:
   std::vector<unsigned char> buffer_;
   std::size_t used_ = 0;
   bool refused_ = false;
-  AcknackRewriter acknacks_;
+  AcknackCounts acknack_counts_;
 };
 
 } // namespace dyncal::bus

@@ -27,13 +27,6 @@ constexpr unsigned char malformed_heartbeat[] = {'R', 'T', 'P', 'S', 2, 1, 1, 15
 
 class RefusedByVendor : public testing::TestWithParam<Vendor> {
 protected:
-#ifndef DYNCAL_SCREEN
-  void SetUp() override {
-    if (GetParam() == Vendor::fast_dds) {
-      GTEST_SKIP() << "Fast DDS 3 reads what comes, and counts nothing";
-    }
-  }
-#endif
   static Participant join() {
     ParticipantOptions options;
     options.vendor = GetParam();

@@ -68,20 +68,44 @@ TEST(RtpsScreen, LeavesWholeMessagesAsTheyAre) {
   EXPECT_EQ(passed(message), message);
 }
 
+Bytes acknack(unsigned char flags, std::uint64_t base, std::uint32_t count) {
+  return submessage(0x06, flags, entities + sequence(base) + u32(0) + u32(count));
+}
+
 TEST(RtpsScreen, MakesAReaderThatBeginsAnewOneThatFastDdsTakesNoticeOf) {
-  const auto acknack = [](std::uint64_t base, std::uint32_t count, const Bytes& list) {
-    return submessage(0x06, 0x01, entities + sequence(base) + list + u32(count));
-  };
   SampleStamps stamps;
   RtpsScreen screen(stamps);
   const auto expect_passed = [&screen](const Bytes& message, const Bytes& expected) {
     const auto bytes = screen.pass(header() + message);
     EXPECT_EQ(Bytes(bytes.begin(), bytes.end()), header() + expected);
   };
-  expect_passed(acknack(1, 0, u32(0)) + heartbeat(), acknack(0, 1, u32(0)) + heartbeat());
-  expect_passed(acknack(12, 5, u32(0)), acknack(12, 6, u32(0)));
-  expect_passed(acknack(9, 6, u32(9) + u32(0xff800000)) + heartbeat(),
-                acknack(9, 7, u32(9) + u32(0xff800000)) + heartbeat());
+  expect_passed(acknack(0x03, 1, 0), acknack(0x03, 1, 0)); // asks for no answer: not that
+  expect_passed(acknack(0x01, 1, 0), acknack(0x01, 0, 1)); // as Cyclone DDS begins anew
+  expect_passed(acknack(0x01, 9, 40), acknack(0x01, 9, 41));
+  expect_passed(acknack(0x01, 1, 0), acknack(0x01, 1, 1)); // a copy, which Fast DDS passes over
+  // The same in big endian, of another reader.
+  const Bytes other{0, 0, 2, 7, 0, 0, 1, 2};
+  const Bytes body = other + Bytes{0, 0, 0, 0, 0, 0, 0, 1} + Bytes(8, 0);
+  const Bytes begun = other + Bytes(15, 0) + Bytes{1};
+  const Bytes head{0x06, 0x00, 0, 24};
+  expect_passed(head + body, head + begun);
+}
+
+// As one in Fast DDS does that has forgotten its writer and heard a heartbeat before it said so.
+TEST(RtpsScreen, MakesAReaderThatAsksForWhatItHadOneThatBeginsAnew) {
+  SampleStamps stamps;
+  RtpsScreen screen(stamps);
+  const auto asking = [](std::uint64_t base, std::uint32_t count) {
+    return submessage(0x06, 0x01,
+                      entities + sequence(base) + u32(9) + u32(0xff800000) + u32(count));
+  };
+  const auto expect_passed = [&screen](const Bytes& message, const Bytes& expected) {
+    const auto bytes = screen.pass(header() + message);
+    EXPECT_EQ(Bytes(bytes.begin(), bytes.end()), header() + expected);
+  };
+  expect_passed(acknack(0x03, 12, 5), acknack(0x03, 12, 5));
+  expect_passed(asking(1, 6), acknack(0x01, 0, 6));
+  expect_passed(asking(1, 7), asking(1, 7));
 }
 
 TEST(RtpsScreen, TakesTheKeyHashOutOfFragments) {

@@ -1,10 +1,18 @@
-#include "services/bus/fastdds/screen/screened_transport.hpp"
+#include "services/bus/fastdds/screened_transport.hpp"
 
+#include "services/bus/fastdds/fast_dds_names.hpp"
+// Its headers differ by version.
 #include <fastdds/rtps/common/LocatorList.hpp>
 #include <fastdds/rtps/common/LocatorsIterator.hpp>
+#ifdef DYNCAL_FAST_DDS_3
+#include <fastdds/rtps/transport/ChainingTransport.hpp>
+#include <fastdds/rtps/transport/SenderResource.hpp>
+#include <fastdds/rtps/transport/TransportReceiverInterface.hpp>
+#else
 #include <fastdds/rtps/network/SenderResource.h>
 #include <fastdds/rtps/transport/ChainingTransport.h>
 #include <fastdds/rtps/transport/TransportReceiverInterface.h>
+#endif
 #include <functional>
 #include <map>
 #include <mutex>
@@ -22,8 +30,9 @@ namespace dyncal::bus {
 namespace {
 
 namespace vendor = eprosima::fastdds::rtps;
-namespace rtps = eprosima::fastrtps::rtps;
+namespace rtps = fast_dds::rtps;
 
+#ifndef DYNCAL_FAST_DDS_3
 // The vendor's interface has a destructor that is not virtual; nobody destroys these through it.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wnon-virtual-dtor"
@@ -62,6 +71,7 @@ std::size_t hash_of(const rtps::SenderResource* below, const rtps::Locator_t& lo
 
 // Those of discovery come alone or with a few of their kind. One that is missed costs a repeat.
 constexpr std::uint32_t max_acknack_bytes = 256;
+#endif
 
 // Of UDP over IPv4.
 constexpr std::uint32_t max_datagram_bytes = 65'507;
@@ -81,6 +91,14 @@ public:
   // one that is cut off at its end is not as it should be.
   [[nodiscard]] std::uint32_t max_recv_buffer_size() const override { return max_datagram_bytes; }
 
+#ifdef DYNCAL_FAST_DDS_3
+  bool send(rtps::SenderResource* below, const std::vector<vendor::NetworkBuffer>& buffers,
+            std::uint32_t count, vendor::LocatorsIterator* destinations_begin,
+            vendor::LocatorsIterator* destinations_end,
+            const std::chrono::steady_clock::time_point& timeout) override {
+    return below->send(buffers, count, destinations_begin, destinations_end, timeout);
+  }
+#else
   bool send(rtps::SenderResource* below, const rtps::octet* bytes, std::uint32_t count,
             vendor::LocatorsIterator* destinations_begin,
             vendor::LocatorsIterator* destinations_end,
@@ -111,6 +129,7 @@ public:
     note_sent(below, *counted, noted, now);
     return sent;
   }
+#endif
 
   // Each socket has a thread, which ends with it.
   void receive(vendor::TransportReceiverInterface* above, const rtps::octet* bytes,
@@ -120,10 +139,12 @@ public:
       state_->refused->add_implausible(RefusedPackets::sender_in(remote.address));
       return;
     }
+#ifndef DYNCAL_FAST_DDS_3
     if (count <= max_acknack_bytes) {
       const std::lock_guard lock(tables_);
       heartbeats_.received({bytes, count});
     }
+#endif
     thread_local RtpsScreen screen(stamps_);
     if (const auto passed = screen.pass({bytes, count}); !passed.empty()) {
       above->OnDataReceived(passed.data(), static_cast<std::uint32_t>(passed.size()), local,
@@ -134,6 +155,11 @@ public:
   }
 
 private:
+  std::shared_ptr<TransportState> state_;
+  MessageCheck check_;
+  SampleStamps stamps_;
+
+#ifndef DYNCAL_FAST_DDS_3
   struct Way {
     rtps::SenderResource* below;
     rtps::Locator_t destination;
@@ -174,13 +200,11 @@ private:
                     timeout); // lost like any other where it cannot be sent
   }
 
-  std::shared_ptr<TransportState> state_;
-  MessageCheck check_;
-  SampleStamps stamps_;
   std::mutex tables_; // what follows; not held while anything is sent, which may take time
   FragmentRepairs repairs_;
   DiscoveryHeartbeats heartbeats_;
   std::map<std::size_t, Way> ways_; // of heartbeats
+#endif
 };
 
 struct ScreenedTransportDescriptor : vendor::ChainingTransportDescriptor {
