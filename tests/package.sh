@@ -2,15 +2,17 @@
 # The Debian packages in a clean release of Debian, from `apt install` to a calibration, and away
 # again:
 #
-#   tests/package.sh [bookworm|trixie] [FOLDER]
+#   tests/package.sh [bookworm|trixie] [FOLDER [OLDER]]
 #
 # The long form of what is tested, outside the test command. Without FOLDER, which has the packages,
 # deploy/package.sh makes them: here, if this machine runs that release (the one of this machine if
 # none is named), else in the system of tests/other-release.sh, which is then to be run before.
+# OLDER has those of an older version, which the upgrade begins with.
 #
 # Held: what is installed beside the dependencies and the result of the demo are there in less than
 # 60 s; every program tells its version; units are right and have little exposure; an upgrade keeps
-# what is in /etc/dyncal and what was recorded; purging leaves no other file and no user, and names
+# what is in /etc/dyncal and what was recorded, and restarts what runs under systemd; removing stops
+# it; purging leaves no other file and no user, and names
 # what it leaves; what deploy/Containerfile runs serves its page without root, in a system that
 # cannot be written to, and ends when it is told. Exit status 77 where such a system cannot be made.
 set -euo pipefail
@@ -24,6 +26,7 @@ skip_without_root
 here=$(. /etc/os-release && echo "$VERSION_CODENAME")
 codename=${1:-$here}
 folder=${2:-}
+older=${3:-}
 if [[ -z $folder && $codename == "$here" ]]; then
   folder=$top/build-packages
   "$top/deploy/package.sh" "$folder"
@@ -48,10 +51,15 @@ mapfile -t needed < <(in_root "$clean" apt-get install --simulate --no-install-r
 
 root=$(mktemp -d "$releases/package.XXXXXX")
 mount -t tmpfs tmpfs "$root" # also holds what is written: nothing is left behind
-mkdir "$root"/{upper,work,root}
 trap 'umount --recursive "$root" && rmdir "$root"' EXIT
-mount -t overlay overlay -o "lowerdir=$clean,upperdir=$root/upper,workdir=$root/work" "$root/root"
-system=$root/root
+# A system like the clean one, that can be written to.
+make_system() {
+  mkdir "$root/$1" "$root/$1-written" "$root/$1-work"
+  mount -t overlay overlay \
+    -o "lowerdir=$clean,upperdir=$root/$1-written,workdir=$root/$1-work" "$root/$1"
+}
+make_system system
+system=$root/system
 
 fail() {
   echo "package.sh: $*" >&2
@@ -126,7 +134,7 @@ unshare --mount --pid --net --fork --kill-child bash -c '
   mount --bind /dev "$1/dev"
   exec chroot --userspec=dyncal:dyncal "$1" env -i PATH=/usr/local/bin:/usr/bin:/bin \
     DYNCAL_RUNS=/var/lib/dyncal/runs bash /opt/ask.sh
-' container "$system" "$root/upper/var/lib/dyncal" >"$root/container.log" 2>&1 || true
+' container "$system" "$root/system-written/var/lib/dyncal" >"$root/container.log" 2>&1 || true
 grep -q ' 200 ' "$root/container.log" && grep -qx 'ended with 0' "$root/container.log" ||
   fail "the container: $(cat "$root/container.log" "$system/var/lib/dyncal/log")"
 rm -r "$system/var/lib/dyncal" "$system/usr/local/bin/dyncal-host"
@@ -155,6 +163,23 @@ state >"$root/after"
 printf '%s\n' /etc/dyncal /etc/dyncal/acc-1.toml /etc/systemd/system/multi-user.target.wants \
   /var/lib/dyncal-recorder /var/lib/private /var/lib/private/dyncal-recorder \
   /var/lib/private/dyncal-recorder/run.mcap | sort >"$root/meant"
-left=$(diff "$root/before" "$root/after" | sed -n 's/^[<>] //p' | sort | comm -23 - "$root/meant")
+left=$({ diff "$root/before" "$root/after" || true; } | sed -n 's/^[<>] //p' | sort |
+  comm -23 - "$root/meant")
 [[ -z $left ]] || fail "purging leaves, or takes away:"$'\n'"$left"
+# Under systemd.
+make_system booted
+. "$top/tests/booted_root.sh"
+run_booted() { in_booted_root "$root/booted" "$@"; }
+begin=("${packages[@]}")
+if [[ $older ]]; then
+  mkdir "$root/booted/opt/older"
+  cp "$older"/*.deb "$root/booted/opt/older/"
+  mapfile -t begin < <(cd "$root/booted" && printf '/%s\n' opt/older/*.deb)
+fi
+in_root "$root/booted" apt-get --yes -qq --no-install-recommends install "${begin[@]}" \
+  >"$root/apt.log" 2>&1 || fail "installing what is upgraded: $(tail -n 5 "$root/apt.log")"
+sed '/^interface/d' "$top/deploy/example-lab/acc-1.toml" >"$root/booted/etc/dyncal/acc-1.toml"
+cp "$top/tests/upgraded_daemons.sh" "$root/booted/opt/"
+run_booted bash /opt/upgraded_daemons.sh "${packages[@]}" || fail "the upgrade under systemd"
+
 echo "package.sh: packages and ${#units[@]} units are right on $codename"
