@@ -29,8 +29,8 @@ git -C "$root/dyncal" checkout --quiet --detach FETCH_HEAD
 # As the README has it.
 in_root "$root" nice -n "${DYNCAL_NICE:-19}" /dyncal/deploy/demo.sh
 
-tests=(bus_parts_test bus_exchange_test bus_discovery_test bus_native_test full_reader_test
-  lost_fragment_test stopped_participant_test)
+tests=(bus_parts_test rtps_screen_test bus_exchange_test bus_discovery_test bus_native_test
+  full_reader_test lost_fragment_test stopped_participant_test)
 in_root "$root" apt-get install --yes -qq --no-install-recommends \
   libgtest-dev libgmock-dev librapidcheck-dev libbenchmark-dev fastddsgen
 in_root "$root" nice -n "${DYNCAL_NICE:-19}" bash -c '
