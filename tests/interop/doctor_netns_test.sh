@@ -104,6 +104,10 @@ for from in "${vendors[@]}"; do
     drop "iifname lab udp dport { 18661, 18663, 18665, 18667, 18669, 18671 }"
     doctor "a firewall before the messages" 3 "must let UDP 18650 to 18723 through" --seconds 4
     let_through
+    ip netns exec "$writing" nft "table ip doctor { chain input {
+      type filter hook input priority 0; iifname lab ip length > 1300 drop; }; }"
+    doctor "a way that drops long packets" 3 "packets as long as those with samples" --seconds 6
+    let_through_to "$writing"
     doctor "no losses" 5 '"losses"' --seconds 5 --json
     losses 0 0
     lose "$writing"

@@ -53,12 +53,23 @@ Finding finding_of(const LinkLoss& loss, const std::string& own_host) {
           fmt::format("{}; {}{}", measured, *lost == 1.0 ? cut : "", advice(loss, own_host))};
 }
 
+Finding about_long_packets(const LinkLoss& loss) {
+  return {Severity::error, "path",
+          fmt::format("{}: packets as long as those with samples do not get there, {} of {}, and "
+                      "short ones do: on the way, or at that host, an MTU is smaller than 1500; "
+                      "set it to 1500 there (`tracepath` shows where)",
+                      place_of(loss.identity), loss.long_sent, loss.long_sent)};
+}
+
 } // namespace
 
 Findings check_loss(const LaboratoryView& view) {
   Findings findings;
   for (const LinkLoss& loss : view.losses) {
     findings.push_back(finding_of(loss, view.own.host));
+    if (drops_long_packets(loss)) {
+      findings.push_back(about_long_packets(loss));
+    }
   }
   if (findings.empty()) {
     findings.push_back(

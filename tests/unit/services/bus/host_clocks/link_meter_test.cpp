@@ -58,6 +58,12 @@ protected:
                                                    : message.as<wire::LinkEcho>().probe());
     });
   }
+  void lose_long_probes() {
+    network_.lose([](const bus::MessageInTransit& message) {
+      return message.topic == topics::link_probe &&
+             !message.as<wire::LinkProbe>().padding().empty();
+    });
+  }
 
   bus::SteppedClock time_;
   bus::MemoryNetwork network_{time_};
@@ -111,9 +117,32 @@ TEST_F(LinkMeterTest, SeesThatNothingArrivesAnyLonger) {
   EXPECT_GT(loss(asking).sent, 180U);
 }
 
+TEST_F(LinkMeterTest, SeesThatLongPacketsAloneDoNotArrive) {
+  lose_long_probes();
+  auto asking = doctor();
+  const auto answering = responder();
+  pass(4s, asking, {answering.get()});
+  const LinkLoss found = loss(asking);
+  EXPECT_EQ(found.echoed, found.sent) << "short ones get through";
+  EXPECT_GE(found.long_sent, fewest_probes);
+  EXPECT_TRUE(drops_long_packets(found));
+}
+
+// The opposite: a way that loses one of four, of whatever length.
+TEST_F(LinkMeterTest, BlamesNoLengthForWhatIsLostByChance) {
+  lose(topics::link_echo, [](std::uint64_t number) { return number % 4 == 1; });
+  auto asking = doctor();
+  const auto answering = responder();
+  pass(4s, asking, {answering.get()});
+  EXPECT_GE(loss(asking).long_sent, fewest_probes);
+  EXPECT_FALSE(drops_long_packets(loss(asking)));
+  EXPECT_FALSE(drops_long_packets({.sent = 200, .echoed = 20, .long_sent = 50}));
+}
+
 TEST_F(LinkMeterTest, StatesNoPartOfAFew) {
   EXPECT_FALSE(lost_part({.sent = fewest_probes - 1}));
   EXPECT_EQ(lost_part({.sent = 200, .echoed = 150}), 0.25);
+  EXPECT_FALSE(drops_long_packets({.sent = 200, .echoed = 200, .long_sent = fewest_probes - 1}));
 }
 
 TEST_F(LinkMeterTest, TakesNothingForLostThatWasSentBeforeAProgramWasThere) {
