@@ -33,6 +33,11 @@ set(CMAKE_C_FLAGS_RELEASE "-O2")
 # The same bits everywhere: no fused or reordered arithmetic unless the code asks for it by name.
 add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-ffp-contract=off>)
 
+if(PROJECT_IS_TOP_LEVEL)
+  include(${CMAKE_CURRENT_LIST_DIR}/Hardening.cmake)
+  dyncal_harden()
+endif()
+
 find_program(CCACHE ccache)
 if(CCACHE AND NOT DEFINED ENV{CCACHE_DISABLE}) # ccache then leaves paths as they are
   # What was compiled in one clone is found in another: ccache makes the paths relative. The other
