@@ -53,13 +53,17 @@ const ProgramIdentity& Daemon::identity() const {
 Expected<void> Daemon::join() {
   DYNCAL_TRY(joined_, WatchedNetwork::join(network, name_, signals_));
   stopping_.emplace(joined_->stop(), [this] { supervisor_->stopping(); });
-  if (network.security.empty() && reaches_other_hosts(network.interface_name)) {
+  if (is_open_to_others()) {
     spdlog::info("not secured: whoever is on this network can read and send everything "
                  "(--security)");
   }
   refused_ = joined_->participant.refused_packets();
   DYNCAL_TRY(clock_, ClockResponder::start(joined_->participant, identity()));
   return {};
+}
+
+bool Daemon::is_open_to_others() const {
+  return network.security.empty() && reaches_other_hosts(network.interface_name);
 }
 
 void Daemon::turned() {

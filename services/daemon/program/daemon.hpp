@@ -58,6 +58,9 @@ public:
   [[nodiscard]] std::stop_token stop() const;
   [[nodiscard]] Supervisor& supervisor() { return *supervisor_; }
   [[nodiscard]] const ProgramIdentity& identity() const;
+  // Whoever is on its network can read and send everything: it is not secured, and more than
+  // loopback.
+  [[nodiscard]] bool is_open_to_others() const;
   // One turn of the main loop: what the network refused is reported with it. REQUIRES:
   // participant() was not moved from; who does that reports to supervisor().
   void turned();

@@ -44,6 +44,7 @@ struct WebService::Parts {
                       {"version", identity.software},
                       {"vendor", identity.dds},
                       {"samples_missed", std::to_string(tap.missed())},
+                      {"is_open_to_others", is_open_to_others},
                       {"visitors", events.listeners()}};
     json["may_act"] = permission.may_act();
     json["has_guide"] = !options.door.guide_folder.empty();
@@ -60,6 +61,7 @@ struct WebService::Parts {
   bus::Participant& participant = daemon.participant();
   const ProgramIdentity& identity = daemon.identity();
   WebOptions options;
+  const bool is_open_to_others = daemon.is_open_to_others();
   std::shared_ptr<bus::WakeUp> wake_up = std::make_shared<bus::WakeUp>();
   std::optional<network::BusReaders> readers;
   StateCache cache;

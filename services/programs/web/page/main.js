@@ -131,6 +131,7 @@ class Page {
              `${software ?? "dyncal"} on ${daemon.host ?? "this machine"}; all times UTC; ` +
              `${daemon.visitors ?? "?"} visitors; ` +
              (Number(daemon.samples_missed ?? 0) > 0 ? `${daemon.samples_missed} samples not seen by this page; ` : "") +
+             (daemon.is_open_to_others === true ? "the bench network is not secured; " : "") +
              `state of ${utc_text(now_utc_ms)}`);
   }
 
