@@ -115,8 +115,8 @@ Expected<OutputGuard> OutputGuard::start(const std::string& generator_address) {
 }
 
 void OutputGuard::dismiss() {
-  static_cast<void>(
-      write(pipe_.number(), &farewell, 1)); // fails only when the guard is gone already
+  // Fails only when the guard is gone already.
+  static_cast<void>(write(pipe_.number(), &farewell, 1) < 0);
   waitpid(process_, nullptr, 0);
 }
 

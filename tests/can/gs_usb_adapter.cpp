@@ -134,8 +134,8 @@ void GsUsbAdapter::set_up(std::size_t channel, const std::string& bit_timing) co
 
 void GsUsbAdapter::wake_up() const {
   const std::uint64_t one = 1;
-  static_cast<void>(
-      ::write(wake_up_.number(), &one, sizeof one)); // fails only when it is signalled already
+  // Fails only when it is signalled already.
+  static_cast<void>(::write(wake_up_.number(), &one, sizeof one) < 0);
 }
 
 std::uint32_t GsUsbAdapter::clock_us(std::int64_t at_ns) const {
@@ -230,7 +230,7 @@ void GsUsbAdapter::run(const std::stop_token& stop) {
     }
     std::uint64_t signalled = 0;
     if (waited[1].revents != 0) {
-      static_cast<void>(::read(wake_up_.number(), &signalled, sizeof signalled));
+      static_cast<void>(::read(wake_up_.number(), &signalled, sizeof signalled) < 0);
     }
   }
 }

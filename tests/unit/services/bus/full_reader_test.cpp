@@ -61,7 +61,7 @@ Participant join(Vendor vendor, int domain) {
     const bool written = writer.write(block, 500ms) == WriteOutcome::written;
     number += written ? 1 : 0;
     if ((!written || number == 3 * untaken_blocks) && !std::exchange(is_said, true)) {
-      static_cast<void>(::write(STDOUT_FILENO, "f", 1));
+      static_cast<void>(::write(STDOUT_FILENO, "f", 1) < 0);
     }
   }
 }
@@ -70,7 +70,7 @@ class WritingProcess {
 public:
   WritingProcess(Vendor vendor, int domain) {
     int ends[2] = {};
-    static_cast<void>(pipe(ends));
+    static_cast<void>(pipe(ends) < 0);
     const std::string name = to_string(vendor);
     const std::string number = std::to_string(domain);
     process_ = fork();

@@ -234,7 +234,7 @@ TEST_P(StoreTest, HasEveryResultWholeOrNotAtAllWhenAWriterIsKilled) {
             "killed.json",
             tests::text_of(tests::outcome_of({.run = fmt::format("k{}", number + i)})));
         if ((*own)->add(path)) {
-          static_cast<void>(write(added[1], "+", 1));
+          static_cast<void>(write(added[1], "+", 1) < 0);
         }
       }
       _exit(1);
