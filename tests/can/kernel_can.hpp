@@ -44,7 +44,7 @@ public:
     ip("set " + name_ + " mtu 72 up");
   }
   ~VirtualCan() {
-    static_cast<void>(std::system(("ip link del " + name_ + " 2>/dev/null").c_str()));
+    static_cast<void>(std::system(("ip link del " + name_ + " 2>/dev/null").c_str()) < 0);
   }
   VirtualCan(const VirtualCan&) = delete;
   VirtualCan& operator=(const VirtualCan&) = delete;
