@@ -77,7 +77,8 @@ Findings check_unicast(const LaboratoryView& view) {
     findings.push_back(
         {Severity::error, "network",
          fmt::format("programs are found, but no answer comes from any: their packets with "
-                     "messages do not get through; a firewall on either host must let {} through",
+                     "messages do not get through; a firewall on either host must let {} through, "
+                     "or an MTU below 1500 on the way, or at the other host, drops longer ones",
                      ports_of(view.domain))});
   }
   return findings;

@@ -124,7 +124,9 @@ std::string about_no_answer(const HostView& host) {
     }
   }
   return "trial connections by TCP are answered at once, so the link is sound: a firewall, here or "
-         "there, does not let UDP through, or the program hangs";
+         "there, does not let UDP through, an MTU below 1500 on the way drops longer packets, or "
+         "the "
+         "program hangs";
 }
 
 std::string about_others(const LaboratoryView& view, const HostView& host) {
