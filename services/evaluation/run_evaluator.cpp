@@ -56,7 +56,7 @@ Expected<void> RunEvaluator::describe(const std::string& source,
   }
   auto before = record->described() ? std::optional(record->description()) : std::nullopt;
   record->describe(std::move(description));
-  const auto checked = check_source(*recipe_, records_, *record).and_then([&] {
+  auto checked = check_source(*recipe_, records_, *record).and_then([&] {
     return method_->check_time_scales(records_);
   });
   if (!checked) {

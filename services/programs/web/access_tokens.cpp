@@ -28,9 +28,33 @@ std::optional<Role> role_of(const std::string& word) {
                              : std::nullopt;
 }
 
-std::vector<std::string> words_of(const std::string& line) {
-  std::istringstream text(line.substr(0, line.find('#')));
-  return {std::istream_iterator<std::string>(text), std::istream_iterator<std::string>()};
+struct Line {
+  int number = 0;
+  std::string text;
+  std::vector<std::string> words; // before a comment; some
+};
+
+std::vector<Line> lines_of(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  std::vector<Line> lines;
+  std::string text;
+  for (int number = 1; std::getline(file, text); ++number) {
+    std::istringstream words(text.substr(0, text.find('#')));
+    Line line{number,
+              text,
+              {std::istream_iterator<std::string>(words), std::istream_iterator<std::string>()}};
+    if (!line.words.empty()) {
+      lines.push_back(std::move(line));
+    }
+  }
+  return lines;
+}
+
+// Which may have spaces, so that one of three words may be a line whose role is spelt wrong.
+bool is_a_token_alone(const Line& line) {
+  const bool may_be_a_holder =
+      line.words.size() == 3 && line.words.back().size() >= AccessTokens::min_length;
+  return !role_of(line.words.front()) && !may_be_a_holder;
 }
 
 std::string base64(const std::string& text) {
@@ -56,31 +80,27 @@ Expected<std::vector<TokenHolder>> read_tokens(const std::filesystem::path& path
   if (::stat(path.c_str(), &status) == 0 && (status.st_mode & S_IROTH) != 0) {
     return refuse(path, "everybody on this computer can read this token; chmod o= it");
   }
-  std::ifstream file(path);
+  const std::vector<Line> lines = lines_of(path);
+  if (lines.empty()) {
+    return refuse(path, "no token can be read; one is a line");
+  }
   std::vector<TokenHolder> holders;
-  std::string line;
-  for (int number = 1; std::getline(file, line); ++number) {
-    const std::vector<std::string> words = words_of(line);
-    if (words.empty()) {
-      continue;
-    }
-    const auto role = role_of(words.front());
-    const bool is_alone = words.size() == 1;
-    if (!is_alone && (words.size() != 3 || !role)) {
+  for (const Line& line : lines) {
+    const auto role = role_of(line.words.front());
+    if (lines.size() == 1 && is_a_token_alone(line)) {
+      holders.push_back({.token = line.text});
+    } else if (line.words.size() == 3 && role) {
+      holders.push_back({*role, line.words[1], line.words[2]});
+    } else {
       return refuse(path, fmt::format("line {} is not ROLE NAME TOKEN, with watch or operate for "
                                       "the role",
-                                      number));
+                                      line.number));
     }
-    holders.push_back(is_alone ? TokenHolder{.token = words.front()}
-                               : TokenHolder{*role, words[1], words[2]});
     if (holders.back().token.size() < AccessTokens::min_length) {
       return refuse(path, fmt::format("the token of line {} is too short: at least {} characters, "
                                       "e.g. of 'openssl rand -hex 32'",
-                                      number, AccessTokens::min_length));
+                                      line.number, AccessTokens::min_length));
     }
-  }
-  if (holders.empty()) {
-    return refuse(path, "no token can be read; one is a line");
   }
   return holders;
 }

@@ -34,9 +34,9 @@ struct TokenHolder {
 };
 
 // Lines of "ROLE NAME TOKEN", ROLE being watch or operate, NAME one word, and comments behind '#';
-// or one line with nothing but a token, which operates. A token has at least 16 characters. Fails
-// (bad_file), with the line, if the file deviates, cannot be read, or may be read by everybody on
-// the machine.
+// or one line with nothing but a token, spaces among it, which operates. A token has at least 16
+// characters. Fails (bad_file), with the line, if the file deviates, cannot be read, or may be read
+// by everybody on the machine.
 [[nodiscard]] Expected<std::vector<TokenHolder>> read_tokens(const std::filesystem::path& path);
 
 // Whatever is equal of them, it takes the same time.

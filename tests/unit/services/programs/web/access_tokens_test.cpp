@@ -145,6 +145,8 @@ TEST_F(ReadTokens, TakesALongLineThatOthersCannotRead) {
   ASSERT_EQ(one->size(), 1U);
   EXPECT_EQ(one->front().token, secret);
   EXPECT_EQ(one->front().role, Role::operate);
+  EXPECT_EQ(read("a secret of the laboratory\n", perms::owner_read).value().front().token,
+            "a secret of the laboratory");
   EXPECT_NE(read(secret, perms::owner_read | perms::others_read).error().message.find("chmod"),
             std::string::npos);
   EXPECT_NE(read("short", perms::owner_read).error().message.find("too short"), std::string::npos);
