@@ -79,6 +79,9 @@ struct Encoder {
     std::copy_n(bytes, understood, extended.data());
     CdrReader extended_reader(extended.data(), extended.size());
     extended_reader(members);
+    if constexpr (HasChecksumOfContract3<T>) {
+      members.checksum(0);
+    }
     return extended_reader.is_whole();
   }
 

@@ -2,7 +2,7 @@
 // writer's participant, that is of the program, which no other one on the network has. A program
 // that makes its own packets can copy them; one that uses a DDS library cannot.
 //
-// Unknown (zeros) where the vendor does not tell: with Cyclone DDS, a writer that was gone before
+// Unknown (zeros) where the vendor does not tell, as one may not of a writer that was gone before
 // its message was taken. Plain data.
 #pragma once
 

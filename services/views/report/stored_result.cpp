@@ -14,7 +14,6 @@
 #include "services/contract/digest.hpp"
 #include "services/views/report/json_members.hpp"
 #include "services/views/report/json_schema.hpp"
-#include "services/views/report/mean_check.hpp"
 #include "services/views/report/result_schema.hpp"
 #include "services/views/report/stored_members.hpp"
 
@@ -105,11 +104,6 @@ std::optional<std::string> contradiction(const StoredResult& result) {
     return fmt::format("transfer_function is empty, but {} single results have a value: the file "
                        "was changed",
                        valid);
-  }
-  if (const auto foreign = foreign_mean(result)) {
-    return fmt::format("a mean is not that of its single results ({}): the file was changed, or "
-                       "another program published as the analysis of its run",
-                       *foreign);
   }
   return std::nullopt;
 }

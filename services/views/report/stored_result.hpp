@@ -7,8 +7,8 @@
 // NaN: null in the file.
 //
 // Fails (bad_file) when the file does not exist, is not JSON, has another schema or version,
-// deviates from it, or has means that are not those of its single results (mean_check.hpp);
-// read_values() also when the run has no value at all, as one has that was ended early. Any thread.
+// deviates from it, or has single results but no transfer function of them; read_values() also when
+// the run has no value at all, as one has that was ended early. Any thread.
 #pragma once
 
 #include <cstdint>

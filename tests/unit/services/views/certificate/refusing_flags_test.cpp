@@ -12,7 +12,7 @@ TEST(RefusingFlags, EveryFlagHasAReason) {
     EXPECT_GT(verdict.reason.size(), 20U) << i;
     forbidding += verdict.forbids ? 1 : 0;
   }
-  EXPECT_EQ(forbidding, 25);
+  EXPECT_EQ(forbidding, 26);
 }
 
 TEST(RefusingFlags, ForbidWhatUDoesNotHold) {
