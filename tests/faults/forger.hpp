@@ -102,7 +102,7 @@ private:
           }
         });
     plans_.take([&](const wire::Measurement& message) {
-      if (message.conductor() != forger_) {
+      if (message.conductor() != forger_name) {
         plan_ = message;
       }
     });
@@ -124,7 +124,7 @@ private:
   }
   void forge_runs() {
     wire::Measurement run = plan_;
-    run.conductor(forger_);
+    run.conductor(forger_name);
     run.run("forged");
     run.state(wire::MEASUREMENT_RUNNING);
     run.link_number(run.link_number() + 1);
@@ -134,7 +134,7 @@ private:
     excitation_.write(of_run);
   }
 
-  static constexpr const char* forger_ = "forger:1";
+  static constexpr const char* forger_name = "forger:1";
 
   std::string bench_;
   bus::Participant participant_;
