@@ -48,21 +48,15 @@ def write_result(path, megabytes):
         for axis in "xyz"
         for hz in range(10, 20)
     ]  # fmt: skip
-    points = [
-        {**value, "step": step, "repetition": 1, "valid": True,
-         "lost": 0, "samples": {}, "budget": [], "signals": [], "source_samples": [],
-         "data_sha256": ""}
-        for step, value in enumerate(values, 1)
-    ]  # fmt: skip
     result = {
         **dict.fromkeys(["began_utc", "ended_utc"]),
         **{name: [] for name in ["flag_legend", "sources", "steps", "channels", "group_delay",
-                                 "sample_clock"]},
+                                 "sample_clock", "points"]},
         "schema": {"name": "dyncal-result", "version": 2}, "bench": "b", "run": "r",
         "method": "analogue", "phase_convention": "", "software": "dyncal",
         "analysis": {"software": None, "host": None}, "dds": {"analysis": "none"},
         "planned_steps": 10, "interrupted": False, "problem": "", "recipe_sha256": "",
-        "transfer_function": values, "points": points,
+        "transfer_function": values,
     }  # fmt: skip
     more = "0.123456789," * (megabytes * 1000000 // 12)
     path.write_text(f'{{"of_a_later_version": [{more}0], {json.dumps(result)[1:]}')

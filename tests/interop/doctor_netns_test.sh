@@ -46,6 +46,7 @@ begin() { # program, options...
   services+=($!)
 }
 failed=0
+declare -A lines=([dyncal-analysis]=0 [dyncal-acs]=0)
 wrong() {
   echo "  FAILED: $1"
   sed 's/^/    /' "$folder/report"
@@ -92,6 +93,10 @@ for from in "${vendors[@]}"; do
     begin dyncal-analysis --dds "$from"
     begin dyncal-acs "$folder/bench.toml" --dds "$from"
     doctor "the clock of another host" 5 "the clock of lab-2 is [+-]0\.00" --seconds 4
+    for program in dyncal-analysis dyncal-acs; do
+      said=$(grep -c "$program info: not secured" "$folder/log") || true
+      [[ $said == "$((++lines[$program]))" ]] || wrong "$program: $said times 'not secured'"
+    done
     doctor "who is there, and that the bench file is the same" 5 \
       "all sources of .* are there, and their services have read this file" \
       "$folder/bench.toml" --seconds 4

@@ -55,10 +55,10 @@ Finding finding_of(const LinkLoss& loss, const std::string& own_host) {
 
 Finding about_long_packets(const LinkLoss& loss) {
   return {Severity::error, "path",
-          fmt::format("{}: packets as long as those with samples do not get there, {} of {}, and "
-                      "short ones do: on the way, or at that host, an MTU is smaller than 1500; "
-                      "set it to 1500 there (`tracepath` shows where)",
-                      place_of(loss.identity), loss.long_sent, loss.long_sent)};
+          fmt::format("{}: none of {} packets as long as those with samples got there, and short "
+                      "ones do: on the way, or at that host, an MTU is smaller than 1500; set it "
+                      "to 1500 there (`tracepath` shows where)",
+                      place_of(loss.identity), loss.long_sent)};
 }
 
 } // namespace

@@ -53,6 +53,10 @@ const ProgramIdentity& Daemon::identity() const {
 Expected<void> Daemon::join() {
   DYNCAL_TRY(joined_, WatchedNetwork::join(network, name_, signals_));
   stopping_.emplace(joined_->stop(), [this] { supervisor_->stopping(); });
+  if (is_open_to_others()) {
+    supervisor_->say_when_serving("not secured: whoever is on this network can read and send "
+                                  "everything (--security)");
+  }
   refused_ = joined_->participant.refused_packets();
   DYNCAL_TRY(clock_, ClockResponder::start(joined_->participant, identity()));
   return {};
@@ -63,10 +67,6 @@ bool Daemon::is_open_to_others() const {
 }
 
 void Daemon::turned() {
-  if (!std::exchange(has_turned_, true) && is_open_to_others()) {
-    spdlog::info("not secured: whoever is on this network can read and send everything "
-                 "(--security)");
-  }
   supervisor_->report_refused_packets(refused_->count());
   supervisor_->report_malformed_messages(joined_->participant.malformed_messages());
   supervisor_->turned();

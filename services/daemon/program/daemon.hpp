@@ -74,7 +74,6 @@ private:
   std::unique_ptr<WatchedNetwork> joined_;
   std::shared_ptr<const bus::RefusedPackets> refused_;
   std::unique_ptr<ClockResponder> clock_;
-  bool has_turned_ = false;
   std::optional<std::stop_callback<std::function<void()>>> stopping_;
 };
 

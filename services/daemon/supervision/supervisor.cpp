@@ -1,5 +1,7 @@
 #include "services/daemon/supervision/supervisor.hpp"
 
+#include <spdlog/spdlog.h>
+
 namespace dyncal::inline daemon {
 
 Expected<std::unique_ptr<Supervisor>> Supervisor::create(ProgramIdentity identity,
@@ -10,6 +12,13 @@ Expected<std::unique_ptr<Supervisor>> Supervisor::create(ProgramIdentity identit
     DYNCAL_TRY(supervisor->server_, MetricsServer::start(metrics_address, supervisor->store_));
   }
   return supervisor;
+}
+
+void Supervisor::serving() {
+  if (!line_.empty()) {
+    spdlog::info("{}", line_);
+  }
+  manager_.serving(status_);
 }
 
 } // namespace dyncal::inline daemon

@@ -29,8 +29,10 @@ public:
   [[nodiscard]] const ProgramIdentity& identity() const { return identity_; }
   // One line for people, e.g. "bench acc-1"; before serving().
   void describe(std::string status) { status_ = std::move(status); }
+  // For the log, once the daemon serves: one that fails before says why, and nothing else.
+  void say_when_serving(std::string line) { line_ = std::move(line); }
   // The daemon serves from the next turn of its main loop on.
-  void serving() { manager_.serving(status_); }
+  void serving();
   // One turn of the main loop, which turns at least twice a second.
   void turned() { manager_.turned(); }
   void stopping() { manager_.stopping(); }
@@ -64,6 +66,7 @@ private:
 
   ProgramIdentity identity_;
   std::string status_;
+  std::string line_; // empty: nothing
   ServiceManager manager_;
   MetricStore store_;
   std::unique_ptr<MetricsServer> server_; // of store_; null: nobody asked for it

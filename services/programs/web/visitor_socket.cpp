@@ -40,12 +40,14 @@ VisitorSocket::VisitorSocket(drivers::FileDescriptor socket, const TlsCertificat
   }
 }
 
-ssize_t VisitorSocket::outcome_of(int count) {
+// Hands are shaken before anything is sent: one who is to send first then would be waited for in
+// vain, with room to write all the time.
+ssize_t VisitorSocket::outcome_of(int count, bool may_wait_to_read) {
   if (count > 0) {
     return count;
   }
   const int why = SSL_get_error(session_.get(), count);
-  if (why == SSL_ERROR_WANT_READ || why == SSL_ERROR_WANT_WRITE) {
+  if (why == SSL_ERROR_WANT_WRITE || (why == SSL_ERROR_WANT_READ && may_wait_to_read)) {
     return nothing_yet;
   }
   if (ERR_GET_REASON(ERR_peek_error()) == SSL_R_HTTP_REQUEST) {
@@ -58,7 +60,7 @@ ssize_t VisitorSocket::outcome_of(int count) {
 ssize_t VisitorSocket::receive(char* data, std::size_t most) {
   if (session_) {
     ERR_clear_error();
-    return outcome_of(SSL_read(session_.get(), data, bounded(most)));
+    return outcome_of(SSL_read(session_.get(), data, bounded(most)), true);
   }
   return outcome_of_plain(recv(number(), data, most, MSG_DONTWAIT));
 }
@@ -66,7 +68,7 @@ ssize_t VisitorSocket::receive(char* data, std::size_t most) {
 ssize_t VisitorSocket::send(const char* data, std::size_t count) {
   if (session_) {
     ERR_clear_error();
-    return outcome_of(SSL_write(session_.get(), data, bounded(count)));
+    return outcome_of(SSL_write(session_.get(), data, bounded(count)), false);
   }
   return outcome_of_plain(::send(number(), data, count, MSG_NOSIGNAL | MSG_DONTWAIT));
 }

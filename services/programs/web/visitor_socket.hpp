@@ -38,7 +38,7 @@ private:
   struct Free {
     void operator()(ssl_st* session) const;
   };
-  [[nodiscard]] ssize_t outcome_of(int count);
+  [[nodiscard]] ssize_t outcome_of(int count, bool may_wait_to_read);
 
   drivers::FileDescriptor socket_;
   std::unique_ptr<ssl_st, Free> session_; // null: plain text

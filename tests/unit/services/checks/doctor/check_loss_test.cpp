@@ -57,6 +57,20 @@ TEST_F(CheckLoss, WarnsOfLossWithinTheHostWithoutCables) {
               ElementsAre(AllOf(HasSubstr("no room on it (`nstat"), Not(HasSubstr("cable")))));
 }
 
+TEST_F(CheckLoss, NamesAWayThatDropsLongPackets) {
+  add(200, 200);
+  view_.losses.front().long_sent = 50;
+  EXPECT_THAT(
+      tests::problems(check_loss(view_)),
+      ElementsAre(AllOf(HasSubstr("dyncal-acs:3 on lab-2: none of 50 packets"), HasSubstr("MTU"))));
+  view_.losses.front().long_echoed = 1;
+  EXPECT_THAT(tests::problems(check_loss(view_)), IsEmpty()) << "long ones get through";
+  view_.losses = {};
+  add(200, 10);
+  view_.losses.front().long_sent = 50;
+  EXPECT_THAT(tests::problems(check_loss(view_)), IsEmpty()) << "nearly nothing gets through";
+}
+
 TEST_F(CheckLoss, TellsThatNothingGetsThroughAlthoughAnswersDo) {
   add(200, 0);
   EXPECT_THAT(warnings(check_loss(view_)),

@@ -12,6 +12,16 @@
 
 namespace dyncal::inline programs::web {
 
+// What comes until the other side closes.
+template <class Visitor>
+std::string read_to_the_end(const Visitor& visitor) {
+  std::string all;
+  for (std::string part = visitor.read(); !part.empty(); part = visitor.read()) {
+    all += part;
+  }
+  return all;
+}
+
 class RawVisitor {
 public:
   // `receive_bytes`: that the kernel takes for him; 0: as many as it likes.
@@ -43,14 +53,7 @@ public:
     bytes.resize(count > 0 ? static_cast<std::size_t>(count) : 0);
     return bytes;
   }
-  // All until the other side closes.
-  [[nodiscard]] std::string read_all() const {
-    std::string all;
-    for (std::string part = read(); !part.empty(); part = read()) {
-      all += part;
-    }
-    return all;
-  }
+  [[nodiscard]] std::string read_all() const { return read_to_the_end(*this); }
 
 private:
   drivers::FileDescriptor socket_;

@@ -59,13 +59,7 @@ public:
     bytes.resize(count > 0 ? static_cast<std::size_t>(count) : 0);
     return bytes;
   }
-  [[nodiscard]] std::string read_all() const {
-    std::string all;
-    for (std::string part = read(); !part.empty(); part = read()) {
-      all += part;
-    }
-    return all;
-  }
+  [[nodiscard]] std::string read_all() const { return read_to_the_end(*this); }
 
 private:
   RawVisitor connection_;

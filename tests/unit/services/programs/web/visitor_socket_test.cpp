@@ -63,6 +63,16 @@ TEST_F(VisitorSocketTest, SendsWhatIsLongerThanTheKernelHolds) {
   EXPECT_EQ(answer.substr(body + 4), std::string(big_bytes, 'a'));
 }
 
+// OpenSSL writes without MSG_NOSIGNAL: a signal would end the process.
+TEST_F(VisitorSocketTest, OutlivesAVisitorWhoGoesWhileMuchIsSent) {
+  for (int i = 0; i < 10; ++i) {
+    const TlsVisitor visitor(router_->port());
+    ASSERT_TRUE(visitor.write("GET /files/a/b/c HTTP/1.1\r\nHost: localhost\r\n" + close_then));
+    EXPECT_FALSE(visitor.read().empty());
+  }
+  expect_the_page();
+}
+
 TEST_F(VisitorSocketTest, AnswersOneRequestAfterTheOtherOfAConnection) {
   const TlsVisitor visitor(router_->port());
   const std::string post = "POST /api/run HTTP/1.1\r\nHost: localhost\r\n"

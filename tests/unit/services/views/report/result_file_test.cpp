@@ -10,19 +10,11 @@
 namespace dyncal::inline views {
 namespace {
 
-// Each mean of a file must be that of single results, as in a run: those of one channel at 10 Hz.
-RunOutcome readable_outcome() {
-  RunOutcome outcome = tests::example_outcome();
-  outcome.transfer_functions.resize(1);
-  outcome.transfer_functions.front().points.resize(1);
-  return outcome;
-}
-
 // compare and triaxial apply a factor of 2: that must give U, although u_magnitude is that of k
 // = 1.
 TEST(ResultFile, TwiceItsUncertaintyIsTheExpandedOne) {
   const tests::TemporaryFolder folder;
-  RunOutcome outcome = readable_outcome();
+  RunOutcome outcome = tests::example_outcome();
   analysis::RepetitionMean& mean = outcome.transfer_functions.front().points.front().mean;
   mean.u_magnitude = 3e-3;
   mean.magnitude_rel.k = 4.0;
@@ -43,19 +35,19 @@ TEST(ResultFile, TwiceItsUncertaintyIsTheExpandedOne) {
 TEST(ResultFile, CountsTheBytesThatItReads) {
   const tests::TemporaryFolder folder;
   const auto path = folder.path() / "result.json";
-  ASSERT_TRUE(write_json(path, result_json(readable_outcome())));
+  ASSERT_TRUE(write_json(path, result_json(tests::example_outcome())));
   const auto wrong = folder.write("wrong.json", "{" + std::string(50'000, ' '));
   ByteCount bytes(nullptr, "reading", bytes_of_file(path) + bytes_of_file(wrong));
   const auto counted = read_values(path, bytes);
   ASSERT_TRUE(counted) << counted.error().message;
   EXPECT_EQ(bytes.done(), bytes_of_file(path));
-  EXPECT_EQ(means_of(*counted).size(), 1U);
+  EXPECT_EQ(means_of(*counted).size(), 4U);
   EXPECT_FALSE(read_values(wrong, bytes));
   EXPECT_EQ(bytes.done(), bytes.total());
 }
 
 TEST(ResultFile, GivesSingleResultsByTheirRepetitionWhateverTheAttempt) {
-  RunOutcome outcome = readable_outcome();
+  RunOutcome outcome = tests::example_outcome();
   StepResult& single = outcome.results.front();
   single.attempt = 2;
   single.u_magnitude = 1e-3;
