@@ -76,14 +76,9 @@ bool has_fewer_samples(const StepResult& again, const StepResult& published) {
 }
 
 const StepResult* find_same(const std::vector<StepResult>& results, const StepResult& wanted) {
-  const auto found = std::find_if(results.begin(), results.end(), [&](const StepResult& one) {
-    return one.channel == wanted.channel && one.step == wanted.step &&
-           one.repetition == wanted.repetition;
-  });
-  const bool is_whole = found != results.end() && found->valid &&
-                        found->attempt == wanted.attempt && found->lost <= wanted.lost &&
-                        !has_fewer_samples(*found, wanted);
-  return is_whole ? &*found : nullptr;
+  const auto found = std::find_if(results.begin(), results.end(),
+                                  [&](const StepResult& one) { return gives_again(one, wanted); });
+  return found == results.end() ? nullptr : &*found;
 }
 
 std::string point_difference(const FrequencyPoint& published, const FrequencyPoint& again) {
@@ -114,6 +109,14 @@ std::string delay_difference(const TransferFunction& published, const TransferFu
 }
 
 } // namespace
+
+bool gives_again(const StepResult& again, const StepResult& published) {
+  const bool is_same = again.channel == published.channel && again.step == published.step &&
+                       again.repetition == published.repetition &&
+                       again.attempt == published.attempt;
+  return is_same && again.valid && again.lost <= published.lost &&
+         !has_fewer_samples(again, published);
+}
 
 std::string mean_difference(const TransferFunction& published, const TransferFunction& again) {
   if (published.points.size() != again.points.size()) {

@@ -23,6 +23,9 @@ struct OutcomeAgreement {
   std::string difference;    // the first one, of a value or a mean; empty: all that is there agrees
 };
 
+// Whether it is the same single result, of as many samples: what can be held against each other.
+[[nodiscard]] bool gives_again(const StepResult& again, const StepResult& published);
+
 [[nodiscard]] OutcomeAgreement hold_against(const RunOutcome& published, const RunOutcome& again);
 
 // The first point or delay of `published` that `again` does not have so; empty: none. A point that

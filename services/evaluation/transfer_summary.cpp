@@ -12,9 +12,9 @@
 
 #include "analysis/base/phasor.hpp"
 #include "services/evaluation/closures/channel_run.hpp"
+#include "services/evaluation/mean_points.hpp"
 #include "services/evaluation/method/unstated_uncertainty.hpp"
 #include "services/evaluation/result/delay_points.hpp"
-#include "services/evaluation/result/point_identity.hpp"
 #include "services/evaluation/shared_phase_uncertainty.hpp"
 #include "services/evaluation/sweep_delay.hpp"
 
@@ -24,33 +24,6 @@ namespace {
 // Towards 0 Hz; a velocity against a displacement tends to half of pi, which is neither.
 constexpr double opposite_from_rad = 0.75 * std::numbers::pi;
 constexpr double before_excitation = 3.0; // standard uncertainties of a group delay below 0
-
-std::vector<FrequencyPoint> mean_points(const std::vector<const StepResult*>& results) {
-  std::map<PointIdentity, std::vector<const StepResult*>> by_point;
-  for (const StepResult* result : results) {
-    by_point[mean_identity_of(*result)].push_back(result);
-  }
-  // All at once: how much runs scatter shows at all frequencies together.
-  std::vector<analysis::RepeatedFrequency> repeated;
-  for (const auto& [point, of_point] : by_point) {
-    repeated.push_back({point.frequency_hz, {}});
-    std::transform(of_point.begin(), of_point.end(),
-                   std::back_inserter(repeated.back().repetitions),
-                   [](const StepResult* result) { return repetition_of(*result); });
-  }
-  const auto means = analysis::means_of_repetitions(repeated);
-  std::vector<FrequencyPoint> points;
-  auto mean = means.begin();
-  for (const auto& [point, of_point] : by_point) {
-    if (*mean) {
-      const StepResult& first = *of_point.front();
-      points.push_back({first.frequency_text_hz, first.frequency_hz, first.level_m_s2, **mean,
-                        (*mean)->phase_rad});
-    }
-    ++mean;
-  }
-  return points;
-}
 
 // Those of other levels at a frequency stand in the turn of the one on the line.
 void place_phases(const std::vector<std::size_t>& chosen, const std::vector<double>& unwrapped_rad,

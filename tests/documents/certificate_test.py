@@ -93,10 +93,13 @@ class Certificate(unittest.TestCase):
             key = ["--key", cls.folder / f"{signer}.key"]
             key += ["--certificate", cls.folder / f"{signer}.pem"]
         return dyncal("certify", run_folder, "--lab", stored_run.LAB, "--sensor",
-                      stored_run.SENSOR, "--output", output, *key, *options)  # fmt: skip
+                      stored_run.SENSOR, "--output", output, *key,
+                      *stored_run.kept(DYNCAL, run_folder), *options)  # fmt: skip
 
     def verify(self, file, *options):
-        return dyncal("verify", file, "--trust", self.folder / "ca.pem", *options)
+        run = options[options.index("--run") + 1] if "--run" in options else None
+        store = stored_run.kept(DYNCAL, run) if run else []
+        return dyncal("verify", file, "--trust", self.folder / "ca.pem", *store, *options)
 
     def assert_valid_by_xmllint(self, file):
         checked = run("xmllint", "--nonet", "--noout", "--schema", SCHEMA, file)
@@ -183,7 +186,9 @@ class Certificate(unittest.TestCase):
         folder = self.new_run("recorded", lambda result: None)
         (folder / "recording.mcap").write_bytes(b"\x89MCAP0\r\n" * 1000)
         file = self.folder / "recorded.xml"
-        self.assertEqual(self.certify(folder, file).returncode, 0)
+        made = self.certify(folder, file)
+        self.assertIn("cannot be evaluated once more", made.stderr)
+        self.assertEqual(self.certify(folder, file, None, "--force").returncode, 0)
         sha256 = run("sha256sum", folder / "recording.mcap").stdout.split()[0]
         self.assertIn(sha256, file.read_text())
 

@@ -65,7 +65,8 @@ class Closures(unittest.TestCase):
         output = self.folder / f"{run.name}.xml"
         output.unlink(missing_ok=True)
         made = self.dyncal("certify", run, "--lab", stored_run.LAB, "--sensor", stored_run.SENSOR,
-                           "--output", output, *options)  # fmt: skip
+                           "--output", output, *stored_run.kept(DYNCAL, run),
+                           *options)  # fmt: skip
         return made, output.read_text() if output.exists() else ""
 
     def report(self, run, *options):

@@ -164,7 +164,7 @@ class HalfATurn(unittest.TestCase):
         certificate = self.folder / "certificate.xml"
         documents = ("--lab", stored_run.LAB, "--sensor", stored_run.SENSOR)
         run(DYNCAL, "certify", self.stored, *documents, "--performed", "2026-11-26",
-            "--output", certificate)  # fmt: skip
+            "--output", certificate, *stored_run.kept(DYNCAL, self.stored))  # fmt: skip
         found = {}
         for stated in ElementTree.parse(certificate).getroot().findall(f".//{SI}realListXMLList"):
             unit = stated.find(f".//{SI}unitXMLList").text.strip()

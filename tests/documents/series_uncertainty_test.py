@@ -59,7 +59,8 @@ class OneUncertainty(unittest.TestCase):
         cls.result = json.loads((stored / "result.json").read_text())
         cls.certificate = cls.folder / "certificate.xml"
         run(DYNCAL, "certify", stored, "--lab", stored_run.LAB, "--sensor", stored_run.SENSOR,
-            "--performed", "2026-11-26", "--output", cls.certificate)  # fmt: skip
+            "--performed", "2026-11-26", "--output", cls.certificate,
+            *stored_run.kept(DYNCAL, stored))  # fmt: skip
 
     def values(self):
         """Each point beside the mean that is made of it alone."""

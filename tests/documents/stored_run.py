@@ -7,6 +7,7 @@ import math
 import pathlib
 import random
 import subprocess
+import tempfile
 
 TOP = pathlib.Path(__file__).resolve().parents[2]
 LAB_FOLDER = TOP / "deploy/example-lab/documents"
@@ -44,6 +45,9 @@ def clean_run(example_writer, seed=1):
     value_of = example["transfer_function"][0]
     result = copy.deepcopy(example)
     result.update(flag_legend=[], points=[], transfer_function=[], channels=[], group_delay=[])
+    # After sensor and reference of the example files.
+    for name, hour in (("began_utc", 12), ("ended_utc", 13)):
+        result[name] = f"2026-03-01T{hour}:00:05.500000000Z"
     result["planned_steps"] = len(FREQUENCIES) * REPETITIONS
     for clock in result["sample_clock"]:
         clock.update(flags=[], flag_names=[], lost=0)
@@ -110,6 +114,14 @@ def write_run(folder, result):
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "result.json").write_text(json.dumps(result, indent=1))
     return folder
+
+
+def kept(dyncal, run):
+    """The options that name a new store that has this run, as `dyncal run` leaves one."""
+    store = pathlib.Path(tempfile.mkstemp(suffix=".sqlite", dir=pathlib.Path(run).parent)[1])
+    store.unlink()
+    subprocess.run([dyncal, "store", "add", run, "--store", store], capture_output=True)
+    return ["--store", store]
 
 
 def rounded(value, expanded_uncertainty):

@@ -14,9 +14,9 @@
 #include "services/bench/file/asked_keys.hpp"
 #include "services/bench/file/bench_file.hpp"
 #include "services/evaluation/result/result_flag.hpp"
-#include "services/views/certificate/refusing_flags.hpp"
 #include "services/views/lab_file/laboratory_file.hpp"
 #include "services/views/lab_file/sensor_file.hpp"
+#include "services/views/objections/refusing_flags.hpp"
 
 namespace dyncal {
 namespace {

@@ -65,11 +65,18 @@ WINGS = {
         ],
         ["command"],
     ],
-    "records": [["mcap", "run_folder", "store"], ["capture"], ["replay"], ["exchange"]],
+    "records": [
+        ["mcap", "run_folder", "store"],
+        ["capture"],
+        ["replay"],
+        ["exchange"],
+        ["provenance"],
+    ],
     "views": [
         ["figures", "signals"],
         ["report"],
         ["lab_file", "live", "model"],
+        ["objections"],
         ["certificate", "document"],
     ],
 }

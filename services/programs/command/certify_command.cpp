@@ -1,13 +1,16 @@
 // `dyncal certify RUN --lab LAB.toml`: a digital calibration certificate of a stored run.
 //
 // Writes certificate.xml into the run folder, NAME-certificate.xml beside NAME.json, or what
-// --output says; never over an older file. Exit status 1 and one line when something is missing or
-// speaks against it. Belongs to one thread.
+// --output says; never over an older file. The result is held against store and recording before
+// (services/records/provenance); a signed certificate takes its number in the store. Exit status 1
+// and one line when something is missing or speaks against it. Belongs to one thread.
 #include <fmt/core.h>
 
 #include "services/programs/command/command.hpp"
+#include "services/programs/command/issued_number.hpp"
 #include "services/programs/command/keep_options.hpp"
 #include "services/programs/command/work_progress.hpp"
+#include "services/records/provenance/result_provenance.hpp"
 #include "services/views/certificate/certificate_file.hpp"
 #include "services/views/lab_file/contact_table.hpp"
 
@@ -17,6 +20,7 @@ namespace {
 struct CertifyOptions {
   CertificateFileRequest file; // without an output: as above
   SigningKey key;              // without names: not signed
+  NumberOptions number;
 };
 
 void add_certify(CLI::App& command, CertifyOptions& options) {
@@ -31,11 +35,10 @@ void add_certify(CLI::App& command, CertifyOptions& options) {
                      "sensor file (default: as the run's source describes itself)");
   command.add_option("--channel", certify.channels,
                      "channel to certify (repeatable; default: all that respond)");
-  command.add_option("--number", certify.number,
-                     "number of the certificate (default: that of the sensor file)");
+  add_number_options(command, options.number);
   command
       .add_option("--performed", certify.performed,
-                  "day of the measurement, YYYY-MM-DD (default: from the run)")
+                  "day of the measurement, YYYY-MM-DD, of a run that does not know it")
       ->check(CLI::Validator(
           [](const std::string& text) {
             return is_date(text) ? std::string() : "must be a date, for example 2026-03-01";
@@ -65,12 +68,52 @@ void print_made(const CertificateFileRequest& request, const CertificateContents
   }
   fmt::print("wrote {}: DCC 3.3.0, {} channels, {} values, {}\n", request.output.string(),
              contents.channels.size(), values, request.key ? "signed" : "NOT SIGNED (--key)");
+  for (const std::string& statement : contents.provenance) {
+    fmt::print("{}\n", statement);
+  }
+  if (!request.key && !contents.number.empty()) {
+    fmt::print("number {} is not taken: the certificate is not signed\n", contents.number);
+  }
   for (const std::string& objection : contents.objections) {
     fmt::print("forced in spite of: {}\n", objection);
   }
 }
 
-Expected<void> run_certify(CertifyOptions& options) {
+// What is signed is entered in the register.
+auto entering(const std::string& place) {
+  return [place](const CertificateFileRequest& request, const CertificateContents& contents,
+                 const std::string& text) -> Expected<void> {
+    if (!request.key || contents.number.empty()) {
+      return {};
+    }
+    IssuedDocument document = document_of(contents.result, text, request.output);
+    document.number = contents.number;
+    document.kind = "DCC";
+    document.identifier = contents.identifier;
+    document.replaces = contents.replaces;
+    document.serial = contents.sensor.serial;
+    return enter_document(place, document);
+  };
+}
+
+Expected<void> gather(CertifyOptions& options, const std::string& place,
+                      const std::stop_token& stop) {
+  CertificateRequest& certify = options.file.certificate;
+  DYNCAL_TRY(const auto replaced, replaced_document(options.number, place, "DCC"));
+  DYNCAL_TRY(certify.held,
+             with_progress("holding the result against its recording", [&](const auto& count) {
+               return read_held_result(certify.run, place, count, stop);
+             }));
+  certify.number = options.number.number;
+  certify.replaces = options.number.replaces;
+  if (replaced) {
+    certify.replaced_identifier = replaced->identifier;
+    certify.replaced_sha256 = replaced->sha256;
+  }
+  return {};
+}
+
+Expected<void> run_certify(CertifyOptions& options, const std::stop_token& stop) {
   CertificateFileRequest& request = options.file;
   if (request.output.empty()) {
     request.output = file_beside_run(request.certificate.run, "certificate.xml");
@@ -78,6 +121,9 @@ Expected<void> run_certify(CertifyOptions& options) {
   if (!options.key.key.empty()) {
     request.key = options.key;
   }
+  const std::string place = options.number.store.text_for(request.certificate.run);
+  DYNCAL_TRY(gather(options, place, stop));
+  request.enter = entering(place);
   DYNCAL_TRY(const auto made, with_progress("making the certificate", [&](const auto&) {
                return write_certificate(request);
              }));

@@ -30,7 +30,16 @@ void add_keep_options(CLI::App& command, KeepOptions& keep) {
 }
 
 std::string StorePlace::text() const {
-  return store_place(store, folder);
+  return store_place(store, folder.value_or("runs"));
+}
+
+std::string StorePlace::text_for(const std::filesystem::path& run) const {
+  std::error_code unknown;
+  const auto root =
+      std::filesystem::canonical(run, unknown).parent_path().parent_path(); // "" of what is not
+  const bool is_beside = std::filesystem::is_directory(run, unknown) &&
+                         std::filesystem::exists(root / "dyncal.sqlite", unknown);
+  return store.empty() && !folder && is_beside ? store_place("", root) : text();
 }
 
 void add_store_place(CLI::App& command, StorePlace& place) {

@@ -24,10 +24,12 @@ void add_keep_options(CLI::App& command, KeepOptions& keep);
 
 // --folder, --store of commands that only look at the store.
 struct StorePlace {
-  std::filesystem::path folder = "runs"; // of all runs
-  std::string store;                     // as store_place() takes it
+  std::optional<std::filesystem::path> folder; // of all runs; nothing: runs
+  std::string store;                           // as store_place() takes it
 
   [[nodiscard]] std::string text() const;
+  // The one that was named, else that beside the folder of the run, if it is in there.
+  [[nodiscard]] std::string text_for(const std::filesystem::path& run) const;
 };
 void add_store_place(CLI::App& command, StorePlace& place);
 

@@ -46,6 +46,12 @@ const std::vector<Change>& changes() {
        "found DOUBLE PRECISION, u DOUBLE PRECISION, bound DOUBLE PRECISION, unit TEXT NOT NULL, "
        "sentence TEXT NOT NULL)",
        "CREATE INDEX closures_of_result ON closures (result_sha256)"},
+      {"CREATE TABLE documents ("
+       "document_sha256 TEXT PRIMARY KEY, number TEXT NOT NULL, kind TEXT NOT NULL, "
+       "identifier TEXT NOT NULL, replaces TEXT NOT NULL, issued_utc TEXT NOT NULL, result_sha256 "
+       "TEXT NOT NULL, "
+       "bench TEXT NOT NULL, run TEXT NOT NULL, serial TEXT NOT NULL, file TEXT NOT NULL)",
+       "CREATE UNIQUE INDEX documents_by_number ON documents (number, kind)"},
   };
   return all;
 }
@@ -87,6 +93,15 @@ Expected<void> migrate(Database& database, int version) {
     }
     return {};
   });
+}
+
+Expected<std::unique_ptr<Database>> open_migrated(const std::string& place) {
+  DYNCAL_TRY(auto database, is_server(place) ? open_postgres(place) : open_sqlite(place));
+  if (const auto ready = migrate(*database); !ready) {
+    return fail(ready.error().code,
+                fmt::format("{}: {}", without_password(place), ready.error().message));
+  }
+  return database;
 }
 
 } // namespace dyncal::inline records

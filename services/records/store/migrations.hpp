@@ -5,12 +5,18 @@
 // (bad_file). All changes that are missing are one transaction.
 #pragma once
 
+#include <memory>
+#include <string>
+
 #include "services/base/error.hpp"
 #include "services/records/store/database.hpp"
 
 namespace dyncal::inline records {
 
 [[nodiscard]] int newest_store_version();
+
+// A file or a server (database.hpp), with all tables.
+[[nodiscard]] Expected<std::unique_ptr<Database>> open_migrated(const std::string& place);
 
 // Brings the database to `version`; does nothing when it is there already.
 [[nodiscard]] Expected<void> migrate(Database& database, int version = newest_store_version());

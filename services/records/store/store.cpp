@@ -10,6 +10,7 @@
 
 #include "services/base/per_enumerator.hpp"
 #include "services/records/store/migrations.hpp"
+#include "services/views/report/mean_check.hpp"
 
 namespace dyncal::inline records {
 namespace {
@@ -109,11 +110,7 @@ std::string store_place(const std::string& option, const std::filesystem::path& 
 }
 
 Expected<std::unique_ptr<Store>> Store::open(const std::string& place) {
-  DYNCAL_TRY(auto database, is_server(place) ? open_postgres(place) : open_sqlite(place));
-  if (const auto ready = migrate(*database); !ready) {
-    return fail(ready.error().code,
-                fmt::format("{}: {}", without_password(place), ready.error().message));
-  }
+  DYNCAL_TRY(auto database, open_migrated(place));
   return std::unique_ptr<Store>(new Store(std::move(database)));
 }
 
@@ -129,6 +126,7 @@ Expected<std::unique_ptr<Store>> Store::open_existing(const std::string& place) 
 
 Expected<StoreAddition> Store::add(const std::filesystem::path& path) {
   DYNCAL_TRY(const auto record, read_result_record(path));
+  DYNCAL_TRY(check_means(record.result));
   StoreAddition addition = StoreAddition::added;
   const auto written = database_->transaction([&]() -> Expected<void> {
     DYNCAL_TRY(addition, make_way(record));
@@ -136,6 +134,26 @@ Expected<StoreAddition> Store::add(const std::filesystem::path& path) {
   });
   DYNCAL_TRY(written);
   return addition;
+}
+
+// A run of files is known by its time as well: its name says nothing.
+Expected<std::optional<std::string>> Store::hash_of(const StoredResult& result) {
+  DYNCAL_TRY(const auto rows,
+             database_->execute("SELECT result_sha256, state, began_utc FROM results "
+                                "WHERE bench = $1 AND run = $2 AND recipe_sha256 = $3",
+                                {result.bench, result.run, result.recipe_sha256}));
+  std::optional<std::string> hash;
+  for (const DatabaseRow& row : rows) {
+    const bool is_of_other_files =
+        result.run == run_of_files && text_of(row[2]) != result.began_utc;
+    if (text_of(row[0]) == result.sha256) {
+      return std::optional(result.sha256);
+    }
+    if (!is_of_other_files && text_of(row[1]) != to_string(RunCompletion::unfinished)) {
+      hash = text_of(row[0]);
+    }
+  }
+  return hash;
 }
 
 // What becomes of the record, beside those of its run that are there.

@@ -76,6 +76,8 @@ public:
 
   // A result file or a run folder.
   [[nodiscard]] Expected<StoreAddition> add(const std::filesystem::path& path);
+  // The SHA-256 of the file that is kept of this run by this recipe; nothing: none is.
+  [[nodiscard]] Expected<std::optional<std::string>> hash_of(const StoredResult& result);
   // By time.
   [[nodiscard]] Expected<std::vector<StoredRun>> runs(const RunFilter& filter,
                                                       const SharedWorkCount& count = nullptr);

@@ -12,8 +12,9 @@
 
 #include "services/base/version.hpp"
 #include "services/contract/digest.hpp"
-#include "services/views/certificate/objections.hpp"
 #include "services/views/certificate/ratio_unit.hpp"
+#include "services/views/objections/objections.hpp"
+#include "services/views/objections/subject_objections.hpp"
 #include "services/views/report/stated_value.hpp"
 
 namespace dyncal::inline views {
@@ -68,20 +69,7 @@ Expected<void> gather_sensor(const CertificateRequest& request, CertificateConte
 
 Expected<void> gather_laboratory(const CertificateRequest& request, CertificateContents& contents) {
   DYNCAL_TRY(contents.laboratory, read_laboratory_file(request.laboratory));
-  const std::filesystem::path& file = contents.laboratory.path;
-  if (contents.laboratory.persons.empty()) {
-    return missing(file, "table [[person]]", "a certificate names who is responsible for it");
-  }
-  if (!contents.laboratory.reference) {
-    return missing(file, "table [reference]",
-                   "a certificate states what its values are traceable to");
-  }
-  if (contents.laboratory.reference->standard.empty()) {
-    return missing(file, "key 'reference.standard'",
-                   "ISO 16063-11 for a laser interferometer, ISO 16063-21 for a reference "
-                   "transducer");
-  }
-  return {};
+  return check_for_documents(contents.laboratory);
 }
 
 Expected<void> gather_customer(CertificateContents& contents) {
@@ -100,17 +88,38 @@ Expected<void> gather_customer(CertificateContents& contents) {
 Expected<void> gather_dates(const CertificateRequest& request, CertificateContents& contents) {
   constexpr std::size_t date_length = 10;
   contents.issued = fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)));
-  contents.began = request.performed.empty() ? contents.result.began_utc.substr(0, date_length)
-                                             : request.performed;
-  contents.ended = request.performed.empty() ? contents.result.ended_utc.substr(0, date_length)
-                                             : request.performed;
+  contents.began = contents.result.began_utc.substr(0, date_length);
+  contents.ended = contents.result.ended_utc.substr(0, date_length);
   if (contents.began.empty() || contents.ended.empty()) {
+    contents.began = contents.ended = request.performed;
+  }
+  if (!request.performed.empty() &&
+      (request.performed < contents.began || request.performed > contents.ended)) {
+    return fail(ErrorCode::bad_argument,
+                fmt::format("{}: was measured on {}, not on {}; leave --performed out",
+                            contents.result.file.string(), contents.began, request.performed));
+  }
+  if (contents.began.empty()) {
     return fail(ErrorCode::bad_argument,
                 fmt::format("{}: the run does not know when it was measured, for its stamps are "
                             "not in UTC; state the day with --performed YYYY-MM-DD",
                             contents.result.file.string()));
   }
   return {};
+}
+
+void object_to_subject(CertificateContents& contents) {
+  std::vector<std::string> names;
+  for (const CertifiedChannel& channel : contents.channels) {
+    names.push_back(channel.channel);
+  }
+  std::ranges::move(objections_to_subject({.result = contents.result,
+                                           .channels = std::move(names),
+                                           .sensor = contents.sensor,
+                                           .reference = *contents.laboratory.reference,
+                                           .began = contents.began,
+                                           .ended = contents.ended}),
+                    std::back_inserter(contents.objections));
 }
 
 // As large as it may be: a recording is read in parts.
@@ -146,7 +155,8 @@ Expected<void> gather_values(const CertificateRequest& request, CertificateConte
                                                   contents.result.file.string()));
   }
   DYNCAL_TRY(contents.channels, certified_channels(contents.result, names));
-  contents.objections = objections_to(contents.result, names);
+  contents.objections = request.held.objections;
+  std::ranges::move(objections_to(contents.result, names), std::back_inserter(contents.objections));
   contents.flags = stated_flags(contents.result, names);
   contents.has_monte_carlo = std::all_of(
       contents.result.points.begin(), contents.result.points.end(), [&](const StoredPoint& point) {
@@ -202,17 +212,22 @@ certified_channels(const StoredResult& result, const std::vector<std::string>& c
 
 Expected<CertificateContents> gather_certificate(const CertificateRequest& request) {
   CertificateContents contents;
-  DYNCAL_TRY(contents.result, read_values(request.run));
+  contents.result = request.held.result;
+  contents.provenance = request.held.statements;
   using Step = Expected<void> (*)(const CertificateRequest&, CertificateContents&);
   for (const Step step :
        {Step{gather_values}, Step{gather_laboratory}, Step{gather_sensor}, Step{gather_dates}}) {
     DYNCAL_TRY(step(request, contents));
   }
+  object_to_subject(contents);
   for (auto done : {gather_customer(contents), refuse_unless_forced(request, contents),
                     hash_recording(request.run, contents)}) {
     DYNCAL_TRY(done);
   }
   contents.number = request.number.empty() ? contents.sensor.certificate_number : request.number;
+  contents.replaces = request.replaces;
+  contents.replaced_identifier = request.replaced_identifier;
+  contents.replaced_sha256 = request.replaced_sha256;
   contents.identifier = new_uuid();
   contents.software = software_version();
   return contents;

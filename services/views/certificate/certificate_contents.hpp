@@ -2,8 +2,8 @@
 // file, and checked: nothing that a certificate needs may be missing.
 //
 // Fails (bad_file) naming the missing table or key and its file; (bad_argument) for a channel
-// without values; (no_result) when something speaks against the certificate (objections.hpp) and it
-// is not forced. Any thread.
+// without values, and for a day that is not that of the run; (no_result) when something speaks
+// against the certificate (objections.hpp) and it is not forced. Any thread.
 #pragma once
 
 #include <filesystem>
@@ -13,17 +13,21 @@
 #include "services/base/error.hpp"
 #include "services/views/lab_file/laboratory_file.hpp"
 #include "services/views/lab_file/sensor_file.hpp"
-#include "services/views/report/stored_result.hpp"
+#include "services/views/objections/held_result.hpp"
 
 namespace dyncal::inline views {
 
 struct CertificateRequest {
-  std::filesystem::path run; // a run folder or a result file
+  HeldResult held;           // that is certified
+  std::filesystem::path run; // its folder or file
   std::filesystem::path laboratory;
   std::filesystem::path sensor;      // empty: as the run's source describes itself
   std::vector<std::string> channels; // empty: all that respond
   std::string number;                // empty: that of the sensor file, if any
-  std::string performed;             // YYYY-MM-DD; empty: from the run
+  std::string performed;             // YYYY-MM-DD, of a run that does not know it
+  std::string replaces;              // number of the certificate whose place it takes; may be empty
+  std::string replaced_identifier;   // UUID of that one; empty: not known
+  std::string replaced_sha256;       // of its file; empty: not known
   bool force = false;
 };
 
@@ -40,9 +44,13 @@ struct CertificateContents {
   Contact customer;
   Conditions conditions;
   std::vector<CertifiedChannel> channels;
-  std::string number;     // may be empty
-  std::string identifier; // a new UUID
-  std::string began;      // YYYY-MM-DD
+  std::string number;   // may be empty
+  std::string replaces; // likewise
+  std::string replaced_identifier;
+  std::string replaced_sha256;
+  std::vector<std::string> provenance; // what the result was held against
+  std::string identifier;              // a new UUID
+  std::string began;                   // YYYY-MM-DD
   std::string ended;
   std::string issued;
   std::string software;

@@ -49,6 +49,9 @@ Expected<CertificateContents> write_certificate(const CertificateFileRequest& re
   }
   const std::string text = document.text();
   DYNCAL_TRY(check_text(text, request, schema));
+  if (request.enter) {
+    DYNCAL_TRY(request.enter(request, *contents, text));
+  }
   DYNCAL_TRY(write_output_file(request.output, text));
   return contents;
 }

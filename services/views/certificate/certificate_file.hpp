@@ -2,11 +2,13 @@
 // then held against the schema and its own signature as anybody would who reads it. What fails a
 // check is not written; an older file is never overwritten.
 //
-// Fails as gather_certificate(), sign() and DccSchema do. One thread at a time.
+// Fails as gather_certificate(), sign(), DccSchema and `enter` do. One thread at a time.
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
+#include <string>
 
 #include "services/base/error.hpp"
 #include "services/views/certificate/certificate_contents.hpp"
@@ -19,6 +21,10 @@ struct CertificateFileRequest {
   std::optional<SigningKey> key; // nothing: not signed
   std::filesystem::path schema;  // empty: the installed one
   std::filesystem::path output;
+  // Before the file is written: its text, whose SHA-256 is that of the file. Empty: nobody asks.
+  std::function<Expected<void>(const CertificateFileRequest&, const CertificateContents&,
+                               const std::string&)>
+      enter{};
 };
 
 // What was certified, for a line to the user.

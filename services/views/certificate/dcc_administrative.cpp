@@ -7,6 +7,23 @@
 namespace dyncal::inline views {
 namespace {
 
+// The certificate whose place this one takes.
+void add_replaced(XmlElement core, const CertificateContents& contents) {
+  XmlElement change = core.add("dcc:reportAmendedSubstituted");
+  change.add("dcc:typeOfChange", "substituted");
+  change.add("dcc:replacedUniqueIdentifier", contents.replaced_identifier.empty()
+                                                 ? contents.replaces
+                                                 : contents.replaced_identifier);
+  if (contents.replaced_sha256.empty()) {
+    return; // a report on paper
+  }
+  XmlElement previous = core.add("dcc:previousReport");
+  add_text(previous, "dcc:referral", "certificate that is replaced");
+  previous.add("dcc:referralID", contents.replaces);
+  previous.add("dcc:procedure", "SHA-256");
+  previous.add("dcc:value", contents.replaced_sha256);
+}
+
 void add_core_data(XmlElement parent, const CertificateContents& contents) {
   XmlElement core = parent.add("dcc:coreData");
   core.add("dcc:countryCodeISO3166_1", contents.laboratory.laboratory.country);
@@ -27,6 +44,9 @@ void add_core_data(XmlElement parent, const CertificateContents& contents) {
   core.add("dcc:endPerformanceDate", contents.ended);
   core.add("dcc:performanceLocation", "laboratory");
   core.add("dcc:issueDate", contents.issued);
+  if (!contents.replaces.empty()) {
+    add_replaced(core, contents);
+  }
 }
 
 void add_item(XmlElement parent, const SensorFile& sensor) {
@@ -100,6 +120,10 @@ void add_statements(XmlElement parent, const CertificateContents& contents) {
     add_forced(list, contents.objections);
   }
   add_traceability(list, *contents.laboratory.reference);
+  for (const std::string& text : contents.provenance) {
+    add_text(list.add("dcc:statement").attribute("refType", "dyncal_provenance"), "dcc:declaration",
+             text);
+  }
   for (const std::string& text : contents.laboratory.statements) {
     add_text(list.add("dcc:statement"), "dcc:declaration", text);
   }

@@ -146,6 +146,10 @@ const char* to_string(Verification question) {
     return "signer";
   case Verification::numbers:
     return "numbers";
+  case Verification::measured:
+    return "measured";
+  case Verification::issued:
+    return "issued";
   }
   return "?";
 }

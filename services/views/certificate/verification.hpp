@@ -20,7 +20,9 @@ enum class Verification {
   is_signed = 5,
   signature = 6,
   signer = 7,
-  numbers = 8
+  numbers = 8,
+  measured = 9, // of the result; asked by who may look into the records (services/records)
+  issued = 10   // by the register; likewise
 };
 
 struct VerificationFinding {

@@ -9,6 +9,8 @@
 
 #include "services/base/version.hpp"
 #include "services/views/document/html.hpp"
+#include "services/views/objections/objections.hpp"
+#include "services/views/objections/subject_objections.hpp"
 #include "services/views/report/stated_value.hpp"
 
 namespace dyncal::inline views {
@@ -82,6 +84,43 @@ Expected<void> add_laboratory(const ReportRequest& request, ReportContents& cont
   return {};
 }
 
+// What may be issued states all that a document states, and nothing speaks against it.
+Expected<void> check_issue(const ReportRequest& request, ReportContents& contents) {
+  constexpr std::size_t date_length = 10;
+  constexpr std::size_t max_shown = 5;
+  if (!contents.laboratory || !contents.sensor || contents.number.empty()) {
+    return fail(ErrorCode::bad_argument,
+                "a report that is issued needs --lab, --sensor, and a number (--number, or in the "
+                "sensor file)");
+  }
+  DYNCAL_TRY(check_for_documents(*contents.laboratory));
+  const StoredResult& result = contents.result;
+  if (result.began_utc.empty() || result.ended_utc.empty()) {
+    return fail(ErrorCode::bad_argument,
+                fmt::format("{}: the run does not know when it was measured, for its stamps are "
+                            "not in UTC: no report of it is issued",
+                            result.file.string()));
+  }
+  contents.objections = request.held->objections;
+  std::ranges::move(objections_to(result, contents.channels),
+                    std::back_inserter(contents.objections));
+  std::ranges::move(objections_to_subject({.result = result,
+                                           .channels = contents.channels,
+                                           .sensor = *contents.sensor,
+                                           .reference = *contents.laboratory->reference,
+                                           .began = result.began_utc.substr(0, date_length),
+                                           .ended = result.ended_utc.substr(0, date_length)}),
+                    std::back_inserter(contents.objections));
+  if (contents.objections.empty() || request.force) {
+    return {};
+  }
+  return fail(ErrorCode::no_result,
+              fmt::format("{}: no report is issued: {}. Measure again, leave channels out with "
+                          "--channel, or --force a report that says all this",
+                          result.file.string(),
+                          fmt::join(first_of(contents.objections, max_shown), "; ")));
+}
+
 // Texts that stand at the edges of every page.
 std::string running_texts(const ReportContents& contents) {
   const std::string foot =
@@ -89,14 +128,14 @@ std::string running_texts(const ReportContents& contents) {
           ? contents.laboratory->letterhead.footer
           : fmt::format("result file {}...", contents.result.sha256.substr(0, 16));
   return element("div", issuer_of(contents), "running issuer-text") +
-         element("div", fmt::format("{}, run {}", title_of(contents), contents.result.run),
+         element("div", fmt::format("{} {}", title_of(contents), mark_of(contents)),
                  "running subject-text") +
          element("div", foot, "running foot-text");
 }
 
 std::string body_of(const ReportContents& contents) {
-  std::string html =
-      running_texts(contents) + letterhead(contents) + warnings(contents) + summary(contents);
+  std::string html = contents.is_draft ? element("div", "DRAFT", "draft") : "";
+  html += running_texts(contents) + letterhead(contents) + warnings(contents) + summary(contents);
   for (std::size_t i = 0; i < contents.channels.size(); ++i) {
     html += channel_section(contents, contents.channels[i], i + 1);
   }
@@ -105,14 +144,21 @@ std::string body_of(const ReportContents& contents) {
           signatures(contents);
   html += other_channels(contents) + devices_section(contents) + software_section(contents) +
           single_results(contents) + recipe_section(contents);
-  return html;
+  return html +
+         element("p", fmt::format("End of {} {}", title_of(contents), mark_of(contents)), "end");
 }
 
 } // namespace
 
 Expected<ReportContents> gather_report(const ReportRequest& request) {
   ReportContents contents;
-  DYNCAL_TRY(contents.result, read_values(request.run));
+  contents.is_draft = !request.held;
+  if (request.held) {
+    contents.result = request.held->result;
+    contents.provenance = request.held->statements;
+  } else {
+    DYNCAL_TRY(contents.result, read_values(request.run));
+  }
   DYNCAL_TRY(contents.channels, chosen_channels(contents.result, request.channels));
   if (const auto open = contents.result.open_closures(contents.channels);
       !open.empty() && !request.force) {
@@ -123,6 +169,12 @@ Expected<ReportContents> gather_report(const ReportRequest& request) {
                             fmt::join(open, "; ")));
   }
   DYNCAL_TRY(add_laboratory(request, contents));
+  contents.number = request.number.empty() && contents.sensor ? contents.sensor->certificate_number
+                                                              : request.number;
+  contents.replaces = request.replaces;
+  if (request.held) {
+    DYNCAL_TRY(check_issue(request, contents));
+  }
   add_pictures(request.run, contents);
   contents.issued = fmt::format("{:%Y-%m-%d}", fmt::localtime(std::time(nullptr)));
   contents.software = software_version();

@@ -7,8 +7,8 @@
 // single results, recipe. Whatever comes from a file is escaped.
 //
 // Fails (bad_file) when the result file lacks a key; (bad_argument) when a channel that was asked
-// for has no value, or when a closure of a channel is open and the report is not forced. Any
-// thread.
+// for has no value, when a closure of a channel is open and the report is not forced, and when
+// something speaks against one that is to be issued (services/views/objections). Any thread.
 #pragma once
 
 #include <filesystem>
@@ -18,6 +18,7 @@
 
 #include "services/base/error.hpp"
 #include "services/views/document/report_sections.hpp"
+#include "services/views/objections/held_result.hpp"
 
 namespace dyncal::inline views {
 
@@ -26,7 +27,10 @@ struct ReportRequest {
   std::filesystem::path laboratory;  // empty: no letterhead
   std::filesystem::path sensor;      // empty: what the run knows of it
   std::vector<std::string> channels; // empty: all that respond
-  bool force = false;                // although a closure is open, which its first page says
+  bool force = false;                // in spite of all that speaks against it, which it says
+  std::optional<HeldResult> held;    // nothing: a draft, of the result as it is
+  std::string number;                // empty: that of the sensor file, if any
+  std::string replaces;
 };
 
 // Reads all files that a report is made of.

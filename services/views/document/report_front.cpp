@@ -106,6 +106,10 @@ std::string title_of(const ReportContents& contents) {
              : "Calibration report";
 }
 
+std::string mark_of(const ReportContents& contents) {
+  return contents.number.empty() ? "run " + contents.result.run : "No. " + contents.number;
+}
+
 std::string issuer_of(const ReportContents& contents) {
   return contents.laboratory ? contents.laboratory->laboratory.name
                              : "bench " + contents.result.bench;
@@ -130,17 +134,28 @@ std::string letterhead(const ReportContents& contents) {
   }
   html += "</div>\n<div class=\"title\">\n" + element("h1", title_of(contents));
   std::vector<std::string> lines;
-  if (contents.sensor && !contents.sensor->certificate_number.empty()) {
-    lines.push_back("No. " + contents.sensor->certificate_number);
+  if (!contents.number.empty()) {
+    lines.push_back("No. " + contents.number);
+  }
+  if (!contents.replaces.empty()) {
+    lines.push_back("Replaces no. " + contents.replaces);
   }
   lines.push_back("Run " + contents.result.run);
-  lines.push_back("Issued " + contents.issued);
+  lines.push_back((contents.is_draft ? "Draft of " : "Issued ") + contents.issued);
   return html + "<p class=\"address\">" + address_html(lines) + "</p>\n</div>\n</header>\n";
 }
 
 std::string warnings(const ReportContents& contents) {
   const StoredResult& result = contents.result;
   std::string html;
+  if (!contents.objections.empty()) {
+    html += element("p", "THIS REPORT WAS FORCED: the software that evaluated the measurement "
+                         "refused it. The laboratory has issued it all the same. What spoke "
+                         "against it:");
+  }
+  for (const std::string& objection : contents.objections) {
+    html += element("p", objection);
+  }
   if (result.interrupted) {
     html += element("p", "The run was interrupted: not every planned step was measured.");
   }

@@ -21,6 +21,11 @@ struct ReportContents {
   std::vector<std::string> channels;     // those whose values are shown in full
   std::vector<EmbeddedPicture> pictures; // further figures of the run folder
   std::vector<std::string> left_out;     // pictures that could not be taken in, and why
+  std::string number;                    // empty: none
+  std::string replaces;                  // number of the report whose place it takes
+  bool is_draft = true;                  // not issued: every page says so
+  std::vector<std::string> provenance;   // what the result was held against
+  std::vector<std::string> objections;   // in spite of which it is issued
   std::string issued;                    // YYYY-MM-DD
   std::string software;                  // that makes the report
 };
@@ -32,6 +37,8 @@ struct ReportContents {
 [[nodiscard]] std::string summary(const ReportContents& contents);
 [[nodiscard]] std::string remarks(const ReportContents& contents);
 [[nodiscard]] std::string signatures(const ReportContents& contents);
+// "No. 2026-0042", or the run of a report without a number.
+[[nodiscard]] std::string mark_of(const ReportContents& contents);
 // The title, also that of the window and of the PDF.
 [[nodiscard]] std::string title_of(const ReportContents& contents);
 // "Physics laboratory, Musterstadt", or the bench without a laboratory file.

@@ -5,6 +5,7 @@
 #include <map>
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include "services/base/rounding.hpp"
 #include "services/contract/unit.hpp"
@@ -244,6 +245,7 @@ std::string software_section(const ReportContents& contents) {
   table.add("on host", result.analysis_host);
   table.add("DDS implementation of the analysis", result.analysis_dds);
   table.add("Report made by", contents.software);
+  table.add("Held against", fmt::format("{}", fmt::join(contents.provenance, " ")));
   const auto hash = [](const std::string& text) {
     return fmt::format("<code>{}</code>", escaped(text));
   };

@@ -18,6 +18,9 @@ constexpr std::string_view style = R"(
 .foot-text { string-set: foot content(); }
 .running { position: absolute; width: 1px; height: 1px; overflow: hidden; color: transparent;
   font-size: 1px; }
+.draft { position: fixed; top: 95mm; left: 0; right: 0; text-align: center; font-size: 90pt;
+  font-weight: bold; color: rgba(179, 84, 30, 0.13); transform: rotate(-35deg); }
+.end { text-align: center; color: #5a6672; margin-top: 6mm; }
 * { box-sizing: border-box; }
 html { font-family: "Liberation Sans", Arial, Helvetica, "DejaVu Sans", sans-serif;
   font-size: 9.2pt; line-height: 1.38; color: #1c2329; background: #ffffff; }

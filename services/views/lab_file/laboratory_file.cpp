@@ -1,5 +1,8 @@
 #include "services/views/lab_file/laboratory_file.hpp"
 
+#include <chrono>
+#include <sstream>
+
 #include <fmt/core.h>
 
 #include "services/base/whole_file.hpp"
@@ -42,13 +45,50 @@ std::string standard_of(TomlTable& table) {
   return table.one_of("standard", {"ISO 16063-11", "ISO 16063-21"}, "");
 }
 
+// The day that many months after another one; the last of a month that is too short.
+std::string day_after(const std::string& day, int months) {
+  std::istringstream stream(day);
+  int year = 0;
+  unsigned month = 0;
+  unsigned number = 0;
+  char dash = 0;
+  stream >> year >> dash >> month >> dash >> number;
+  using namespace std::chrono; // NOLINT(google-build-using-namespace): of calendars
+  year_month_day later =
+      year_month_day{std::chrono::year(year), std::chrono::month(month), std::chrono::day(number)} +
+      std::chrono::months(months);
+  if (!later.ok()) {
+    later = later.year() / later.month() / last;
+  }
+  return fmt::format("{:04}-{:02}-{:02}", static_cast<int>(later.year()),
+                     static_cast<unsigned>(later.month()), static_cast<unsigned>(later.day()));
+}
+
+// The day itself, or an interval after `issued`.
+std::string validity_of(TomlTable& table, const std::string& issued) {
+  const std::string stated = date_of(table, "valid_until");
+  if (!table.has("interval_months")) {
+    return stated;
+  }
+  const int months = table.whole_number("interval_months", 12, 1);
+  if (!stated.empty()) {
+    table.refuse("interval_months", "stands in place of 'valid_until'");
+  }
+  return issued.empty() ? "" : day_after(issued, months);
+}
+
 ReferenceStandard read_reference(TomlTable& table) {
   ReferenceStandard reference{.equipment = read_equipment(table),
                               .standard = table.has("standard") ? standard_of(table) : "",
                               .certificate = required_line(table, "certificate"),
                               .issued_by = required_line(table, "issued_by"),
                               .issued = date_of(table, "issued"),
+                              .valid_until = {},
                               .traceability = required_line(table, "traceability")};
+  reference.valid_until = validity_of(table, reference.issued);
+  if (!reference.valid_until.empty() && reference.valid_until < reference.issued) {
+    table.refuse("valid_until", "is before 'issued'");
+  }
   if (reference.equipment.serial.empty()) {
     table.refuse("serial", "is missing");
   }

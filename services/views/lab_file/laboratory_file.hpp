@@ -33,6 +33,7 @@ struct ReferenceStandard {
   std::string certificate; // number of its calibration certificate
   std::string issued_by;
   std::string issued;       // YYYY-MM-DD; may be empty
+  std::string valid_until;  // the last day, stated or by the interval; may be empty
   std::string traceability; // one sentence
 };
 

@@ -19,6 +19,8 @@ void read_sensor(TomlTable& root, SensorFile& file) {
   file.manufacturer = required_line(*sensor, "manufacturer");
   file.model = required_line(*sensor, "model");
   file.serial = required_line(*sensor, "serial");
+  file.electronic_model = line_of(*sensor, "electronic_model");
+  file.electronic_serial = line_of(*sensor, "electronic_serial");
   file.firmware = line_of(*sensor, "firmware");
   file.owner_identification = line_of(*sensor, "owner_identification");
   file.received = date_of(*sensor, "received");

@@ -20,6 +20,8 @@ struct SensorFile {
   std::string manufacturer;
   std::string model;
   std::string serial;
+  std::string electronic_model;     // as it calls itself, where that is another; may be empty
+  std::string electronic_serial;    // likewise
   std::string firmware;             // may be empty
   std::string owner_identification; // the customer's own number; may be empty
   std::string certificate_number;   // may be empty

@@ -32,6 +32,7 @@ inline evaluation::RunOutcome outcome_of(const ExampleResult& example) {
   outcome.sources.back().description.device = "SmartUp";
   outcome.sources.back().description.serial = example.serial;
   outcome.results.front().data_sha256 = std::string(64, 'd');
+  outcome.results.front().magnitude *= example.magnitude;
   for (evaluation::FrequencyPoint& point : outcome.transfer_functions.front().points) {
     point.mean.magnitude = example.magnitude;
   }

@@ -43,12 +43,30 @@ TEST(LaboratoryFile, ReadsTheExample) {
   ASSERT_TRUE(file->reference);
   EXPECT_EQ(file->reference->standard, "ISO 16063-11");
   EXPECT_EQ(file->reference->issued, "2026-02-03");
+  EXPECT_EQ(file->reference->valid_until, "2031-02-03");
   ASSERT_TRUE(file->conditions.temperature_degc);
   EXPECT_EQ(file->conditions.temperature_degc->value, 23.0);
   EXPECT_EQ(file->conditions.temperature_degc->expanded, 1.0);
   ASSERT_TRUE(file->logo);
   EXPECT_EQ(file->logo->mime_type, "image/svg+xml");
   EXPECT_EQ(file->equipment.size(), 1U);
+}
+
+TEST(LaboratoryFile, CountsTheIntervalOfTheReferenceInMonths) {
+  const auto until = [](const std::string& issued, const std::string& validity) {
+    const std::string text =
+        with("issued = 2026-02-03\ninterval_months = 60", "issued = " + issued + "\n" + validity);
+    const auto file = parse_laboratory_file(text, example);
+    return file ? file->reference->valid_until : file.error().message;
+  };
+  EXPECT_EQ(until("2026-02-03", "interval_months = 24"), "2028-02-03");
+  EXPECT_EQ(until("2027-08-31", "interval_months = 6"), "2028-02-29"); // a leap year
+  EXPECT_EQ(until("2026-12-31", "interval_months = 2"), "2027-02-28");
+  EXPECT_EQ(until("2026-02-03", "valid_until = 2027-01-01"), "2027-01-01");
+  EXPECT_EQ(until("2026-02-03", ""), "");
+  EXPECT_THAT(until("2026-02-03", "valid_until = 2026-01-01"), HasSubstr("is before 'issued'"));
+  EXPECT_THAT(until("2026-02-03", "valid_until = 2027-01-01\ninterval_months = 6"),
+              HasSubstr("stands in place"));
 }
 
 TEST(LaboratoryFile, NamesFileLineAndKeyOfWhatIsMissing) {

@@ -1,4 +1,4 @@
-#include "services/views/certificate/objections.hpp"
+#include "services/views/objections/objections.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "services/views/certificate/refusing_flags.hpp"
+#include "services/views/objections/refusing_flags.hpp"
 #include "services/views/report/result_file.hpp"
 #include "services/views/report/stated_value.hpp"
 

@@ -1,4 +1,4 @@
-#include "services/views/certificate/objections.hpp"
+#include "services/views/objections/objections.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "services/views/certificate/refusing_flags.hpp"
+#include "services/views/objections/refusing_flags.hpp"
 
 #include <gtest/gtest.h>
 

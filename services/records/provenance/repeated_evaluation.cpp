@@ -1,0 +1,276 @@
+#include "services/records/provenance/repeated_evaluation.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "services/base/json_text.hpp"
+#include "services/base/version.hpp"
+#include "services/evaluation/outcome_agreement.hpp"
+#include "services/evaluation/result/members.hpp"
+#include "services/records/exchange/opened_recording.hpp"
+#include "services/records/replay/recorded_run.hpp"
+#include "services/records/replay/sample_memory.hpp"
+#include "services/views/report/result_file.hpp"
+#include "services/views/report/result_json.hpp"
+
+namespace dyncal::inline records {
+namespace {
+
+constexpr double max_deviation_u = 0.1; // of another version
+constexpr std::int64_t max_instant_difference_ns = 10'000'000'000;
+
+using Json = nlohmann::ordered_json;
+
+tl::unexpected<Error> differs(const StoredResult& kept, const std::string& how) {
+  return fail(ErrorCode::no_result,
+              fmt::format("{}: is not what the recording of run '{}' gives: {}; the file was "
+                          "changed, or the recording is that of another run",
+                          kept.file.string(), kept.run, how));
+}
+
+// As the bits of a file have it: both ways lose the same members.
+Expected<StoredResult> as_read(const RunOutcome& outcome) {
+  ByteCount no_progress;
+  return result_of_text(json_text(result_json(outcome)), "evaluated again", no_progress);
+}
+
+// Whether instants are those of one run, and the rest of both results for comparison: a run that
+// was broken off knows more of it than its recording.
+bool take_out_instants(StoredResult& kept, StoredResult& again) {
+  const auto are_near = [](std::int64_t a_ns, std::int64_t b_ns) {
+    return a_ns == 0 || b_ns == 0 || std::abs(a_ns - b_ns) <= max_instant_difference_ns;
+  };
+  bool near = are_near(parse_utc_text(kept.began_utc), parse_utc_text(again.began_utc)) &&
+              are_near(parse_utc_text(kept.ended_utc), parse_utc_text(again.ended_utc));
+  for (std::size_t i = 0; i < std::min(kept.pauses.size(), again.pauses.size()); ++i) {
+    near = near && are_near(kept.pauses[i].began_utc_ns, again.pauses[i].began_utc_ns) &&
+           are_near(kept.pauses[i].ended_utc_ns, again.pauses[i].ended_utc_ns);
+  }
+  const bool is_broken_off = kept.interrupted || !kept.problem.empty();
+  for (StoredResult* result : {&kept, &again}) {
+    for (RunPause& pause : result->pauses) {
+      pause.began_utc_ns = pause.ended_utc_ns = 0;
+    }
+    if (is_broken_off) {
+      result->interrupted = false;
+      result->problem.clear();
+    }
+  }
+  return near;
+}
+
+// What another version cannot give otherwise either.
+constexpr std::array facts{"bench", "run", "method", "planned_steps", "sources", "roles", "recipe"};
+
+Json comparable_json(const StoredResult& result, bool is_same_version) {
+  Json json = result_json(result);
+  for (const char* member : {"began_utc", "ended_utc", "software", "analysis", "dds"}) {
+    json.erase(member);
+  }
+  if (is_same_version) {
+    return json;
+  }
+  Json part = Json::object();
+  for (const char* member : facts) {
+    part[member] = json.value(member, Json());
+  }
+  return part;
+}
+
+std::string text_at(const Json& json, const Json::json_pointer& place) {
+  constexpr std::size_t max_text = 60;
+  if (!json.contains(place)) {
+    return "nothing";
+  }
+  const std::string text = json.at(place).dump();
+  return text.size() <= max_text ? text : text.substr(0, max_text) + "...";
+}
+
+// To the last bit; empty: equal.
+std::string first_difference(StoredResult kept, StoredResult again, bool is_same_version) {
+  if (!take_out_instants(kept, again)) {
+    return fmt::format("it began and ended {} and {} in the file, {} and {} in the recording",
+                       kept.began_utc, kept.ended_utc, again.began_utc, again.ended_utc);
+  }
+  const Json stated = comparable_json(kept, is_same_version);
+  const Json repeated = comparable_json(again, is_same_version);
+  const Json changes = Json::diff(stated, repeated);
+  if (changes.empty()) {
+    return "";
+  }
+  const auto place = Json::json_pointer(changes.front().at("path").get<std::string>());
+  return fmt::format("{} is {} in the file and {} by the recording", place.to_string(),
+                     text_at(stated, place), text_at(repeated, place));
+}
+
+// Null: the recording lacks what it was made of.
+const StoredPoint* find_same(const StoredResult& again, const StoredPoint& wanted) {
+  const auto found = std::ranges::find_if(
+      again.points, [&](const StoredPoint& one) { return gives_again(one, wanted); });
+  return found == again.points.end() ? nullptr : &*found;
+}
+
+// The larger of what |H|, phase and their U deviate by, in u; NaN stands for NaN.
+double deviation_u(double magnitude_a, const ExpandedUncertainty& of_magnitude_a, double phase_a,
+                   const ExpandedUncertainty& of_phase_a, double magnitude_b,
+                   const ExpandedUncertainty& of_magnitude_b, double phase_b,
+                   const ExpandedUncertainty& of_phase_b) {
+  const auto part = [](double difference, double a, double b, const ExpandedUncertainty& of) {
+    if (std::isnan(a) && std::isnan(b)) {
+      return 0.0;
+    }
+    return difference == 0.0 ? 0.0 : std::abs(difference) * of.k / of.expanded;
+  };
+  const double turn = std::remainder(phase_a - phase_b, 2.0 * std::numbers::pi);
+  return std::max({part(magnitude_a - magnitude_b, magnitude_a, magnitude_b, of_magnitude_a),
+                   part(of_magnitude_a.expanded - of_magnitude_b.expanded, magnitude_a, magnitude_b,
+                        of_magnitude_a),
+                   part(turn, phase_a, phase_b, of_phase_a),
+                   part(of_phase_a.expanded - of_phase_b.expanded, phase_a, phase_b, of_phase_a)});
+}
+
+template <class Value>
+double deviation_u(const Value& a, const Value& b) {
+  return deviation_u(a.magnitude, a.of_magnitude, a.phase_rad, a.of_phase, b.magnitude,
+                     b.of_magnitude, b.phase_rad, b.of_phase);
+}
+
+class Comparison {
+public:
+  Comparison(const StoredResult& kept, const StoredResult& again, bool is_same_version)
+      : kept_(kept), again_(again), allowed_u_(is_same_version ? 0.0 : max_deviation_u) {
+    found_.is_same_version = is_same_version;
+  }
+
+  void compare_points() {
+    for (const StoredPoint& point : kept_.points) {
+      if (!point.valid) {
+        continue;
+      }
+      ++found_.values;
+      if (!has_values_of(point.channel)) {
+        difference_ = fmt::format("it knows no channel {}", point.channel);
+      } else if (const StoredPoint* same = find_same(again_, point)) {
+        note(deviation_u(point, *same), point.channel, point.frequency_text_hz, point.magnitude,
+             same->magnitude);
+      } else {
+        ++found_.missing;
+      }
+    }
+  }
+
+  void compare_means() {
+    for (const StoredValue& value : kept_.values) {
+      const auto same = std::ranges::find_if(again_.values, [&](const StoredValue& one) {
+        return identity_of(one) == identity_of(value);
+      });
+      if (same == again_.values.end()) {
+        note(std::numeric_limits<double>::infinity(), value.channel, value.frequency_text_hz,
+             value.magnitude, std::numeric_limits<double>::quiet_NaN());
+      } else {
+        note(deviation_u(value, *same), value.channel, value.frequency_text_hz, value.magnitude,
+             same->magnitude);
+        note_flags(value, *same);
+      }
+    }
+  }
+
+  [[nodiscard]] const RepeatedEvaluation& found() const { return found_; }
+  [[nodiscard]] const std::string& difference() const { return difference_; }
+
+private:
+  // Or of none: then it is cut.
+  [[nodiscard]] bool has_values_of(const std::string& channel) const {
+    const auto has = [&](const StoredPoint& one) { return one.valid && one.channel == channel; };
+    return std::ranges::any_of(again_.points, has) ||
+           std::ranges::none_of(again_.points, &StoredPoint::valid);
+  }
+
+  // A deviation that is no number is beyond every limit.
+  void note(double by_u, const std::string& channel, const std::string& frequency, double kept,
+            double again) {
+    if (by_u <= allowed_u_) {
+      found_.largest_deviation_u = std::max(found_.largest_deviation_u, by_u);
+    } else if (difference_.empty()) {
+      difference_ = fmt::format("{} at {} Hz: |H| is {:.6g} in the file and {:.6g} by the recording"
+                                "; value or U differ by {:.2g} u",
+                                channel, frequency, kept, again, by_u);
+    }
+  }
+
+  // One that is missing in the file may be why nobody doubted the value.
+  void note_flags(const StoredValue& kept, const StoredValue& again) {
+    for (const std::string& flag : again.flag_names) {
+      if (std::ranges::find(kept.flag_names, flag) == kept.flag_names.end() &&
+          difference_.empty()) {
+        difference_ = fmt::format("{} at {} Hz has the flag {} by the recording", kept.channel,
+                                  kept.frequency_text_hz, flag);
+      }
+    }
+  }
+
+  const StoredResult& kept_;
+  const StoredResult& again_;
+  double allowed_u_;
+  RepeatedEvaluation found_;
+  std::string difference_;
+};
+
+} // namespace
+
+Expected<RepeatedEvaluation> hold_against(const StoredResult& kept, const StoredResult& again) {
+  const bool is_same_version = kept.analysis_software == again.analysis_software;
+  if (kept.recipe_sha256 != again.recipe_sha256) {
+    return differs(kept, "it was evaluated by another recipe than the recorded one");
+  }
+  Comparison comparison(kept, again, is_same_version);
+  comparison.compare_points();
+  if (comparison.found().missing == comparison.found().values) {
+    return comparison.found(); // a recording that was cut may lack descriptions, too
+  }
+  const bool is_whole = comparison.found().missing == 0;
+  if (is_whole) {
+    comparison.compare_means();
+  }
+  if (!comparison.difference().empty() && !is_same_version) {
+    return fail(ErrorCode::no_result,
+                fmt::format("{}: this version evaluates the recording otherwise than {}: {}; "
+                            "analyse it anew: 'dyncal analyse RUN --output NEW.json'",
+                            kept.file.string(), kept.analysis_software, comparison.difference()));
+  }
+  if (!comparison.difference().empty()) {
+    return differs(kept, comparison.difference());
+  }
+  const std::string how = first_difference(kept, again, is_same_version && is_whole);
+  if (!how.empty()) {
+    return differs(kept, how);
+  }
+  return comparison.found();
+}
+
+Expected<RepeatedEvaluation> repeat_evaluation(const StoredResult& result,
+                                               const std::filesystem::path& recording,
+                                               const SharedWorkCount& count,
+                                               const std::stop_token& stop) {
+  keep_memory_for_samples();
+  DYNCAL_TRY(auto opened, open_recording(recording, count, stop));
+  auto evaluated = evaluate_recording(
+      opened.reader, {.run = result.run, .recipe = {}, .count = count, .whole_or_none = true},
+      stop);
+  if (!evaluated && evaluated.error().code == ErrorCode::bad_argument) {
+    return differs(result, evaluated.error().message); // it has other runs
+  }
+  DYNCAL_TRY(evaluated);
+  evaluated->outcome.analysis_software = software_version(); // in place of the live one's
+  DYNCAL_TRY(const auto again, as_read(evaluated->outcome));
+  return hold_against(result, again);
+}
+
+} // namespace dyncal::inline records

@@ -1,0 +1,102 @@
+#include "services/records/provenance/result_provenance.hpp"
+
+#include <fmt/core.h>
+
+#include "services/records/exchange/opened_recording.hpp"
+#include "services/records/provenance/repeated_evaluation.hpp"
+#include "services/records/store/store.hpp"
+#include "services/views/report/mean_check.hpp"
+
+namespace dyncal::inline records {
+namespace {
+
+constexpr std::size_t shown_of_hash = 12;
+
+// Empty: nothing is known of it there.
+Expected<std::string> said_by_store(const StoredResult& result, const std::string& place) {
+  std::error_code unknown;
+  if (place.empty() || (!is_server(place) && !std::filesystem::exists(place, unknown))) {
+    return std::string();
+  }
+  DYNCAL_TRY(const auto store, Store::open_existing(place));
+  DYNCAL_TRY(const auto kept, store->hash_of(result));
+  if (!kept) {
+    return std::string();
+  }
+  if (*kept != result.sha256) {
+    return fail(ErrorCode::no_result,
+                fmt::format("{}: is not the result that the store has of run '{}': its SHA-256 is "
+                            "{}..., that in the store {}...; it was changed after it was kept: "
+                            "take the run folder from a back-up",
+                            result.file.string(), result.run,
+                            result.sha256.substr(0, shown_of_hash),
+                            kept->substr(0, shown_of_hash)));
+  }
+  return fmt::format("The result file is the one that was kept when the run ended (SHA-256 {}...).",
+                     result.sha256.substr(0, shown_of_hash));
+}
+
+std::string said_of(const RepeatedEvaluation& repeated, const StoredResult& result) {
+  if (repeated.is_same_version) {
+    return "The recording of the run, evaluated once more, gives the same results to the last "
+           "digit.";
+  }
+  return fmt::format("The recording of the run, evaluated once more by another version of the "
+                     "software than {}, gives values and U that differ by at most {:.2g} u.",
+                     result.analysis_software, repeated.largest_deviation_u);
+}
+
+// A recording that lacks some of the samples speaks for the rest, where the store has the file.
+void add_recording(Expected<RepeatedEvaluation> repeated, bool is_kept, HeldResult& held) {
+  if (!repeated) {
+    held.objections.push_back(fmt::format(
+        "the recording of the run cannot be evaluated once more: {}", repeated.error().message));
+    return;
+  }
+  if (repeated->missing < repeated->values) {
+    held.statements.push_back(said_of(*repeated, held.result));
+  }
+  if (repeated->missing > 0) {
+    auto& list = is_kept ? held.statements : held.objections;
+    list.push_back(fmt::format("The recording of the run lacks samples of {} of {} single results.",
+                               repeated->missing, repeated->values));
+  }
+}
+
+bool ends_it(const Expected<RepeatedEvaluation>& repeated) {
+  return !repeated && (repeated.error().code == ErrorCode::no_result ||
+                       repeated.error().code == ErrorCode::interrupted);
+}
+
+} // namespace
+
+Expected<HeldResult> read_held_result(const std::filesystem::path& run, const std::string& store,
+                                      const SharedWorkCount& count, const std::stop_token& stop) {
+  HeldResult held;
+  DYNCAL_TRY(held.result, read_values(run));
+  const StoredResult& result = held.result;
+  DYNCAL_TRY(check_means(result));
+  DYNCAL_TRY(const auto kept, said_by_store(result, store));
+  if (!kept.empty()) {
+    held.statements.push_back(kept);
+  }
+  std::error_code unknown;
+  if (std::filesystem::is_directory(run, unknown) && is_recording(run)) {
+    auto repeated = repeat_evaluation(result, run, count, stop);
+    if (ends_it(repeated)) {
+      return fail(std::move(repeated.error()));
+    }
+    add_recording(std::move(repeated), !kept.empty(), held);
+  } else if (kept.empty()) {
+    held.objections.push_back(fmt::format(
+        "nothing shows that {} is what was measured: there is no recording beside it, and the "
+        "store{} does not have it ('dyncal store add', or --store)",
+        result.file.filename().string(), store.empty() ? "" : " " + without_password(store)));
+  } else {
+    held.statements.emplace_back(
+        "There is no recording of the run that it could be evaluated from once more.");
+  }
+  return held;
+}
+
+} // namespace dyncal::inline records

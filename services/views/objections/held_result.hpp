@@ -1,0 +1,18 @@
+// The result that a document is made of, with what shows that it is what was measured
+// (services/records/provenance).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "services/views/report/stored_result.hpp"
+
+namespace dyncal::inline views {
+
+struct HeldResult {
+  StoredResult result;
+  std::vector<std::string> statements{}; // for the document: what the result was held against
+  std::vector<std::string> objections{}; // why it may not be believed
+};
+
+} // namespace dyncal::inline views

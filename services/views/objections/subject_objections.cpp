@@ -1,0 +1,138 @@
+#include "services/views/objections/subject_objections.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <ctime>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include "services/evaluation/result/members.hpp"
+#include "services/views/report/stated_value.hpp"
+
+namespace dyncal::inline views {
+namespace {
+
+std::string letters_and_digits(const std::string& text) {
+  std::string kept;
+  for (const unsigned char c : text) {
+    if (std::isalnum(c) != 0) {
+      kept += static_cast<char>(std::tolower(c));
+    }
+  }
+  return kept;
+}
+
+// A maker's name may stand before a model.
+bool is_same_model(const std::string& one, const std::string& other) {
+  const std::string a = letters_and_digits(one);
+  const std::string b = letters_and_digits(other);
+  return a.find(b) != std::string::npos || b.find(a) != std::string::npos;
+}
+
+bool is_same_serial(const std::string& one, const std::string& other) {
+  return letters_and_digits(one) == letters_and_digits(other);
+}
+
+void add_difference(const std::string& what, const std::string& key, const std::string& source,
+                    const std::string& measured, const std::string& stated,
+                    std::vector<std::string>& objections) {
+  objections.push_back(
+      fmt::format("the run was measured with {} '{}' (source {}), the sensor file says '{}'; if it "
+                  "is the same sensor, state in its file {} = \"{}\"",
+                  what, measured, source, stated, key, measured));
+}
+
+void hold_sensor(const DocumentSubject& subject, std::vector<std::string>& objections) {
+  std::vector<std::string> seen;
+  for (const std::string& channel : subject.channels) {
+    const std::string source = channel.substr(0, channel.find('/'));
+    const auto described = described_source(subject.result, channel);
+    if (!described || std::ranges::find(seen, source) != seen.end()) {
+      continue;
+    }
+    seen.push_back(source);
+    const SensorFile& sensor = subject.sensor;
+    const std::string& serial =
+        sensor.electronic_serial.empty() ? sensor.serial : sensor.electronic_serial;
+    const std::string& model =
+        sensor.electronic_model.empty() ? sensor.model : sensor.electronic_model;
+    if (described->serial.empty()) {
+      continue; // a file, or a bus that knows no sensor by name
+    }
+    if (!is_same_serial(described->serial, serial)) {
+      add_difference("serial number", "electronic_serial", source, described->serial, serial,
+                     objections);
+    }
+    if (!described->device.empty() && !is_same_model(described->device, model)) {
+      add_difference("model", "electronic_model", source, described->device, model, objections);
+    }
+  }
+}
+
+std::string local_day(const std::string& utc) {
+  constexpr std::int64_t second_ns = 1'000'000'000;
+  const std::int64_t utc_ns = parse_utc_text(utc);
+  return utc_ns == 0 ? "" : fmt::format("{:%Y-%m-%d}", fmt::localtime(utc_ns / second_ns));
+}
+
+void hold_days(const DocumentSubject& subject, std::vector<std::string>& objections) {
+  const std::string first = std::min(subject.began, subject.ended);
+  const std::string began = std::max(first, local_day(subject.result.began_utc));
+  const std::string local_end = local_day(subject.result.ended_utc);
+  const std::string ended = local_end.empty() ? subject.ended : std::min(subject.ended, local_end);
+  const ReferenceStandard& reference = subject.reference;
+  if (subject.sensor.received > began) {
+    objections.push_back(fmt::format("the sensor was received on {}, after the measurement of {}",
+                                     subject.sensor.received, began));
+  }
+  if (reference.issued.empty()) {
+    objections.emplace_back("the laboratory file does not say when the certificate of the "
+                            "reference was issued (reference.issued)");
+  } else if (reference.issued > began) {
+    objections.push_back(fmt::format("the certificate of the reference is of {}, after the "
+                                     "measurement of {}",
+                                     reference.issued, began));
+  }
+  if (reference.valid_until.empty()) {
+    objections.emplace_back("the laboratory file does not say until when the reference may be "
+                            "used (reference.valid_until, or reference.interval_months)");
+  } else if (reference.valid_until < ended) {
+    objections.push_back(fmt::format("the reference was to be calibrated again by {}, before the "
+                                     "measurement of {}",
+                                     reference.valid_until, ended));
+  }
+}
+
+tl::unexpected<Error> missing(const LaboratoryFile& file, const std::string& what,
+                              const std::string& why) {
+  return fail(ErrorCode::bad_file,
+              fmt::format("{}:1: {} is missing: {}", file.path.string(), what, why));
+}
+
+} // namespace
+
+Expected<void> check_for_documents(const LaboratoryFile& laboratory) {
+  if (laboratory.persons.empty()) {
+    return missing(laboratory, "table [[person]]", "a certificate names who is responsible for it");
+  }
+  if (!laboratory.reference) {
+    return missing(laboratory, "table [reference]",
+                   "a certificate states what its values are traceable to");
+  }
+  if (laboratory.reference->standard.empty()) {
+    return missing(laboratory, "key 'reference.standard'",
+                   "ISO 16063-11 for a laser interferometer, ISO 16063-21 for a reference "
+                   "transducer");
+  }
+  return {};
+}
+
+std::vector<std::string> objections_to_subject(const DocumentSubject& subject) {
+  std::vector<std::string> objections;
+  hold_sensor(subject, objections);
+  hold_days(subject, objections);
+  return objections;
+}
+
+} // namespace dyncal::inline views

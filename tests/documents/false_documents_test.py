@@ -1,0 +1,345 @@
+#!/usr/bin/env python3
+"""Ways to make a false document of a good run: each is refused with its reason, by `dyncal
+certify`, by `dyncal report --issue`, or by `dyncal verify` of what was made.
+
+    false_documents_test.py DYNCAL EXAMPLE_WRITER
+
+The run is one of the demo, with its recording and its entry in a store. What was edited is found by
+the store; without an entry, by the recording, to the last bit.
+"""
+
+import datetime
+import json
+import os
+import pathlib
+import random
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import stored_run
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
+from dds_domain import reserve_dds_domain  # noqa: E402
+
+DYNCAL = sys.argv[1]
+SEED = 37
+ISSUED, NUMBERS, MEASURED = 10, 8, 9
+STORE, RECORDING = "was changed after it was kept", "is not what the recording of run"
+
+
+def dyncal(*arguments):
+    return subprocess.run([DYNCAL, *map(str, arguments)], capture_output=True, text=True)
+
+
+def day(offset):
+    today = datetime.datetime.now(datetime.timezone.utc).date()
+    return (today + datetime.timedelta(days=offset)).isoformat()
+
+
+# What a forger does to a result, by name.
+
+
+def scaled(result, draw):
+    """A mean and its single results, alike."""
+    value = draw.choice(result["transfer_function"])
+    factor = draw.choice([0.99, 1.001, 1.01, 1.1])
+    alike = ("channel", "frequency_hz", "level_m_s2")
+    points = [p for p in result["points"] if all(p[name] == value[name] for name in alike)]
+    for one in (value, *points):
+        one["magnitude"] *= factor
+        for name in ("u_magnitude", "U_magnitude"):
+            one[name] *= factor
+
+
+def smaller_u(result, draw):
+    factor = draw.uniform(0.3, 0.9)
+    for one in result["transfer_function"] + result["points"]:
+        for name in ("u_magnitude", "U_magnitude"):
+            one[name] *= factor
+        for row in one.get("budget", []):
+            row["u_magnitude_rel"] *= factor
+
+
+def turned(result, draw):
+    shift = draw.choice([-1, 1]) * draw.uniform(0.01, 0.1)
+    for one in result["transfer_function"] + result["points"]:
+        if abs(one["phase_rad"] + shift) < 3.1:
+            one["phase_rad"] += shift
+
+
+def budget(result, draw):
+    row = draw.choice(draw.choice(result["points"])["budget"])
+    row["u_phase_rad"] = 0.5 * row["u_phase_rad"] + 1e-9
+
+
+def dates(result, draw):
+    for name in ("began_utc", "ended_utc"):
+        result[name] = "2026-02-20" + result[name][10:]
+
+
+def serial(result, draw):
+    for source in result["sources"]:
+        if source["source"] == "dau":
+            source["serial"] = "0xdeadbeef"
+
+
+def recipe(result, draw):
+    result["recipe"] = result["recipe"].replace("reference_magnitude_rel", "# ", 1) + "\n"
+
+
+def run_name(result, draw):
+    result["run"] += "-2"
+
+
+def channel_name(result, draw):
+    for one in result["transfer_function"] + result["points"] + result["channels"]:
+        one["channel"] = one["channel"].replace("acceleration_x", "acceleration_w")
+
+
+def closure(result, draw):
+    for channel in result["channels"]:
+        for one in channel["closures"]:
+            one["verdict"] = "not_possible"
+
+
+def left_out(result, draw):
+    step = draw.choice(result["points"])["step"]
+    gone = [p["frequency_hz"] for p in result["points"] if p["step"] == step][0]
+    for name in ("points", "transfer_function"):
+        result[name] = [one for one in result[name] if one["frequency_hz"] != gone]
+    result["planned_steps"] -= 1
+
+
+EDITS = (scaled, smaller_u, turned, budget, dates, serial, recipe, run_name, channel_name, closure,
+         left_out)  # fmt: skip
+
+
+class FalseDocuments(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="dyncal-false-documents-"))
+        cls.addClassCleanup(shutil.rmtree, cls.folder)
+        cls.domain, cls.held = reserve_dds_domain()
+        cls.runs, cls.others = cls.folder / "runs", cls.folder / "others"
+        cls.run_folder = cls.measure(cls.runs, 1)
+        cls.other_run = cls.measure(cls.others, 2)
+        subprocess.run(
+            ["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "30", "-subj",
+             "/CN=Calibration", "-addext", "keyUsage=critical,digitalSignature", "-keyout",
+             cls.folder / "lab.key", "-out", cls.folder / "lab.pem"],
+            check=True, capture_output=True)  # fmt: skip
+        cls.lab = cls.laboratory("lab", issued=day(-100), valid_until=day(500))
+
+    @classmethod
+    def measure(cls, runs, seed):
+        environment = dict(os.environ, DYNCAL_DOMAIN=str(cls.domain))
+        made = subprocess.run(
+            [DYNCAL, "demo", "--seed", str(seed), "--repetitions", "1", "--duration", "0.5",
+             "--speed", "max", "--folder", runs, "--output", cls.folder / f"demo-{seed}"],
+            capture_output=True, text=True, env=environment)  # fmt: skip
+        if made.returncode != 0:
+            raise RuntimeError(made.stdout + made.stderr)
+        return next(path.parent for path in runs.glob("*/*/result.json"))
+
+    @classmethod
+    def laboratory(cls, name, **keys):
+        text = stored_run.LAB.read_text()
+        begin, rest = text.split("issued = ", 1)
+        after = rest.split("\n", 2)[2]
+        lines = "".join(f'{key} = {value}\n' for key, value in keys.items())
+        file = cls.folder / f"{name}.toml"
+        logo = "laboratory-logo.svg"
+        file.write_text((begin + lines + after).replace(logo, str(stored_run.LAB_FOLDER / logo)))
+        return file
+
+    @classmethod
+    def sensor(cls, name, *changes):
+        text = stored_run.SENSOR.read_text().replace("2026-02-20", day(0))
+        for old, new in changes:
+            assert old in text, old
+            text = text.replace(old, new)
+        file = cls.folder / f"{name}.toml"
+        file.write_text(text)
+        return file
+
+    def copy(self, name, store=True):
+        """A run folder of its own, with its entry in a store of its own."""
+        root = self.folder / name
+        run = root / self.run_folder.relative_to(self.runs)
+        shutil.copytree(self.run_folder, run)
+        if store:
+            shutil.copy(self.runs / "dyncal.sqlite", root)
+        return run
+
+    def edited(self, name, edit, store):
+        run = self.copy(name, store)
+        result = json.loads((run / "result.json").read_text())
+        before = json.dumps(result)
+        edit(result, random.Random(f"{SEED} {name}"))
+        self.assertNotEqual(json.dumps(result), before, name)
+        (run / "result.json").write_text(json.dumps(result))
+        return run
+
+    def certify(self, run, *options, lab=None, sensor=None):
+        output = self.folder / f"{random.getrandbits(64):x}.xml"
+        made = dyncal("certify", run, "--lab", lab or self.lab, "--sensor",
+                      sensor or self.sensor("sensor"), "--output", output, "--key",
+                      self.folder / "lab.key", "--certificate", self.folder / "lab.pem",
+                      *options)  # fmt: skip
+        return made, output
+
+    def issue(self, run, *options, lab=None, sensor=None):
+        output = self.folder / f"{random.getrandbits(64):x}"
+        made = dyncal("report", run, "--lab", lab or self.lab, "--sensor",
+                      sensor or self.sensor("sensor"), "--output", output, "--issue",
+                      *options)  # fmt: skip
+        return made, output.with_suffix(".pdf")
+
+    def verify(self, file, *options):
+        return dyncal("verify", file, "--trust", self.folder / "lab.pem", *options)
+
+    def assert_refused(self, reason, made_and_file):
+        made, file = made_and_file
+        self.assertNotEqual(made.returncode, 0, reason)
+        self.assertIn(reason, made.stderr)
+        self.assertFalse(file.exists())
+
+    # The opposite first: nothing speaks against what was measured.
+
+    def test_what_was_measured_is_certified_and_verified(self):
+        for store in (True, False):
+            run = self.copy(f"good-{store}", store)
+            made, file = self.certify(run, "--store", run.parents[1] / "dyncal.sqlite")
+            self.assertEqual(made.returncode, 0, made.stderr)
+            self.assertIn("the same results to the last digit", made.stdout)
+            self.assertEqual(store, "was kept when the run ended" in made.stdout)
+            checked = self.verify(file, "--run", run)
+            self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
+            self.assertIn("the same results to the last digit", checked.stdout)
+
+    def test_edited_results_get_no_document(self):
+        makes = [self.certify, self.issue]
+        for edit in EDITS:
+            for store in (True, False):
+                makes.reverse()
+                name = f"{edit.__name__}-{store}"
+                run = self.edited(name, edit, store)
+                place = ("--store", run.parents[1] / "dyncal.sqlite" if store else "none")
+                with self.subTest(name):
+                    made, file = makes[0](run, "--force", *place)
+                    self.assertNotEqual(made.returncode, 0)
+                    self.assertFalse(file.exists())
+                    reasons = (STORE, RECORDING, "is not that of its single")
+                    self.assertTrue(any(one in made.stderr for one in reasons), made.stderr)
+                shutil.rmtree(run.parents[1])
+
+    def test_an_edited_mean_contradicts_its_single_results(self):
+        def mean_alone(result, draw):
+            draw.choice(result["transfer_function"])["magnitude"] *= 1.01
+
+        run = self.edited("mean", mean_alone, store=True)
+        self.assert_refused("a mean is not that of its single results", self.certify(run))
+        added = dyncal("store", "add", run, "--store", self.folder / "mean.sqlite")
+        self.assertIn("a mean is not that of its single results", added.stderr)
+
+    def test_recordings_of_others_prove_nothing(self):
+        run = self.copy("other-recording", store=False)
+        shutil.copy(self.other_run / "recording.mcap", run)
+        self.assert_refused(RECORDING, self.certify(run, "--force"))
+        run = self.copy("cut-recording", store=False)
+        with open(run / "recording.mcap", "r+b") as file:
+            file.truncate(random.Random(SEED).randrange(500_000, 5_000_000))
+        self.assert_refused("lacks samples of", self.certify(run))
+        run = self.copy("no-recording", store=False)
+        (run / "recording.mcap").unlink()
+        self.assert_refused("nothing shows that result.json is what was measured",
+                            self.certify(run))  # fmt: skip
+        shutil.copy(self.runs / "dyncal.sqlite", run.parents[1])
+        made, file = self.certify(run)
+        self.assertEqual(made.returncode, 0, made.stderr)
+        self.assertIn("There is no recording of the run", file.read_text())
+
+    def test_sensor_reference_and_days_must_fit(self):
+        other_serial = self.sensor("other-serial", ("0xbccb0100", "0xdeadbeef"))
+        other_model = self.sensor("other-model", ("MPU-9250", "BMA280"))
+        late = self.sensor("late", (day(0), day(2)))
+        labs = {
+            "after the measurement": dict(issued=day(30), valid_until=day(500)),
+            "was to be calibrated again by": dict(issued=day(-900), valid_until=day(-2)),
+            "calibrated again by": dict(issued=day(-900), interval_months=12),
+            "reference.valid_until": dict(issued=day(-100)),
+            "reference.issued": dict(valid_until=day(100)),
+        }
+        for make in (self.certify, self.issue):
+            run = self.copy(make.__name__)
+            (run / "recording.mcap").unlink()  # the store alone is quicker
+            self.assert_refused("serial number '0xbccb0100'", make(run, sensor=other_serial))
+            self.assert_refused("the sensor file says 'BMA280'", make(run, sensor=other_model))
+            self.assert_refused("was received on", make(run, sensor=late))
+            for reason, keys in labs.items():
+                self.assert_refused(reason, make(run, lab=self.laboratory("false", **keys)))
+        made, _ = self.certify(run, "--performed", "2019-01-01")
+        self.assertIn("leave --performed out", made.stderr)
+        made, file = self.certify(run, "--force", lab=self.laboratory("late", **labs[
+            "was to be calibrated again by"]))  # fmt: skip
+        self.assertEqual(made.returncode, 0, made.stderr)
+        self.assertIn("the reference was to be calibrated again by", file.read_text())
+
+    def test_a_number_is_given_once(self):
+        run, other = self.copy("numbers"), self.other_run
+        store = ("--store", self.folder / "numbers" / "dyncal.sqlite")
+        made, first = self.certify(run)
+        self.assertEqual(made.returncode, 0, made.stderr)
+        self.assert_refused("a number is given once", self.certify(run))
+        dyncal("store", "add", other, *store)
+        self.assert_refused("a number is given once", self.certify(other, *store))
+        self.assert_refused("a number is given once", self.issue(other, *store))
+        made, pdf = self.issue(run)
+        self.assertEqual(made.returncode, 0, made.stderr)
+        self.assert_refused("no document has number 2025-0001",
+                            self.certify(run, "--number", "2026-0043", "--replaces",
+                                         "2025-0001"))  # fmt: skip
+        made, second = self.certify(run, "--number", "2026-0043", "--replaces", "2026-0042")
+        self.assertEqual(made.returncode, 0, made.stderr)
+        self.assertIn("2026-0042", second.read_text())
+        self.assert_refused("was replaced by 2026-0043 already",
+                            self.certify(run, "--number", "2026-0044", "--replaces",
+                                         "2026-0042"))  # fmt: skip
+        for file, status in ((first, ISSUED), (pdf, ISSUED), (second, 0)):
+            checked = self.verify(file, *store, "--run", run)
+            self.assertEqual(checked.returncode, status, checked.stdout)
+        self.assertIn("2026-0043 has taken its place", self.verify(pdf, *store).stdout)
+
+    def test_changed_files_are_not_verified(self):
+        run = self.copy("changed")
+        store = ("--store", self.folder / "changed" / "dyncal.sqlite")
+        made, pdf = self.issue(run)
+        self.assertEqual(made.returncode, 0, made.stderr)
+        self.assertEqual(self.verify(pdf, *store).returncode, 0)
+        bytes_of_pdf = bytearray(pdf.read_bytes())
+        bytes_of_pdf[random.Random(SEED).randrange(100, len(bytes_of_pdf))] ^= 1
+        pdf.write_bytes(bytes_of_pdf)
+        checked = self.verify(pdf, *store)
+        self.assertEqual(checked.returncode, ISSUED, checked.stdout)
+        self.assertIn("it was never issued as it is", checked.stdout)
+        draft = self.folder / "draft"
+        dyncal("report", run, "--lab", self.lab, "--output", draft)
+        self.assertIn(">DRAFT<", draft.with_suffix(".html").read_text())
+        self.assertEqual(self.verify(draft.with_suffix(".pdf"), *store).returncode, ISSUED)
+        made, signed = self.certify(run, "--number", "2026-0050")
+        self.assertEqual(made.returncode, 0, made.stderr)
+        checked = self.verify(signed, *store, "--run", self.other_run)
+        self.assertEqual(checked.returncode, NUMBERS, checked.stdout)
+        edited = self.edited("edited-later", scaled, store=True)
+        checked = self.verify(signed, "--run", edited)
+        self.assertIn("measured   FAILED", checked.stdout)
+        text = signed.read_text()
+        signed.write_text(text.replace("<dcc:issueDate>20", "<dcc:issueDate>19"))
+        self.assertEqual(self.verify(signed, *store).returncode, 6)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])

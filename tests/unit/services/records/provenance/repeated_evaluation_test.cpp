@@ -1,0 +1,115 @@
+#include "services/records/provenance/repeated_evaluation.hpp"
+
+#include <functional>
+#include <random>
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include "services/base/json_text.hpp"
+#include "services/views/report/result_json.hpp"
+#include "tests/unit/services/views/report/example_outcome.hpp"
+
+namespace dyncal::inline records {
+namespace {
+
+using testing::HasSubstr;
+
+// As it is read from its file.
+StoredResult stored(const RunOutcome& outcome) {
+  ByteCount no_progress;
+  const auto result = result_of_text(json_text(result_json(outcome)), "result.json", no_progress);
+  EXPECT_TRUE(result) << result.error().message;
+  return *result;
+}
+
+class RepeatedEvaluationTest : public testing::Test {
+protected:
+  // What is refused where the file has `changed`; empty: nothing.
+  [[nodiscard]] std::string refusal(const std::function<void(StoredResult&)>& change) const {
+    StoredResult kept = again_;
+    change(kept);
+    const auto held = hold_against(kept, again_);
+    return held ? "" : held.error().message;
+  }
+
+  StoredResult again_ = stored(tests::example_outcome());
+};
+
+TEST_F(RepeatedEvaluationTest, GivesTheSameToTheLastBit) {
+  const auto held = hold_against(again_, again_);
+  ASSERT_TRUE(held) << held.error().message;
+  EXPECT_TRUE(held->is_same_version);
+  EXPECT_GT(held->values, 0U);
+  EXPECT_EQ(held->missing, 0U);
+}
+
+TEST_F(RepeatedEvaluationTest, FindsWhatWasChangedByTheLastBit) {
+  const auto next = [](double& value) { value = std::nextafter(value, 1e9); };
+  EXPECT_THAT(refusal([&](StoredResult& one) { next(one.values.front().magnitude); }),
+              HasSubstr("|H|"));
+  EXPECT_THAT(refusal([&](StoredResult& one) { next(one.values.front().phase_rad); }),
+              HasSubstr("differ"));
+  EXPECT_THAT(refusal([&](StoredResult& one) { next(one.values.front().of_magnitude.expanded); }),
+              HasSubstr("differ"));
+  EXPECT_THAT(refusal([&](StoredResult& one) { next(one.points.front().magnitude); }),
+              HasSubstr("|H|"));
+  EXPECT_THAT(
+      refusal([&](StoredResult& one) { next(one.points.front().budget.front().u_magnitude_rel); }),
+      HasSubstr("budget"));
+  EXPECT_THAT(refusal([](StoredResult& one) { one.sources.front().description.serial = "other"; }),
+              HasSubstr("serial"));
+  EXPECT_THAT(refusal([](StoredResult& one) { one.recipe += " "; }), HasSubstr("recipe"));
+  EXPECT_THAT(refusal([](StoredResult& one) { ++one.planned_steps; }), HasSubstr("planned_steps"));
+  EXPECT_THAT(refusal([](StoredResult& one) { one.values.pop_back(); }),
+              HasSubstr("transfer_function"));
+}
+
+TEST_F(RepeatedEvaluationTest, LetsInstantsOfTheConductorDifferBySeconds) {
+  again_.began_utc = "2026-03-01T12:00:05.000000000Z";
+  EXPECT_EQ(refusal([](StoredResult& one) { one.began_utc = "2026-03-01T12:00:06.500000000Z"; }),
+            "");
+  EXPECT_THAT(refusal([](StoredResult& one) { one.began_utc = "2026-03-02T12:00:05.000000000Z"; }),
+              HasSubstr("it began and ended"));
+}
+
+TEST_F(RepeatedEvaluationTest, LetsAnotherVersionDifferByATenthOfU) {
+  const auto by_u = [&](double times) {
+    return refusal([&](StoredResult& one) {
+      one.analysis_software = "dyncal 0.1.9";
+      StoredValue& value = one.values.front();
+      value.magnitude += times * value.of_magnitude.expanded / value.of_magnitude.k;
+    });
+  };
+  EXPECT_EQ(by_u(0.09), "");
+  EXPECT_EQ(by_u(-0.09), "");
+  EXPECT_THAT(by_u(0.11), HasSubstr("analyse it anew"));
+  EXPECT_THAT(refusal([](StoredResult& one) {
+                one.analysis_software = "dyncal 0.1.9";
+                one.sources.front().description.serial = "other";
+              }),
+              HasSubstr("serial"));
+}
+
+TEST_F(RepeatedEvaluationTest, FindsAFlagThatWasTakenOut) {
+  again_.values.front().flag_names.emplace_back("samples_lost");
+  EXPECT_THAT(refusal([](StoredResult& one) {
+                one.analysis_software = "dyncal 0.1.9";
+                one.values.front().flag_names.clear();
+              }),
+              HasSubstr("has the flag"));
+}
+
+TEST_F(RepeatedEvaluationTest, CountsWhatTheRecordingLacks) {
+  StoredResult kept = again_;
+  for (StoredPoint& point : again_.points) {
+    point.valid = false;
+  }
+  const auto held = hold_against(kept, again_);
+  ASSERT_TRUE(held) << held.error().message;
+  EXPECT_EQ(held->missing, held->values);
+  EXPECT_GT(held->values, 0U);
+}
+
+} // namespace
+} // namespace dyncal::inline records
