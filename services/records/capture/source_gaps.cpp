@@ -85,15 +85,18 @@ void SourceGaps::ask_for_all(Instant now) {
 }
 
 std::optional<SourceGaps::Request> SourceGaps::due(Instant now) {
-  if (active_ && now - active_->heard.value_or(active_->began) >
-                     (active_->heard ? stall_limit : answer_limit)) {
+  const bool is_given_up = active_ && now - active_->heard.value_or(active_->began) >
+                                          (active_->heard ? stall_limit : answer_limit);
+  if (!active_ || is_given_up) {
     active_.reset();
-  }
-  if (!active_ && !waiting_.empty()) {
-    active_ = Active{std::move(waiting_.front()), now, now, std::nullopt};
+    if (waiting_.empty()) {
+      return std::nullopt;
+    }
+    active_ = Active{std::move(waiting_.front()), now, now + request_interval, std::nullopt};
     waiting_.pop_front();
+    return active_->request;
   }
-  if (!active_ || active_->heard || now < active_->next_write) {
+  if (active_->heard || now < active_->next_write) {
     return std::nullopt;
   }
   active_->next_write = now + request_interval;

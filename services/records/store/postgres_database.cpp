@@ -150,11 +150,14 @@ private:
     for (const Parameter& parameter : parameters) {
       texts.push_back(parameter.known ? parameter.text.c_str() : nullptr);
     }
-    const auto given = pqxx::prepare::make_dynamic_params(texts);
 #if PQXX_VERSION_MAJOR >= 7
-    return work_.exec(statement, pqxx::params(given));
+    pqxx::params given;
+    for (const char* text : texts) {
+      text == nullptr ? given.append() : given.append(pqxx::zview(text));
+    }
+    return work_.exec(statement, given);
 #else
-    return work_.exec_params(statement, given);
+    return work_.exec_params(statement, pqxx::prepare::make_dynamic_params(texts));
 #endif
   }
   Expected<void> begin_writing() override {

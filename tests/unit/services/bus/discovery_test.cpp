@@ -2,6 +2,7 @@
 #include "services/bus/discovery.hpp"
 
 #include <algorithm>
+#include <memory>
 
 #include "services/bus/vendor.hpp"
 #include "services/contract/topics.hpp"
@@ -41,7 +42,7 @@ protected:
 TEST_P(DiscoveryTest, TellsOfOthersWithPartitionAndQosUntilTheyAreGone) {
   auto watching = join(GetParam().reader, "watching", true);
   std::optional<Participant> other(join(GetParam().writer, "other", false));
-  std::optional<Writer<wire::SourceStatus>> writer(
+  auto writer = std::make_unique<Writer<wire::SourceStatus>>(
       other->writer(topics::source_status, "acc-1").value());
   std::optional<Reader<wire::Command>> reader(
       other->reader(topics::command, "acc-2", nullptr).value());
