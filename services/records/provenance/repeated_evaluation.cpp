@@ -69,9 +69,12 @@ bool take_out_instants(StoredResult& kept, StoredResult& again) {
 // What another version cannot give otherwise either.
 constexpr std::array facts{"bench", "run", "method", "planned_steps", "sources", "roles", "recipe"};
 
+// Without what depends on who evaluates and when: statistics of a clock end where somebody stopped
+// to listen.
 Json comparable_json(const StoredResult& result, bool is_same_version) {
   Json json = result_json(result);
-  for (const char* member : {"began_utc", "ended_utc", "software", "analysis", "dds"}) {
+  for (const char* member :
+       {"began_utc", "ended_utc", "software", "analysis", "dds", "sample_clock"}) {
     json.erase(member);
   }
   if (is_same_version) {

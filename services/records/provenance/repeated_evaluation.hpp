@@ -1,7 +1,8 @@
 // The recording of a run evaluated once more, held against the result file of the run.
 //
-// The version that made the result gives the same file to the last bit, but for the instants at
-// which the conductor began, paused and ended, which may differ by 10 s. Another version may give
+// The version that made the result gives the same file to the last bit, but for the statistics of
+// sample clocks, which end where the live analysis stopped to listen, and for the instants at which
+// the conductor began, paused and ended, which may differ by 10 s. Another version may give
 // what differs by up to 0.1 u, in values and in U. A value for which the recording has fewer
 // samples than the analysis had cannot be held against it: it is missing, and means are then held
 // against the single results alone (views/report/mean_check.hpp).

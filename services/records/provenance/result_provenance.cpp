@@ -41,9 +41,13 @@ std::string said_of(const RepeatedEvaluation& repeated, const StoredResult& resu
     return "The recording of the run, evaluated once more, gives the same results to the last "
            "digit.";
   }
+  const std::string how = repeated.largest_deviation_u == 0.0
+                              ? std::string("the same values and U")
+                              : fmt::format("values and U that differ by at most {:.2g} u",
+                                            repeated.largest_deviation_u);
   return fmt::format("The recording of the run, evaluated once more by another version of the "
-                     "software than {}, gives values and U that differ by at most {:.2g} u.",
-                     result.analysis_software, repeated.largest_deviation_u);
+                     "software than {}, gives {}.",
+                     result.analysis_software, how);
 }
 
 // A recording that lacks some of the samples speaks for the rest, where the store has the file.
