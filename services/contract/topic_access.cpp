@@ -30,7 +30,6 @@ std::vector<TopicAccess> make_topic_access() {
   const Roles askers{conductor, web, watcher};        // who ask for the clocks of others
   const Roles instruments{source};
   const auto bench = TopicPlace::bench;
-  const auto asker = TopicPlace::asker;
   const auto laboratory = TopicPlace::laboratory;
   return {
       {topics::source_description, bench, instruments, lookers + Roles{source, guard}},
@@ -45,12 +44,13 @@ std::vector<TopicAccess> make_topic_access() {
       {topics::calibration_result, bench, {analysis}, lookers},
       {topics::transfer_function, bench, {analysis}, lookers},
       {topics::sample_clock_report, bench, {analysis}, lookers},
+      {topics::service_status, bench, {analysis, guard}, lookers + Roles{guard}},
       // Of a run that keeps a recording, the conductor is its recorder.
-      {topics::service_status, bench, missers + Roles{guard}, lookers + Roles{guard}},
+      {topics::recorder_status, bench, {conductor, recorder}, lookers},
       {topics::command, bench, {analysis, web}, lookers + instruments},
       {topics::catch_up_request, bench, missers, lookers + instruments},
-      {topics::catch_up_samples, asker, instruments, missers},
-      {topics::catch_up_records, asker, instruments, missers},
+      {topics::catch_up_samples, bench, instruments, missers},
+      {topics::catch_up_records, bench, instruments, missers},
       {topics::clock_request, laboratory, askers, services},
       {topics::clock_answer, laboratory, services, askers},
       {topics::link_probe, laboratory, askers, services},
@@ -63,13 +63,13 @@ std::vector<std::string> partitions_at(TopicPlace place, bool everywhere,
   if (place == TopicPlace::laboratory) {
     return {partition_of_all_benches};
   }
-  if (place == TopicPlace::asker || everywhere) {
+  if (everywhere) {
     return {every_partition};
   }
   std::vector<std::string> partitions;
   for (const std::string& bench : benches) {
     partitions.push_back(bench);
-    partitions.push_back(bench + "/*"); // its runs
+    partitions.push_back(bench + "/*"); // its runs, and who catches up
   }
   return partitions;
 }

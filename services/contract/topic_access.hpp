@@ -24,8 +24,7 @@ enum class SecurityRole : std::uint8_t {
 };
 
 enum class TopicPlace : std::uint8_t {
-  bench,      // the bench, and its runs
-  asker,      // named by who asks for what it missed
+  bench,      // the bench, its runs, and who catches up with its sources
   laboratory, // the partition of all benches
 };
 

@@ -53,6 +53,7 @@ inline constexpr Topic<wire::TransferFunction> transfer_function{"TransferFuncti
 inline constexpr Topic<wire::SampleClockReport> sample_clock_report{"SampleClockReport",
                                                                     Profile::results};
 inline constexpr Topic<wire::ServiceStatus> service_status{"ServiceStatus", Profile::state};
+inline constexpr Topic<wire::ServiceStatus> recorder_status{"RecorderStatus", Profile::state};
 inline constexpr Topic<wire::Command> command{"Command", Profile::command};
 inline constexpr Topic<wire::CatchUpRequest> catch_up_request{"CatchUpRequest", Profile::command};
 inline constexpr Topic<wire::SampleBlock> catch_up_samples{"CatchUpSamples", Profile::catch_up};

@@ -35,6 +35,7 @@ private:
     bus::Reader<wire::Measurement> measurements;
     bus::Reader<wire::Excitation> excitation;
     bus::Reader<wire::ServiceStatus> services;
+    bus::Reader<wire::ServiceStatus> recorders;
     bus::Reader<wire::CalibrationResult> results;
     bus::Reader<wire::TransferFunction> functions;
     bus::Reader<wire::SampleClockReport> clocks;

@@ -274,6 +274,15 @@ void BusState::take(const wire::ServiceStatus& message) {
   note(*bench, changes_of(before, *run));
 }
 
+void BusState::take_of_recorder(wire::ServiceStatus message) {
+  if (message.recording().empty() || !message.service().to_string().starts_with("recorder@")) {
+    return;
+  }
+  message.run("");
+  message.guarded_generator("");
+  take(message);
+}
+
 void BusState::take_service(Bench& bench, const wire::ServiceStatus& message) {
   const std::string name = message.service().to_string();
   if (!bench.services.contains(name) && bench.services.size() >= limits_.services) {

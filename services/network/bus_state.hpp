@@ -40,6 +40,8 @@ public:
   void take(const wire::TransferFunction& message);
   void take(const wire::SampleClockReport& message);
   void take(const wire::ServiceStatus& message);
+  // From the topic of recorders, whose writers speak for no other service, and of no run.
+  void take_of_recorder(wire::ServiceStatus message);
   // Those that answer now, and the clocks of their hosts.
   void set_programs(std::vector<DiscoveredProgram> programs, std::vector<HostClock> clocks);
   // What time alone changes.

@@ -30,8 +30,7 @@ std::string elements(const std::string& list, const std::string& one,
 }
 
 // Without partitions a rule would allow the empty one alone. One rule a group: Fast DDS 2.9 allows
-// every topic of a rule in the partitions of all of them, so that what a source may write to
-// whoever asks (partition *) would open all benches to it.
+// every topic of a rule in the partitions of all of them.
 std::string rules(const std::string& what, const std::vector<TopicGroup>& groups) {
   std::string text;
   for (const TopicGroup& group : groups) {

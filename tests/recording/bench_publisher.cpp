@@ -85,7 +85,7 @@ int main(int argc, char** argv) {
   const double samples_per_s = mb_per_s * 1e6 / 8.0 / benches;
   auto participant = bus::Participant::create(options).value();
   const auto bell = std::make_shared<bus::WakeUp>();
-  auto states = participant.reader(bus::topics::service_status, "*", bell).value();
+  auto states = participant.reader(bus::topics::recorder_status, "*", bell).value();
   std::atomic<bool> over{false};
   std::vector<std::jthread> threads;
   for (int i = 1; i <= benches; ++i) {

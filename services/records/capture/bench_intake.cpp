@@ -45,7 +45,7 @@ BenchIntake::BenchIntake(bus::Participant& participant, bus::Clock& clock, std::
                          std::string run, std::shared_ptr<bus::WakeUp> wake_up, Sink sink)
     : participant_(participant), clock_(clock), bench_(std::move(bench)), only_run_(std::move(run)),
       reads_results_of_bench_(only_run_.empty()),
-      asker_(fmt::format("recorder/{:016x}", contract::random_session())),
+      asker_(fmt::format("{}/recorder/{:016x}", bench_, contract::random_session())),
       wake_up_(std::move(wake_up)), sink_(std::move(sink)) {}
 
 Expected<std::unique_ptr<BenchIntake>>

@@ -51,7 +51,7 @@ public:
   ~Work() { (void)stop(); }
 
   [[nodiscard]] Expected<void> begin() {
-    DYNCAL_TRY(auto status, participant_.writer(bus::topics::service_status, options_.bench));
+    DYNCAL_TRY(auto status, participant_.writer(bus::topics::recorder_status, options_.bench));
     status_writer_.emplace(std::move(status));
     auto intake = BenchIntake::open(
         participant_, clock_, options_.bench, options_.run, wake_up_,

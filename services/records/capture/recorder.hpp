@@ -9,7 +9,7 @@
 // process; it survives a power cut once the file has been synchronised, at least every two seconds.
 // When the disk is nearly full, or writing fails, the recording is ended in order, the status names
 // the reason, and what comes after counts as not stored. Status goes to the bus every second, as
-// ServiceStatus without a run; what was lost stands in the file as metadata "dyncal.losses", the
+// RecorderStatus; what was lost stands in the file as metadata "dyncal.losses", the
 // bench file of the run as attachment "recipe.toml".
 //
 // start() fails (bad_file) when the file exists or cannot be made, (network) as readers do.

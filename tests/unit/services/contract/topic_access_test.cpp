@@ -50,6 +50,7 @@ TEST(TopicAccess, LetsASourceWriteInItsBenchAlone) {
   const RoleAccess source = access_of(SecurityRole::source, {"acc-1"});
   EXPECT_THAT(partitions_of(source.written, "DauSamples"), ElementsAre("acc-1", "acc-1/*"));
   EXPECT_THAT(partitions_of(source.read, "Command"), ElementsAre("acc-1", "acc-1/*"));
+  EXPECT_THAT(partitions_of(source.written, "CatchUpSamples"), ElementsAre("acc-1", "acc-1/*"));
   EXPECT_THAT(topics_of(source.written), Not(Contains("Measurement")));
   EXPECT_THAT(topics_of(source.written), Not(Contains("CalibrationResult")));
 }
@@ -59,6 +60,8 @@ TEST(TopicAccess, LetsTheAnalysisAloneWriteResults) {
     const auto written = topics_of(access_of(role, {"acc-1"}).written);
     EXPECT_EQ(written.contains("CalibrationResult"), role == SecurityRole::analysis);
     EXPECT_EQ(written.contains("TransferFunction"), role == SecurityRole::analysis);
+    EXPECT_EQ(written.contains("ServiceStatus"),
+              role == SecurityRole::analysis || role == SecurityRole::guard);
     EXPECT_EQ(written.contains("Excitation"), role == SecurityRole::conductor);
     EXPECT_EQ(written.contains("DauSamples"), role == SecurityRole::source);
   }
@@ -92,9 +95,7 @@ std::string readers_of(const TopicAccess& row) {
 TEST(TopicAccess, IsTheTableOnThePageOfTheContract) {
   std::string table = "| topic | partition | written by | read by |\n|---|---|---|---|\n";
   for (const TopicAccess& row : topic_access()) {
-    const char* place = row.place == TopicPlace::bench   ? "bench"
-                        : row.place == TopicPlace::asker ? "asker"
-                                                         : "laboratory";
+    const char* place = row.place == TopicPlace::bench ? "bench" : "laboratory";
     table += "| `" + std::string(row.topic) + "` | " + place + " | " + names_of(row.writers) +
              " | " + readers_of(row) + " |\n";
   }

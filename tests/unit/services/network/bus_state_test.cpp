@@ -291,6 +291,21 @@ TEST_F(BusStateTest, ShowsWhatARecorderMisses) {
   EXPECT_TRUE(bench().runs.empty()) << "a recorder serves no run";
 }
 
+TEST_F(BusStateTest, TakesOfTheTopicOfRecordersNothingButRecorders) {
+  wire::ServiceStatus status = analysis_of("acc-1", "r1", wire::ARM_FINISHED);
+  laboratory_.take_of_recorder(status);
+  EXPECT_EQ(laboratory_.bench("acc-1"), nullptr) << "an analysis";
+  status.recording("/data/acc-1/r1.mcap");
+  laboratory_.take_of_recorder(status);
+  EXPECT_EQ(laboratory_.bench("acc-1"), nullptr) << "in the name of an analysis";
+  status.service("recorder@lab-1:3");
+  status.guarded_generator("192.0.2.7:5025");
+  laboratory_.take_of_recorder(status);
+  ASSERT_NE(bench().recorder(), nullptr);
+  EXPECT_FALSE(bench().services.at("recorder@lab-1:3").is_guard());
+  EXPECT_TRUE(bench().runs.empty()) << "a recorder serves no run";
+}
+
 TEST_F(BusStateTest, ShowsAGuardThatCannotSwitchOff) {
   wire::ServiceStatus status;
   status.bench("acc-1");

@@ -121,6 +121,15 @@ TEST_F(CatchUpServerTest, GivesWhatIsKeptBehindAMessageAndThenSaysThatThatWasAll
   EXPECT_FALSE(end.end_of_stream());
 }
 
+TEST_F(CatchUpServerTest, AnswersBelowTheBenchAndWhereAnAskerOfContract2Wants) {
+  keep(0, 3);
+  for (const std::string asker : {"acc/catch-up/1", "catch-up/1"}) {
+    auto reader = answers_of(asker);
+    ask("first", 0, asker);
+    EXPECT_THAT(numbers(read(reader)), ElementsAre(1, 2)) << asker;
+  }
+}
+
 TEST_F(CatchUpServerTest, GivesTheVeryBytesThatAreKept) {
   keep(0, 3);
   auto reader = answers_of("analysis");

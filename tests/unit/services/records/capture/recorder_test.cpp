@@ -265,7 +265,7 @@ TEST_F(RecorderTest, AsksForWhatItMissedAndSaysWhatItCouldNotHave) {
 }
 
 TEST_F(RecorderTest, TellsTheBusWhatItHasStored) {
-  auto states = others_.reader(bus::topics::service_status, "acc-1", nullptr).value();
+  auto states = others_.reader(bus::topics::recorder_status, "acc-1", nullptr).value();
   auto blocks = others_.writer(bus::topics::dau_samples, "acc-1").value();
   auto recorder = Recorder::start(own_, options()).value();
   blocks.write(block_of(0));
