@@ -8,12 +8,39 @@
 namespace dyncal::bus {
 namespace {
 
+// Passes over what revoked participants write: no vendor looks at the list again once it has
+// authenticated them.
+class SecuredReader : public UntypedReader {
+public:
+  SecuredReader(std::unique_ptr<UntypedReader> reader, std::shared_ptr<const IsRevoked> is_revoked)
+      : reader_(std::move(reader)), is_revoked_(std::move(is_revoked)) {}
+
+  std::size_t take(const Consume& consume) override {
+    std::size_t passed_over = 0;
+    const std::size_t taken =
+        reader_->take([&](const void* sample, std::string_view bytes, const WriterId& writer) {
+          if ((*is_revoked_)(writer)) {
+            ++passed_over;
+          } else {
+            consume(sample, bytes, writer);
+          }
+        });
+    return taken - passed_over;
+  }
+  [[nodiscard]] int matched_writers() const override { return reader_->matched_writers(); }
+
+private:
+  std::unique_ptr<UntypedReader> reader_;
+  std::shared_ptr<const IsRevoked> is_revoked_;
+};
+
 // Says why the vendor may have refused a writer or reader, which it does not say itself.
 class SecuredParticipant : public UntypedParticipant {
 public:
   SecuredParticipant(std::unique_ptr<UntypedParticipant> participant,
-                     const std::filesystem::path& permissions)
-      : participant_(std::move(participant)), permissions_(permissions.string()) {}
+                     const std::filesystem::path& permissions, IsRevoked is_revoked)
+      : participant_(std::move(participant)), permissions_(permissions.string()),
+        is_revoked_(std::make_shared<const IsRevoked>(std::move(is_revoked))) {}
 
   base::Expected<std::unique_ptr<UntypedWriter>>
   writer(const TypeSupport& type, const std::string& topic, Profile profile,
@@ -29,6 +56,9 @@ public:
                                                         const std::string& partition,
                                                         std::shared_ptr<WakeUp> wake_up) override {
     return participant_->reader(type, topic, profile, partition, std::move(wake_up))
+        .map([&](auto reader) -> std::unique_ptr<UntypedReader> {
+          return std::make_unique<SecuredReader>(std::move(reader), is_revoked_);
+        })
         .map_error(
             [&](const base::Error& error) { return explained(error, "read", topic, partition); });
   }
@@ -55,15 +85,17 @@ private:
 
   std::unique_ptr<UntypedParticipant> participant_;
   std::string permissions_;
+  std::shared_ptr<const IsRevoked> is_revoked_;
 };
 
 } // namespace
 
 base::Expected<Participant> create_secured_participant(const ParticipantOptions& options,
-                                                       const SecurityFiles& files) {
+                                                       const SecurityFiles& files,
+                                                       IsRevoked is_revoked) {
   return create_untyped_participant(options, &files).map([&](auto participant) {
-    return Participant(
-        std::make_unique<SecuredParticipant>(std::move(participant), files.permissions));
+    return Participant(std::make_unique<SecuredParticipant>(
+        std::move(participant), files.permissions, std::move(is_revoked)));
   });
 }
 

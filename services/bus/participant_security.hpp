@@ -3,12 +3,13 @@
 //
 // A secured participant sends a message of up to 64 kB as one, cut by IP alone: both vendors
 // together lose the first fragments that come before the keys do, and Fast DDS 2.9 then does not
-// end looking for them.
+// end looking for them. So blocks of samples are short there (decisions/25-secured-blocks.md).
 //
 // Threads as bus.hpp has them.
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -25,10 +26,14 @@ struct SecurityFiles {
   std::filesystem::path revoked;
 };
 
+// Whether nothing more is taken from this writer, which may be unknown. Called from any thread.
+using IsRevoked = std::function<bool(const WriterId& writer)>;
+
 // Fails (network) as Participant::create() does, and when the vendor refuses the files; they are
 // checked before by services/security, whose sentences are better.
 [[nodiscard]] base::Expected<Participant>
-create_secured_participant(const ParticipantOptions& options, const SecurityFiles& files);
+create_secured_participant(const ParticipantOptions& options, const SecurityFiles& files,
+                           IsRevoked is_revoked);
 
 // Whether the vendor's certificates need a subject whose SHA-256 begins with 1 instead of 0. The
 // participant with the lower GUID, which follows from the subject, begins the handshake, and

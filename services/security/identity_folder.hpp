@@ -7,9 +7,12 @@
 //   VENDOR.pem, VENDOR_key.pem, VENDOR_permissions.p7s
 //                            its certificate, private key and permissions in this DDS vendor
 //
-// Flat, since service managers hand on files (LoadCredential=). Plain functions; any thread.
+// Flat, since service managers hand on files (LoadCredential=). Those are copies of the time when a
+// service begins; DYNCAL_REVOKED names a list of revoked certificates that can be renewed. Plain
+// functions; any thread.
 #pragma once
 
+#include <cstdlib>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -26,12 +29,13 @@ inline constexpr const char* revoked_file = "revoked.pem";
 [[nodiscard]] inline bus::SecurityFiles security_files(const std::filesystem::path& folder,
                                                        bus::Vendor vendor) {
   const std::string name = bus::to_string(vendor);
+  const char* revoked = std::getenv("DYNCAL_REVOKED");
   return {.authority = folder / authority_file,
           .certificate = folder / (name + ".pem"),
           .private_key = folder / (name + "_key.pem"),
           .governance = folder / governance_file,
           .permissions = folder / (name + "_permissions.p7s"),
-          .revoked = folder / revoked_file};
+          .revoked = revoked != nullptr ? revoked : folder / revoked_file};
 }
 
 // The common name of a certificate is its role, "-", and what tells it from others.

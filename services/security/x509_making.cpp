@@ -1,12 +1,13 @@
 #include "services/security/x509_making.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
 #include <fmt/core.h>
+#include <openssl/bn.h>
 #include <openssl/pem.h>
 #include <openssl/rand.h>
-#include <openssl/sha.h>
 #include <openssl/x509v3.h>
 
 namespace dyncal::inline security {
@@ -31,13 +32,16 @@ void add(X509_NAME* name, const char* part, const std::string& text) {
   X509_NAME_add_entry_by_txt(name, part, MBSTRING_UTF8, bytes, -1, -1, 0);
 }
 
-bool begins_high(const X509_NAME* name) {
-  unsigned char* encoded = nullptr;
-  const int size = i2d_X509_NAME(name, &encoded);
-  std::array<unsigned char, SHA256_DIGEST_LENGTH> digest{};
-  SHA256(encoded, size > 0 ? static_cast<std::size_t>(size) : 0, digest.data());
-  OPENSSL_free(encoded);
-  return (digest.front() & high_bit) != 0;
+// 1, so that it is positive and as long as any other, and the beginning of the digest.
+using SerialNumber = std::array<unsigned char, 17>;
+
+void set_serial_number(X509& certificate) {
+  SerialNumber number{1};
+  std::copy_n(digest_of(*X509_get_subject_name(&certificate)).begin(), number.size() - 1,
+              number.begin() + 1);
+  BIGNUM* integer = BN_bin2bn(number.data(), number.size(), nullptr);
+  BN_to_ASN1_INTEGER(integer, X509_get_serialNumber(&certificate));
+  BN_free(integer);
 }
 
 void add_extension(X509& certificate, X509& issuer, int kind, const char* value) {
@@ -106,6 +110,7 @@ OpenSslPointer<X509> make_certificate(const Applicant& applicant, EVP_PKEY& key,
     X509_set_subject_name(certificate.get(), name);
     X509_NAME_free(name);
   } while (has_high_subject(*certificate) != applicant.needs_high_subject);
+  set_serial_number(*certificate);
   X509_set_issuer_name(certificate.get(), X509_get_subject_name(&authority));
   add_extension(*certificate, authority, NID_basic_constraints, "critical,CA:FALSE");
   add_extension(*certificate, authority, NID_key_usage, "critical,digitalSignature,keyAgreement");
@@ -166,8 +171,28 @@ std::string subject_part(const X509& certificate, int nid) {
   return text;
 }
 
+SubjectDigest digest_of(const X509_NAME& subject) {
+  unsigned char* encoded = nullptr;
+  const int size = i2d_X509_NAME(&subject, &encoded);
+  SubjectDigest digest{};
+  SHA256(encoded, size > 0 ? static_cast<std::size_t>(size) : 0, digest.data());
+  OPENSSL_free(encoded);
+  return digest;
+}
+
+std::optional<SubjectDigest> digest_in(const ASN1_INTEGER& serial_number) {
+  SerialNumber number{};
+  BIGNUM* integer = ASN1_INTEGER_to_BN(&serial_number, nullptr);
+  const bool fits = BN_num_bytes(integer) == static_cast<int>(number.size()) &&
+                    BN_bn2bin(integer, number.data()) > 0 && number.front() == 1;
+  BN_free(integer);
+  SubjectDigest digest{};
+  std::copy(number.begin() + 1, number.end(), digest.begin());
+  return fits ? std::optional(digest) : std::nullopt;
+}
+
 bool has_high_subject(const X509& certificate) {
-  return begins_high(X509_get_subject_name(&certificate));
+  return (digest_of(*X509_get_subject_name(&certificate)).front() & high_bit) != 0;
 }
 
 Validity validity_of(const X509& certificate) {

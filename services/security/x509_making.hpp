@@ -1,16 +1,24 @@
 // Keys (P-256), certificates and lists of revoked ones, as both DDS vendors take them. Any thread.
 //
 // The subject of a certificate is O=laboratory, OU=salt, CN=name. The salt is drawn until SHA-256
-// of the subject begins with the bit that its vendor needs (bus/participant_security.hpp).
+// of the subject begins with the bit that its vendor needs (bus/participant_security.hpp). The
+// serial number is 1 and the first 16 bytes of that digest, by which a list of revoked certificates
+// tells which participants are meant (revoked_participants.hpp).
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include <openssl/sha.h>
 
 #include "services/security/access_documents.hpp"
 #include "services/security/pem_file.hpp"
 
 namespace dyncal::inline security {
+
+using SubjectDigest = std::array<unsigned char, SHA256_DIGEST_LENGTH>;
 
 struct Applicant {
   std::string laboratory;
@@ -39,6 +47,10 @@ struct Applicant {
 [[nodiscard]] std::string subject_text(const X509& certificate);
 // One part of it: NID_commonName, NID_organizationName; empty if there is none.
 [[nodiscard]] std::string subject_part(const X509& certificate, int nid);
+// SHA-256 of a subject in DER.
+[[nodiscard]] SubjectDigest digest_of(const X509_NAME& subject);
+// As much of it as the serial number of a certificate has; nothing of one that was not made here.
+[[nodiscard]] std::optional<SubjectDigest> digest_in(const ASN1_INTEGER& serial_number);
 [[nodiscard]] bool has_high_subject(const X509& certificate);
 [[nodiscard]] Validity validity_of(const X509& certificate);
 // P-256, or RSA of at least 2048 bits: what both vendors take.

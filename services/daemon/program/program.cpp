@@ -3,9 +3,11 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <csignal>
 #include <ctime>
+#include <memory>
 #include <mutex>
 #include <thread>
 
@@ -16,6 +18,7 @@
 #include "services/base/printable_text.hpp"
 #include "services/security/identity_check.hpp"
 #include "services/security/identity_folder.hpp"
+#include "services/security/revoked_participants.hpp"
 
 namespace dyncal::inline daemon {
 namespace {
@@ -86,7 +89,11 @@ Expected<bus::Participant> join_network(const NetworkOptions& options, const std
     return bus::Participant::create(participant);
   }
   DYNCAL_TRY(require_identity(options.security, vendor, program, std::time(nullptr)));
-  return bus::create_secured_participant(participant, security_files(options.security, vendor));
+  const auto files = security_files(options.security, vendor);
+  const auto revoked = std::make_shared<RevokedParticipants>(files, participant.warn);
+  return bus::create_secured_participant(participant, files, [=](const bus::WriterId& writer) {
+    return revoked->hold(writer, std::chrono::steady_clock::now());
+  });
 }
 
 namespace {

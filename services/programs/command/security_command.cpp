@@ -106,8 +106,8 @@ Expected<void> run_revoke(const RevokeOptions& revoke) {
     DYNCAL_TRY(authority.revoke(name));
     fmt::print("{}: revoked\n", name);
   }
-  fmt::print("copy {}/{} into the folders of all programs, and restart them\n", revoke.folder,
-             revoked_file);
+  fmt::print("copy {}/{} into the folders of all programs, and restart them when you can\n",
+             revoke.folder, revoked_file);
   return {};
 }
 

@@ -1,5 +1,6 @@
 // Participants of a secured laboratory over two vendors: who is permitted finds the
 // others, and who is not is told why.
+#include <algorithm>
 #include <chrono>
 
 #include <gmock/gmock.h>
@@ -9,6 +10,8 @@
 #include "services/contract/topics.hpp"
 #include "services/security/identity_folder.hpp"
 #include "services/security/laboratory_authority.hpp"
+#include "services/security/pem_file.hpp"
+#include "services/security/revoked_participants.hpp"
 #include "tests/dds_domain.hpp"
 #include "tests/patience.hpp"
 #include "tests/temporary_folder.hpp"
@@ -56,11 +59,29 @@ protected:
     options.vendor = vendor;
     options.domain = tests::own_dds_domain();
     options.interface_name = "lo";
-    auto joined = bus::create_secured_participant(options, security_files(output, vendor));
+    const auto files = security_files(output, vendor);
+    certificate = files.certificate;
+    auto joined = bus::create_secured_participant(
+        options, files, [this](const bus::WriterId& writer) { return is_revoked(writer); });
     EXPECT_TRUE(joined) << joined.error().message;
     return std::move(*joined);
   }
 
+  bool is_revoked(const bus::WriterId& writer) {
+    const bool is_one = revoked && writer.is_known() &&
+                        std::equal(revoked->begin(), revoked->end(), writer.guid.begin());
+    passed_over += is_one ? 1 : 0;
+    return is_one;
+  }
+  [[nodiscard]] GuidStart guid_start() const {
+    const auto certificates = read_certificates(certificate);
+    EXPECT_TRUE(certificates);
+    return guid_start_of(*X509_get_subject_name(certificates->front().get()));
+  }
+
+  std::filesystem::path certificate; // of the last one
+  std::optional<GuidStart> revoked;
+  int passed_over = 0;
   tests::TemporaryFolder folder;
   std::optional<LaboratoryAuthority> authority;
   int folders = 0;
@@ -85,6 +106,37 @@ TEST_P(SecuredParticipants, FindEachOtherAndHandOverWhatWasWritten) {
     taken = reader->take([](const wire::SourceStatus& one) { EXPECT_EQ(one.source(), "dau"); });
   }
   EXPECT_EQ(taken, 1U);
+}
+
+TEST_P(SecuredParticipants, AreKnownByTheSubjectOfTheirCertificateAndLeftOutOnceItIsRevoked) {
+  auto source = participant(GetParam().writer, SecurityRole::source, {"acc-1"});
+  const GuidStart start = guid_start();
+  auto analysis = participant(GetParam().reader, SecurityRole::analysis, {});
+  const auto wake_up = std::make_shared<bus::WakeUp>();
+  auto reader = analysis.reader(bus::topics::source_status, "*", wake_up).value();
+  auto writer = source.writer(bus::topics::source_status, "acc-1").value();
+  int taken = 0;
+  const auto take_until = [&](const auto& is_over) {
+    const auto deadline = std::chrono::steady_clock::now() + tests::patience;
+    while (!is_over() && std::chrono::steady_clock::now() < deadline) {
+      wake_up->wait_until(std::chrono::steady_clock::now() + std::chrono::milliseconds(100));
+      reader.take_with_writer([&](const wire::SourceStatus&, const bus::WriterId& from) {
+        EXPECT_TRUE(std::equal(start.begin(), start.end(), from.guid.begin()));
+        ++taken;
+      });
+    }
+  };
+  wire::SourceStatus status;
+  status.bench() = "acc-1";
+  status.source() = "dau";
+  ASSERT_EQ(writer.write(status), bus::WriteOutcome::written);
+  take_until([&] { return taken > 0; });
+  EXPECT_EQ(taken, 1);
+  revoked = start;
+  ASSERT_EQ(writer.write(status), bus::WriteOutcome::written);
+  take_until([&] { return passed_over > 0; });
+  EXPECT_EQ(passed_over, 1);
+  EXPECT_EQ(taken, 1);
 }
 
 TEST_P(SecuredParticipants, AreRefusedWhatTheirPermissionsDoNotHaveWithTheReason) {
