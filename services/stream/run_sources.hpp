@@ -16,7 +16,7 @@
 #include <spdlog/spdlog.h>
 
 #include "services/base/error.hpp"
-#include "services/bus/bus.hpp"
+#include "services/daemon/program/daemon.hpp"
 #include "services/stream/source_service.hpp"
 #include "services/stream/supervised.hpp"
 
@@ -29,10 +29,12 @@ struct RunnableSource {
 };
 
 template <class Source>
-[[nodiscard]] Expected<void> run_sources(bus::Participant& participant,
-                                         std::vector<RunnableSource<Source>>& sources,
-                                         Supervisor& supervisor, const std::stop_token& stop) {
-  const auto service = SourceService::create(participant, supervised(supervisor, participant));
+[[nodiscard]] Expected<void> run_sources(Daemon& daemon,
+                                         std::vector<RunnableSource<Source>>& sources) {
+  const std::stop_token stop = daemon.stop();
+  const auto service = SourceService::create(
+      daemon.participant(),
+      supervised(daemon.supervisor(), daemon.participant(), !daemon.network.security.empty()));
   std::vector<std::shared_ptr<SourcePublisher>> publishers;
   for (RunnableSource<Source>& one : sources) {
     one.options.stop = stop;
@@ -41,7 +43,7 @@ template <class Source>
     spdlog::info("bench {}, source {}", one.options.bench, one.options.source);
   }
   service->start();
-  supervisor.serving();
+  daemon.supervisor().serving();
   std::vector<Expected<void>> outcomes(sources.size());
   {
     std::vector<std::jthread> threads;

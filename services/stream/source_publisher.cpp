@@ -88,7 +88,7 @@ void SourcePublisher::offer(RingEntry entry) {
 
 void SourcePublisher::take(drivers::SampleBlock block) {
   RingEntry whole = next_entry(std::move(block), std::nullopt);
-  for (drivers::SampleBlock& part : split(std::move(whole.block))) {
+  for (drivers::SampleBlock& part : split(std::move(whole.block), options_.max_block_bytes)) {
     offer({.block = std::move(part),
            .shot = std::nullopt,
            .session = whole.session,

@@ -30,6 +30,7 @@
 #include "services/contract/device_identity.hpp"
 #include "services/contract/source_kind.hpp"
 #include "services/stream/block_ring.hpp"
+#include "services/stream/block_split.hpp"
 
 namespace dyncal::bus {
 class WakeUp;
@@ -60,6 +61,7 @@ struct SourceOptions {
   WhenFull when_full = WhenFull::drop;
   std::stop_token stop = {}; // once requested, take() waits no longer: its block is lost
   std::uint64_t session = 0; // the first one; 0: a random number
+  std::size_t max_block_bytes = stream::max_block_bytes; // longer ones become several
 };
 
 enum class SourceStage { starting, streaming, ended, failed };

@@ -50,6 +50,7 @@ Expected<std::shared_ptr<SourcePublisher>> SourceService::add(SourceOptions sour
                                              "' twice: give each bench file its own bench name");
   }
   DYNCAL_TRY(join_bench(source.bench));
+  source.max_block_bytes = options_.max_block_bytes;
   auto publisher = std::make_shared<SourcePublisher>(std::move(source), wake_up_);
   auto kept = std::make_shared<RetransmissionBuffer>(options_.kept);
   DYNCAL_TRY(auto channel,

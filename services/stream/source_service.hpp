@@ -37,6 +37,7 @@ struct SourceServiceOptions {
   std::chrono::nanoseconds stop_limit =
       std::chrono::seconds(5); // for what is still in the rings when the service stops
   KeptLimits kept = {};        // of each source
+  std::size_t max_block_bytes = stream::max_block_bytes;
   // Called by the publishing thread at every turn of its loop, at least every status_interval.
   std::function<void()> turned = {};
   // Called by it with every status that it has published, and how many messages with samples the

@@ -9,10 +9,11 @@
 
 namespace dyncal::inline stream {
 
-// Both outlive the service.
-[[nodiscard]] inline SourceServiceOptions supervised(Supervisor& supervisor,
-                                                     const bus::Participant& participant) {
+// Both outlive the service. `is_secured`: the participant is.
+[[nodiscard]] inline SourceServiceOptions
+supervised(Supervisor& supervisor, const bus::Participant& participant, bool is_secured) {
   SourceServiceOptions options;
+  options.max_block_bytes = is_secured ? max_secured_block_bytes : max_block_bytes;
   options.software = supervisor.identity().software;
   options.turned = [&supervisor, &participant, refused = participant.refused_packets()] {
     supervisor.report_refused_packets(refused->count());

@@ -17,6 +17,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -25,6 +26,8 @@
 #include "services/bus/fastdds/screen/fragment_repairs.hpp"
 #include "services/bus/fastdds/screen/message_check.hpp"
 #include "services/bus/fastdds/screen/rtps_screen.hpp"
+#include "services/bus/fastdds/screen/split_message.hpp"
+#include "services/bus/qos_profiles.hpp"
 
 namespace dyncal::bus {
 namespace {
@@ -105,6 +108,9 @@ public:
             const std::chrono::steady_clock::time_point& timeout) override {
     if (!state_->listens || *destinations_begin == *destinations_end) {
       return true;
+    }
+    if (count > max_udp_payload_bytes) {
+      return send_split({bytes, count}, *below, *destinations_begin, *destinations_end, timeout);
     }
     const auto now = std::chrono::steady_clock::now();
     const auto due = due_heartbeats(now);
@@ -188,6 +194,25 @@ private:
         heartbeats_.sent(datagram, way, now);
       }
     }
+  }
+
+  // Of a secured participant, whose messages may be longer than a packet.
+  static bool send_split(std::span<const unsigned char> message, rtps::SenderResource& below,
+                         vendor::LocatorsIterator& begin, vendor::LocatorsIterator& end,
+                         const std::chrono::steady_clock::time_point& timeout) {
+    rtps::LocatorList_t destinations;
+    for (; begin != end; ++begin) {
+      destinations.push_back(*begin);
+    }
+    bool sent = true;
+    for (const auto& part : split_message(message, max_udp_payload_bytes)) {
+      vendor::Locators first(destinations.begin());
+      vendor::Locators last(destinations.end());
+      sent = below.send(part.data(), static_cast<std::uint32_t>(part.size()), &first, &last,
+                        timeout) &&
+             sent;
+    }
+    return sent;
   }
 
   static void send_to(const Way& way, const DiscoveryHeartbeats::Datagram& datagram,

@@ -45,7 +45,7 @@ Expected<Sources> prepare(const std::vector<BenchFile>& benches) {
 Expected<void> serve(const std::vector<BenchFile>& benches, Daemon& daemon) {
   DYNCAL_TRY(auto sources, prepare(benches));
   DYNCAL_TRY(daemon.join());
-  return run_sources(daemon.participant(), sources, daemon.supervisor(), daemon.stop());
+  return run_sources(daemon, sources);
 }
 
 } // namespace

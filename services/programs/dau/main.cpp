@@ -70,8 +70,9 @@ void report_sockets(const drivers::smartup::Receiver& receiver,
 Expected<void> serve(const std::vector<BenchFile>& benches, Daemon& daemon) {
   DYNCAL_TRY(const auto plan, plan_listening(benches));
   DYNCAL_TRY(daemon.join());
-  const auto service = SourceService::create(daemon.participant(),
-                                             supervised(daemon.supervisor(), daemon.participant()));
+  const auto service = SourceService::create(
+      daemon.participant(),
+      supervised(daemon.supervisor(), daemon.participant(), !daemon.network.security.empty()));
   DYNCAL_TRY(auto reception, open_reception(plan, *service));
   report_sockets(*reception.receiver, plan);
   service->start();

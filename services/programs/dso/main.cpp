@@ -19,8 +19,9 @@ using dyncal::fail;
 Expected<void> serve(const std::vector<BenchFile>& files, Daemon& daemon) {
   DYNCAL_TRY(daemon.join());
   const std::stop_token stop = daemon.stop();
-  const auto service = SourceService::create(daemon.participant(),
-                                             supervised(daemon.supervisor(), daemon.participant()));
+  const auto service = SourceService::create(
+      daemon.participant(),
+      supervised(daemon.supervisor(), daemon.participant(), !daemon.network.security.empty()));
   std::vector<std::unique_ptr<dso::TriggeredBench>> benches;
   for (const BenchFile& file : files) {
     DYNCAL_TRY(auto bench, dso::TriggeredBench::create(daemon.participant(), *service, file));

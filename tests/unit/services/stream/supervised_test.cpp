@@ -47,7 +47,8 @@ TEST_F(SupervisedTest, OffersWhatItHasSentAndLost) {
   const int port = tests::own_udp_port(); // no other test of this machine has its number
   const auto supervisor =
       std::move(*Supervisor::create(identity_, "127.0.0.1:" + std::to_string(port)));
-  const auto service = SourceService::create(participant_, supervised(*supervisor, participant_));
+  const auto service =
+      SourceService::create(participant_, supervised(*supervisor, participant_, false));
   const auto source = add(*service);
   service->start();
   for (std::uint64_t block = 0; block < 7; ++block) {
@@ -82,7 +83,8 @@ TEST_F(SupervisedTest, ShowsTheWatchdogThatItsLoopTurns) {
   tests::NotifySocket socket(folder.path().string(), std::chrono::seconds(1));
   const auto supervisor = std::move(*Supervisor::create(identity_, ""));
   supervisor->describe("bench acc");
-  const auto service = SourceService::create(participant_, supervised(*supervisor, participant_));
+  const auto service =
+      SourceService::create(participant_, supervised(*supervisor, participant_, false));
   const auto source = add(*service);
   supervisor->serving();
   EXPECT_EQ(socket.next(), "") << "its loop has not turned";
