@@ -142,6 +142,11 @@ TEST_P(WrongIdentity, SeesNothingAndIsNotSeenWithoutAny) {
   };
   EXPECT_THAT(list(lab_.folder_of("watcher")), HasSubstr(bench_name));
   EXPECT_THAT(list(""), Not(HasSubstr(bench_name)));
+  laboratory.start("dyncal-analysis", {}, GetParam());
+  ProgramRun& doctor = laboratory.start(
+      "dyncal", with_security({"doctor", "--seconds", "3"}, lab_.folder_of("watcher")), GetParam());
+  EXPECT_TRUE(doctor.wait(patience)) << doctor.errors();
+  EXPECT_THAT(doctor.output(), HasSubstr("1 program is here that this program may not talk to"));
 }
 
 INSTANTIATE_TEST_SUITE_P(EitherVendor, WrongIdentity, testing::Values("cyclonedds", "fastdds"),

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <set>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
@@ -18,6 +19,7 @@
 #include "services/daemon/program/bench_program.hpp"
 #include "services/programs/command/command.hpp"
 #include "services/programs/command/laboratory_look.hpp"
+#include "services/security/revoked_participants.hpp"
 
 namespace dyncal::inline programs {
 namespace {
@@ -48,10 +50,41 @@ Expected<std::optional<BenchFile>> read_bench(DoctorOptions& command) {
   return std::optional<BenchFile>(std::move(bench));
 }
 
+// Takes those out of the view that announce themselves and show nothing else, and returns how many:
+// a secured program has not authenticated them. Others would be looked for in the network.
+std::size_t take_out_strangers(const NetworkOptions& network, doctor::LaboratoryView& view) {
+  const auto start = own_guid_start(network.security, *bus::parse_vendor(network.dds));
+  const std::string own = start ? bus::hexadecimal(start->data(), start->size()) : "";
+  std::set<std::string> strangers = view.announced_by_multicast.value_or(std::set<std::string>());
+  for (const auto& participant : view.discovery.participants) {
+    strangers.insert(participant.id);
+  }
+  std::erase_if(strangers, [&](const std::string& id) { return id.starts_with(own); });
+  for (const auto& endpoint : view.discovery.endpoints) {
+    strangers.erase(endpoint.participant);
+  }
+  const auto is_strange = [&](const std::string& id) { return strangers.contains(id); };
+  std::erase_if(view.discovery.participants, [&](const auto& one) { return is_strange(one.id); });
+  if (view.announced_by_multicast) {
+    std::erase_if(*view.announced_by_multicast, is_strange);
+  }
+  return strangers.size();
+}
+
 // Nothing to say on a computer alone.
-Findings about_security(const NetworkOptions& network, const doctor::HostView& host) {
+Findings about_security(const NetworkOptions& network, std::size_t strangers,
+                        const doctor::HostView& host) {
   if (!network.security.empty()) {
-    return {{Severity::ok, "security", "encrypted, among programs of this laboratory alone"}};
+    Findings findings{
+        {Severity::ok, "security", "encrypted, among programs of this laboratory alone"}};
+    if (strangers > 0) {
+      findings.push_back(
+          {Severity::warning, "security",
+           fmt::format("{} {} here that this program may not talk to: without --security, of "
+                       "another authority or governance, expired or revoked",
+                       strangers, strangers == 1 ? "program is" : "programs are")});
+    }
+    return findings;
   }
   if (std::ranges::all_of(host.interfaces, &doctor::HostInterface::loopback)) {
     return {};
@@ -63,7 +96,8 @@ Findings about_security(const NetworkOptions& network, const doctor::HostView& h
 
 Findings judge(const LaboratoryLook& look, const NetworkOptions& network,
                const std::optional<BenchFile>& bench) {
-  const doctor::LaboratoryView& view = look.view;
+  doctor::LaboratoryView view = look.view;
+  const std::size_t strangers = network.security.empty() ? 0 : take_out_strangers(network, view);
   Findings findings = doctor::check_programs(view);
   if (!doctor::analysis_is_heard(view)) {
     findings.push_back(
@@ -76,7 +110,7 @@ Findings judge(const LaboratoryLook& look, const NetworkOptions& network,
   append(findings, look.about_multicast);
   append(findings, doctor::check_network(view));
   append(findings, doctor::check_loss(view));
-  append(findings, about_security(network, look.host));
+  append(findings, about_security(network, strangers, look.host));
   append(findings, doctor::check_host(look.host, view.domain));
   return findings;
 }
