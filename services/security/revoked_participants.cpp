@@ -95,8 +95,9 @@ void RevokedParticipants::tell(X509_CRL& revoked) const {
   X509_REVOKED* found = nullptr;
   const auto own = read_certificates(files_.certificate);
   if (own && X509_CRL_get0_by_cert(&revoked, &found, own->front().get()) == 1) {
-    warn_(fmt::format("{}: this program's own certificate is revoked: others take nothing from it",
+    warn_(fmt::format("{}: this program's own certificate is revoked, so it ends",
                       files_.certificate.string()));
+    end_();
   }
 }
 

@@ -41,9 +41,10 @@ public:
   using Instant = std::chrono::steady_clock::time_point;
   using Warn = std::function<void(const std::string&)>;
 
-  // `files` of the program's own folder.
-  RevokedParticipants(bus::SecurityFiles files, Warn warn)
-      : files_(std::move(files)), warn_(std::move(warn)) {}
+  // `files` of the program's own folder. `end` is called once its own certificate is revoked: what
+  // it goes on sending could take the place of others' messages in readers that keep one of a key.
+  RevokedParticipants(bus::SecurityFiles files, Warn warn, std::function<void()> end)
+      : files_(std::move(files)), warn_(std::move(warn)), end_(std::move(end)) {}
 
   // A writer that is not known counts as revoked as soon as anybody is: a program that was revoked
   // could end its writer before its message is taken. Others send again what matters.
@@ -56,6 +57,7 @@ private:
 
   const bus::SecurityFiles files_;
   const Warn warn_;
+  const std::function<void()> end_;
   std::mutex mutex_;
   Instant next_look_{};
   std::string last_text_;

@@ -90,7 +90,8 @@ Expected<bus::Participant> join_network(const NetworkOptions& options, const std
   }
   DYNCAL_TRY(require_identity(options.security, vendor, program, std::time(nullptr)));
   const auto files = security_files(options.security, vendor);
-  const auto revoked = std::make_shared<RevokedParticipants>(files, participant.warn);
+  const auto revoked = std::make_shared<RevokedParticipants>(files, participant.warn,
+                                                             [] { kill(getpid(), SIGTERM); });
   return bus::create_secured_participant(participant, files, [=](const bus::WriterId& writer) {
     return revoked->hold(writer, std::chrono::steady_clock::now());
   });

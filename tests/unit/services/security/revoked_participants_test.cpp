@@ -49,12 +49,14 @@ protected:
   }
   RevokedParticipants participants() {
     return {security_files(folder_.path() / "own", vendor_),
-            [this](const std::string& sentence) { warnings_.push_back(sentence); }};
+            [this](const std::string& sentence) { warnings_.push_back(sentence); },
+            [this] { has_ended_ = true; }};
   }
 
   tests::TemporaryFolder folder_;
   bus::Vendor vendor_ = bus::vendors_in_this_build().front();
   std::vector<std::string> warnings_;
+  bool has_ended_ = false;
   const RevokedParticipants::Instant begin_ = std::chrono::steady_clock::now();
 };
 
@@ -74,11 +76,13 @@ TEST_F(RevokedParticipantsTest, AreThoseOfTheListAsItIsNow) {
   EXPECT_FALSE(revoked.hold(own, begin_ + 2s));
   EXPECT_THAT(warnings_, ElementsAre(HasSubstr("has one of its 1 revoked certificates")));
 
+  EXPECT_FALSE(has_ended_);
   ASSERT_TRUE(lab.revoke("source-acc-1"));
   hand_out_list_of("lab");
   EXPECT_TRUE(revoked.hold(own, begin_ + 4s));
   ASSERT_EQ(warnings_.size(), 3U);
   EXPECT_THAT(warnings_.back(), HasSubstr("own certificate is revoked"));
+  EXPECT_TRUE(has_ended_);
 }
 
 TEST_F(RevokedParticipantsTest, StayWhenANewListIsNoneOfTheAuthority) {
