@@ -40,7 +40,10 @@ public:
       counts_[id].assign(submessage.begin(), submessage.end());
     }
   }
-  [[nodiscard]] std::vector<Datagram> parts() && { return std::move(parts_); }
+  // None where what is encrypted as one has no end.
+  [[nodiscard]] std::vector<Datagram> parts() && {
+    return together_.empty() ? std::move(parts_) : std::vector<Datagram>();
+  }
 
 private:
   void begin_part() {

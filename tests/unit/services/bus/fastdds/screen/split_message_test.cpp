@@ -66,6 +66,9 @@ TEST(SplitMessage, LeavesWholeWhatCannotBeSplit) {
   Datagram broken = joined({header(), submessage(data, 400), submessage(data, 400)});
   broken.resize(broken.size() - 8);
   EXPECT_THAT(split_message(broken, 600), ElementsAre(broken));
+  const Datagram endless = joined({header(), submessage(data, 400),
+                                   submessage(encrypted_prefix, 20), submessage(encrypted, 400)});
+  EXPECT_THAT(split_message(endless, 600), ElementsAre(endless));
   EXPECT_THAT(split_message(header(), 600), ElementsAre(header()));
 }
 
