@@ -1,0 +1,153 @@
+#!/usr/bin/env python3
+"""Renews a certificate and revokes another one while runs of a secured bench last.
+
+    rotation_campaign.py PROGRAMS [--vendors cyclonedds,fastdds,mixed]
+
+PROGRAMS is the folder of the built programs. Two analyses are there, each with a certificate of its
+own. In the first run the sources get a new folder in the place of the old one, and the certificate
+of the analysis that leads the run is revoked; the new list is put into all folders. Held is: the
+run is whole, by the other analysis, which is heard at most 10 s after the list was renewed; every
+program says once that there is a new list, and the revoked one ends. Then the sources
+are restarted with their new folder, the certificate of their old one is revoked as well, and a
+second run is whole, without a word of the analysis that was revoked.
+Exit status 1 if something did not hold.
+"""
+
+import argparse
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "faults"))
+from bench_laboratory import SERVICES, VENDORS, BenchLaboratory, Failure, wait_until  # noqa: E402
+
+HEARD_S = 10.0
+FREQUENCIES = [str(20 + 5 * number) for number in range(16)]
+ROLES = {
+    "dyncal-acs": "source",
+    "dyncal-dau": "source",
+    "dyncal-analysis": "analysis",
+    "dyncal-guard": "guard",
+    "dyncal": "operator",
+}
+OF_A_BENCH = ("source", "guard", "operator")
+NEW_LIST = "revoked.pem: a new list"
+STANDS_BY = "this service stands by"
+TAKES_OVER = ": taken over"
+
+
+class SecuredLaboratory(BenchLaboratory):
+    """A live bench, each program by the folder of its role."""
+
+    def __init__(self, programs, folder, vendors):
+        self.security = pathlib.Path(folder) / "security"
+        self.security.mkdir(parents=True)
+        self.call(programs, "init", self.security / "authority")
+        for role in sorted({*ROLES.values()}):
+            self.issue(programs, role, role)
+        self.issue(programs, "analysis", "other-analysis")
+        environments = {
+            program: {"DYNCAL_SECURITY": str(self.security / role)}
+            for program, role in ROLES.items()
+        }
+        super().__init__(
+            programs,
+            folder,
+            vendors,
+            frequencies=FREQUENCIES,
+            services=[one for one in SERVICES if one != "dyncal-analysis"],
+            environments=environments,
+        )
+
+    def call(self, programs, *arguments):
+        command = [str(pathlib.Path(programs) / "dyncal"), "security", *map(str, arguments)]
+        subprocess.run(command, check=True, capture_output=True)
+
+    def issue(self, programs, role, folder):
+        bench = ["--bench", "live"] if role in OF_A_BENCH else []
+        place = self.security / folder
+        self.call(
+            programs, "issue", self.security / "authority", role, *bench, "--output", place
+        )
+
+    def start_analysis(self, folder):
+        self.environments["dyncal-analysis"] = {"DYNCAL_SECURITY": str(self.security / folder)}
+        self.restart("dyncal-analysis")
+        return self.services["dyncal-analysis"]
+
+    def renew_sources(self):
+        self.issue(self.programs, "source", "source-new")
+        (self.security / "source").rename(self.security / "source-old")
+        (self.security / "source-new").rename(self.security / "source")
+
+    def revoke(self, name):
+        """Returns when the list stands in all folders."""
+        self.call(self.programs, "revoke", self.security / "authority", name)
+        for folder in self.security.iterdir():
+            if folder.name != "authority":
+                shutil.copyfile(self.security / "authority/revoked.pem", folder / "new.pem")
+                (folder / "new.pem").rename(folder / "revoked.pem")
+        return time.monotonic()
+
+
+def hold(condition, sentence):
+    if not condition:
+        raise Failure(sentence)
+
+
+def rotate(laboratory):
+    folders = {"analysis": "analysis", "other-analysis": "analysis-2"}
+    analyses = {laboratory.start_analysis(folder): name for folder, name in folders.items()}
+    run = laboratory.run("--run", "first")
+    wait_until(laboratory.output_is_on, "the output of the generator")
+    wait_until(lambda: any(STANDS_BY in one.errors() for one in analyses), "an analysis to lead")
+    other = next(one for one in analyses if STANDS_BY in one.errors())
+    revoked = next(one for one in analyses if one is not other)
+    laboratory.renew_sources()
+    renewed_s = laboratory.revoke(analyses[revoked])
+    other.wait_for_text(TAKES_OVER)
+    heard_s = time.monotonic() - renewed_s
+    hold(run.wait() == 0, f"the run ended with {run.process.returncode}: {run.errors()}")
+    laboratory.expect_whole_result()
+    hold(heard_s <= HEARD_S, f"the other analysis took over after {heard_s:.1f} s")
+    for one in [run, other, revoked, *laboratory.services.values()]:
+        hold(one.errors().count(NEW_LIST) <= 1, f"said more than once: {one.log}")
+    for one in (run, other, revoked):
+        hold(NEW_LIST in one.errors(), f"not said: {one.log}")
+    hold("own certificate is revoked" in revoked.errors(), f"not said: {revoked.log}")
+    hold(not revoked.runs(), f"has not ended: {revoked.log}")
+    for service in ("dyncal-dau", "dyncal-acs"):
+        laboratory.services[service].end()
+        laboratory.restart(service)
+    laboratory.revoke("source-live")
+    run = laboratory.run("--run", "second")
+    hold(run.wait() == 0, f"the second run ended with {run.process.returncode}: {run.errors()}")
+    laboratory.expect_whole_result()
+    hold(other.errors().count(": armed") == 1, f"the second run was not the other's: {other.log}")
+    return heard_s
+
+
+def main():
+    options = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
+    options.add_argument("programs")
+    options.add_argument("--vendors", default=",".join(VENDORS))
+    arguments = options.parse_args()
+    failed = 0
+    for vendors in arguments.vendors.split(","):
+        folder = pathlib.Path(tempfile.mkdtemp(prefix="dyncal-rotation-"))
+        try:
+            with SecuredLaboratory(arguments.programs, folder, vendors) as laboratory:
+                heard_s = rotate(laboratory)
+            print(f"{vendors}: held; the other analysis took over after {heard_s:.1f} s")
+            shutil.rmtree(folder)
+        except Failure as failure:
+            failed += 1
+            print(f"{vendors}: FAILED: {failure} (left in {folder})")
+    sys.exit(failed > 0)
+
+
+if __name__ == "__main__":
+    main()
