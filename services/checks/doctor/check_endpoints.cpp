@@ -1,7 +1,6 @@
 #include <fnmatch.h>
 
 #include <algorithm>
-#include <map>
 #include <set>
 
 #include <fmt/format.h>
@@ -9,6 +8,7 @@
 #include "services/bus/host_clocks/clock_messages.hpp"
 #include "services/checks/doctor/checks.hpp"
 #include "services/checks/doctor/laboratory_view.hpp"
+#include "services/checks/doctor/participant_text.hpp"
 #include "services/checks/doctor/qos_mismatch.hpp"
 #include "services/contract/topics.hpp"
 
@@ -44,23 +44,6 @@ bool share_a_partition(const DiscoveredEndpoint& writer, const DiscoveredEndpoin
   });
 }
 
-class Names {
-public:
-  explicit Names(const bus::Discovery& discovery) {
-    for (const bus::DiscoveredParticipant& one : discovery.participants) {
-      names_[one.id] = one.name.empty() ? "a program with " + one.vendor
-                                        : fmt::format("{} ({})", one.name, one.vendor);
-    }
-  }
-  [[nodiscard]] std::string of(const DiscoveredEndpoint& endpoint) const {
-    const auto found = names_.find(endpoint.participant);
-    return found == names_.end() ? "participant " + endpoint.participant : found->second;
-  }
-
-private:
-  std::map<std::string, std::string> names_;
-};
-
 std::string partition_text(const DiscoveredEndpoint& endpoint) {
   std::string text;
   for (const std::string& partition : endpoint.partitions) {
@@ -77,7 +60,8 @@ std::string mismatch(const DiscoveredEndpoint& writer, const DiscoveredEndpoint&
   return fmt::format("{}", fmt::join(qos_mismatches(writer, reader), ", and by their "));
 }
 
-Findings mismatches(const std::vector<DiscoveredEndpoint>& endpoints, const Names& names) {
+Findings mismatches(const LaboratoryView& view) {
+  const auto& endpoints = view.discovery.endpoints;
   std::set<std::string> sentences; // each once, however many endpoints a program has
   for (const DiscoveredEndpoint& writer : endpoints) {
     for (const DiscoveredEndpoint& reader : endpoints) {
@@ -88,7 +72,8 @@ Findings mismatches(const std::vector<DiscoveredEndpoint>& endpoints, const Name
       if (!why.empty()) {
         sentences.insert(fmt::format("topic {}: the writer of {} and the reader of {} do not match "
                                      "by their {}; use the QoS profile of idl/README.md",
-                                     writer.topic, names.of(writer), names.of(reader), why));
+                                     writer.topic, participant_text(view, writer.participant),
+                                     participant_text(view, reader.participant), why));
       }
     }
   }
@@ -100,8 +85,8 @@ Findings mismatches(const std::vector<DiscoveredEndpoint>& endpoints, const Name
 }
 
 // Endpoints in a partition that is no bench of this laboratory, where the other side is elsewhere.
-Findings lost_partitions(const std::vector<DiscoveredEndpoint>& endpoints,
-                         const std::set<std::string>& benches, const Names& names) {
+Findings lost_partitions(const LaboratoryView& view, const std::set<std::string>& benches) {
+  const auto& endpoints = view.discovery.endpoints;
   std::set<std::string> sentences;
   for (const DiscoveredEndpoint& endpoint : endpoints) {
     const bool known = std::ranges::any_of(endpoint.partitions, [&](const std::string& partition) {
@@ -124,8 +109,9 @@ Findings lost_partitions(const std::vector<DiscoveredEndpoint>& endpoints,
     const bool reads = endpoint.kind == EndpointKind::reader;
     sentences.insert(fmt::format(
         "topic {}: the {} of {} is in partition {}, where no {} is, but {} is in {}; {}",
-        endpoint.topic, reads ? "reader" : "writer", names.of(endpoint), partition_text(endpoint),
-        reads ? "writer" : "reader", names.of(*other), partition_text(*other),
+        endpoint.topic, reads ? "reader" : "writer", participant_text(view, endpoint.participant),
+        partition_text(endpoint), reads ? "writer" : "reader",
+        participant_text(view, other->participant), partition_text(*other),
         reads ? "ask for the name of the bench, or '*' for all"
               : "write in the partition of the bench"));
   }
@@ -155,13 +141,13 @@ Findings check_endpoints(const LaboratoryView& view, const std::vector<std::stri
   for (const auto& [key, source] : view.sources) {
     known.insert(key.first);
   }
-  const Names names(view.discovery);
-  const auto& endpoints = view.discovery.endpoints;
-  Findings findings = mismatches(endpoints, names);
-  append(findings, lost_partitions(endpoints, known, names));
+  Findings findings = mismatches(view);
+  append(findings, lost_partitions(view, known));
   if (findings.empty()) {
-    const auto of_contract = std::ranges::count_if(
-        endpoints, [](const DiscoveredEndpoint& one) { return is_of_the_contract(one.topic); });
+    const auto of_contract =
+        std::ranges::count_if(view.discovery.endpoints, [](const DiscoveredEndpoint& one) {
+          return is_of_the_contract(one.topic);
+        });
     findings.push_back({Severity::ok, "endpoints",
                         fmt::format("{} writers and readers of {} participants, none that should "
                                     "match and does not",

@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include "services/checks/doctor/announced_elsewhere.hpp"
 #include "services/checks/doctor/checks.hpp"
 #include "services/checks/doctor/laboratory_view.hpp"
+#include "services/checks/doctor/participant_text.hpp"
 #include "services/contract/bench_file_origin.hpp"
 
 namespace dyncal::inline checks::doctor {
@@ -31,6 +33,12 @@ std::string reason_of(const Source& source) {
   return source.message.empty() ? "" : ": " + source.message;
 }
 
+// A file is played, and a trigger comes, with a run.
+bool waits_for_a_run(const Source& source) {
+  return (source.description && source.description->driver == "file") ||
+         (source.kind && is_triggered(*source.kind));
+}
+
 Finding check_state(const SourceKey& key, const Source& source) {
   const std::string subject = "source " + name_of(key) + host_of(source);
   switch (source.state) {
@@ -38,6 +46,9 @@ Finding check_state(const SourceKey& key, const Source& source) {
     return {Severity::error, "sources",
             subject + " has described itself, but no status comes; does its service still run?"};
   case SourceState::starting:
+    if (waits_for_a_run(source)) {
+      return {Severity::ok, "sources", subject + " waits for a run" + reason_of(source)};
+    }
     return {Severity::warning, "sources",
             subject + " has received nothing yet" + reason_of(source)};
   case SourceState::running:
@@ -91,16 +102,23 @@ Findings check_losses(const SourceKey& key, const Source& source) {
   return findings;
 }
 
-Findings check_twins(const SourceKey& key, const Source& source) {
+Findings check_twins(const SourceKey& key, const Source& source, const LaboratoryView& view) {
   const bool take_turns = source.turns.twins();
   if (!take_turns && source.services.size() < 2) {
     return {};
   }
+  std::vector<std::string> who(source.services.begin(), source.services.end());
+  if (const auto senders = view.senders.find(key);
+      who.size() < 2 && senders != view.senders.end()) {
+    who.clear(); // the newest description alone has come
+    for (const std::string& id : senders->second) {
+      who.push_back(participant_text(view, id));
+    }
+  }
   return {{take_turns ? Severity::error : Severity::warning, "twins",
            fmt::format("two services publish source {}{}{}; end one of them, or give it another "
                        "name",
-                       name_of(key), source.services.empty() ? "" : ": ",
-                       fmt::join(source.services, " and "))}};
+                       name_of(key), who.empty() ? "" : ": ", fmt::join(who, " and "))}};
 }
 
 // Frequencies are held against half of the stated rate before a run.
@@ -126,10 +144,12 @@ Findings check_against(const BenchFile& bench, const LaboratoryView& view) {
     const SourceKey key{bench.bench, settings.name};
     const auto found = view.sources.find(key);
     if (found == view.sources.end()) {
+      const std::string elsewhere = announced_elsewhere(view);
       findings.push_back({Severity::error, "bench file",
                           fmt::format("source {} of {} is not on the network; is its service "
-                                      "running with this bench file, in DDS domain {}?",
-                                      name_of(key), bench.path.string(), view.domain)});
+                                      "running with this bench file, in DDS domain {}?{}{}",
+                                      name_of(key), bench.path.string(), view.domain,
+                                      elsewhere.empty() ? "" : " ", elsewhere)});
       continue;
     }
     append(findings, check_rate(key, found->second, settings));
@@ -183,8 +203,9 @@ Findings check_sources(const LaboratoryView& view, const std::optional<BenchFile
   for (const auto& [key, source] : view.sources) {
     findings.push_back(check_state(key, source));
     append(losses, check_losses(key, source));
-    append(losses, check_twins(key, source));
+    append(losses, check_twins(key, source, view));
   }
+  append(losses, check_writers(view));
   if (findings.empty()) {
     findings.push_back({Severity::warning, "sources", "no source is there"});
   } else if (losses.empty()) {

@@ -22,6 +22,9 @@ struct LaboratoryView;
 [[nodiscard]] Findings check_sources(const LaboratoryView& view,
                                      const std::optional<BenchFile>& bench);
 
+// Programs that write samples on a bench and describe no source there. Nothing where none does.
+[[nodiscard]] Findings check_writers(const LaboratoryView& view);
+
 // The guards of exciters: whether one is there that has the address of the generator of `bench`,
 // if one is given, and whether an output may be on that a guard cannot switch off.
 [[nodiscard]] Findings check_guards(const LaboratoryView& view,

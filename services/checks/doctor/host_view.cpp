@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstring>
 #include <fstream>
 #include <iterator>
@@ -19,6 +20,7 @@
 #include "drivers/link/file_descriptor.hpp"
 #include "services/bus/host_network.hpp"
 #include "services/bus/qos_profiles.hpp"
+#include "services/checks/doctor/dds_variables.hpp"
 
 namespace dyncal::inline checks::doctor {
 namespace {
@@ -110,6 +112,14 @@ std::vector<std::string> interfaces_without_ipv4() {
   return without;
 }
 
+int prefix_bits_of(const sockaddr* netmask) {
+  sockaddr_in mask{};
+  if (netmask != nullptr) {
+    std::memcpy(&mask, netmask, sizeof(mask));
+  }
+  return std::popcount(mask.sin_addr.s_addr);
+}
+
 std::vector<HostInterface> interfaces_of_host() {
   std::vector<HostInterface> interfaces;
   ifaddrs* list = nullptr;
@@ -129,6 +139,7 @@ std::vector<HostInterface> interfaces_of_host() {
                           .address = text.data(),
                           .mtu = mtu_of(one->ifa_name),
                           .loopback = (one->ifa_flags & IFF_LOOPBACK) != 0,
+                          .prefix_bits = prefix_bits_of(one->ifa_netmask),
                           .multicast = (one->ifa_flags & IFF_MULTICAST) != 0,
                           .reaches_itself = reaches(text.data())});
   }
@@ -183,6 +194,7 @@ HostView look_at_host(const std::filesystem::path& output_folder) {
   HostView view;
   view.receive_buffer_bytes = bus::granted_receive_buffer(bus::wanted_receive_buffer_bytes);
   view.interfaces = interfaces_of_host();
+  view.dds_variables = dds_variables();
   view.without_ipv4 = interfaces_without_ipv4();
   view.link_changes_before = link_changes();
   view.queues_before = send_queues();

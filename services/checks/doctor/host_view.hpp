@@ -21,6 +21,7 @@ struct HostInterface {
   std::string address; // IPv4
   int mtu = 0;
   bool loopback = false;
+  int prefix_bits = 0;        // of its subnet
   bool multicast = false;     // the interface says that it can
   bool reaches_itself = true; // a datagram from one socket of this host to another, by its address
 };
@@ -42,6 +43,8 @@ struct HostView {
   std::map<std::string, SendQueue> queues_after;
   // Addresses that announcements came from, and no answer; where nothing came, those of peers.
   std::map<std::string, TriedHost> tried;
+  std::string used_address{}; // of the one interface that this program uses; empty: of all
+  std::map<std::string, std::string> dds_variables{}; // of check_variables(), that are set
   std::optional<bool> multicast_loops; // a datagram to a group comes back; nothing: not tried
   std::optional<UdpCounters> udp_before;
   std::optional<UdpCounters> udp_after;

@@ -13,6 +13,7 @@
 #include "services/bus/discovery.hpp"
 #include "services/bus/host_clocks/clock_asker.hpp"
 #include "services/bus/host_clocks/link_meter.hpp"
+#include "services/checks/doctor/announcement_listener.hpp"
 #include "services/network/bench.hpp"
 
 namespace dyncal::inline checks::doctor {
@@ -24,6 +25,7 @@ struct LaboratoryView {
   double seconds = 0.0; // for which was looked
   ProgramIdentity own;  // the doctor
   std::map<Key, network::Source> sources;
+  std::map<Key, std::set<std::string>> senders; // participants that a source's statuses came from
   std::map<std::string, network::Service> analyses; // by their names
   std::map<Key, network::Service> guards;
   std::vector<DiscoveredProgram> programs; // that answer
@@ -33,6 +35,9 @@ struct LaboratoryView {
   // Participants whose multicast announcements came; nothing: it could not be listened for.
   std::optional<std::set<std::string>> announced_by_multicast;
   std::set<std::string> announced_from; // addresses that those came from
+  // Of other domains, and of this one by interfaces that this program does not use.
+  std::vector<Announcement> announced_elsewhere;
+  std::map<std::string, std::string> addresses; // of participants that announced themselves
   std::uint64_t malformed_messages = 0;
 };
 

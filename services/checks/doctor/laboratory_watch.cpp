@@ -35,15 +35,28 @@ void LaboratoryWatch::work() {
               std::min({clock_.now() + max_wait, asker_.next_request(), meter_.next_probe()}));
   const auto feed = [this](const auto& message) { state_.take(message); };
   readers_.descriptions.take(feed);
-  readers_.statuses.take(feed);
+  readers_.statuses.take_with_writer(
+      [this](const auto& status, const bus::WriterId& writer) { take(status, writer); });
   readers_.services.take(feed);
   asker_.work();
   meter_.work(asker_.program_count()); // an answer's echoes came before it
 }
 
+void LaboratoryWatch::take(const wire::SourceStatus& status, const bus::WriterId& writer) {
+  state_.take(status);
+  const LaboratoryView::Key key{status.bench().to_string(), status.source().to_string()};
+  if (!senders_.contains(key) && senders_.size() >= limits.sources) {
+    return;
+  }
+  if (auto& senders = senders_[key]; writer.is_known() && senders.size() < max_senders) {
+    senders.insert(writer.participant());
+  }
+}
+
 LaboratoryView LaboratoryWatch::view() const {
   LaboratoryView view;
   view.own = own_;
+  view.senders = senders_;
   for (const auto& [name, bench] : state_.benches()) {
     for (const auto& [source_name, source] : bench.sources) {
       view.sources.emplace(std::pair(name, source_name), source);

@@ -2,7 +2,9 @@
 // clock and sends it probes, and writes nothing else. Belongs to one thread.
 #pragma once
 
+#include <map>
 #include <memory>
+#include <set>
 #include <string>
 
 #include "services/base/error.hpp"
@@ -27,7 +29,10 @@ public:
   [[nodiscard]] LaboratoryView view() const;
 
 private:
+  void take(const wire::SourceStatus& status, const bus::WriterId& writer);
+
   // Nothing of a laboratory is left out, however large.
+  static constexpr std::size_t max_senders = 8; // of a source
   static constexpr network::Limits limits{.benches = 1024, .sources = 1024, .services = 1024};
 
   struct Readers {
@@ -49,6 +54,7 @@ private:
   network::BusState state_;
   ClockAsker asker_;
   LinkMeter meter_;
+  std::map<LaboratoryView::Key, std::set<std::string>> senders_;
   ProgramIdentity own_;
 };
 

@@ -6,6 +6,7 @@
 #include <sys/socket.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <optional>
@@ -62,6 +63,16 @@ void take_answers(std::vector<Trial>& trials, std::chrono::milliseconds wait) {
   }
 }
 
+std::string own_address(int connection) {
+  sockaddr_in address{};
+  socklen_t size = sizeof(address);
+  std::array<char, INET_ADDRSTRLEN> text{};
+  return getsockname(connection, reinterpret_cast<sockaddr*>(&address), &size) == 0 &&
+                 inet_ntop(AF_INET, &address.sin_addr, text.data(), text.size()) != nullptr
+             ? text.data()
+             : "";
+}
+
 void begin(const sockaddr_in& place, TriedHost& host, std::vector<Trial>& trials) {
   drivers::FileDescriptor connection(
       socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
@@ -72,11 +83,13 @@ void begin(const sockaddr_in& place, TriedHost& host, std::vector<Trial>& trials
   ++host.begun;
   const int done =
       connect(connection.number(), reinterpret_cast<const sockaddr*>(&place), sizeof(place));
-  if (done == 0 || errno == ECONNREFUSED) {
+  const int error = done == 0 ? 0 : errno;
+  host.own_address = own_address(connection.number());
+  if (error == 0 || error == ECONNREFUSED) {
     ++host.in_time;
-  } else if (errno == EINPROGRESS) {
+  } else if (error == EINPROGRESS) {
     trials.push_back({std::move(connection), &host, begun});
-  } else if (errno == ENETUNREACH) {
+  } else if (error == ENETUNREACH) {
     host.has_no_route = true;
   }
 }

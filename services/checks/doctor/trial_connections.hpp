@@ -23,6 +23,7 @@ struct TriedHost { // connections
   unsigned in_time = 0;
   unsigned late = 0;         // answered, but not in time
   bool has_no_route = false; // this host does not know by which interface it is reached
+  std::string own_address{}; // by which this host reaches it
 
   // 0 to 1; how much of what was begun was not answered in time.
   [[nodiscard]] double missed_part() const {

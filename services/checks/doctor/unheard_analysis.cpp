@@ -1,9 +1,13 @@
 #include "services/checks/doctor/unheard_analysis.hpp"
 
+#include <arpa/inet.h>
+
 #include <algorithm>
 #include <set>
 
 #include <fmt/format.h>
+
+#include "services/checks/doctor/announced_elsewhere.hpp"
 
 namespace dyncal::inline checks::doctor {
 namespace {
@@ -101,21 +105,53 @@ std::string about_bad_link(const HostView& host) {
   return "";
 }
 
+bool is_in_a_subnet(const std::string& address, const HostView& host) {
+  in_addr other{};
+  inet_pton(AF_INET, address.c_str(), &other);
+  return std::ranges::any_of(host.interfaces, [&](const HostInterface& one) {
+    in_addr own{};
+    inet_pton(AF_INET, one.address.c_str(), &own);
+    const std::uint64_t differing = ntohl(own.s_addr) ^ ntohl(other.s_addr);
+    return (differing >> (32 - one.prefix_bits)) == 0;
+  });
+}
+
+// Why what this host sends to one that was tried takes another way, or none; empty if it need not.
+std::string about_way(const LaboratoryView& view, const HostView& host) {
+  for (const auto& [address, tried] : host.tried) {
+    if (tried.has_no_route) {
+      return fmt::format("this host has no route to {0}: give both addresses of one network, or a "
+                         "route (`ip route get {0}`)",
+                         address);
+    }
+    if (!host.used_address.empty() && !tried.own_address.empty() &&
+        tried.own_address != host.used_address) {
+      return fmt::format("{} is reached by {}, and this program uses {} alone: another --interface",
+                         address, tried.own_address, host.used_address);
+    }
+    if (tried.in_time + tried.late == 0 && view.announced_from.contains(address) &&
+        !is_in_a_subnet(address, host)) {
+      return fmt::format("{0} is at this network, but of another subnet than this host: give both "
+                         "addresses of one subnet, or a route (`ip route get {0}`)",
+                         address);
+    }
+  }
+  return "";
+}
+
 // Why packets of hosts come, but no answer.
-std::string about_no_answer(const HostView& host) {
+std::string about_no_answer(const LaboratoryView& view, const HostView& host) {
   if (std::string bad = about_bad_link(host); !bad.empty()) {
     return bad;
+  }
+  if (std::string way = about_way(view, host); !way.empty()) {
+    return way;
   }
   if (host.tried.empty()) {
     return "what this host sends does not arrive there (a firewall, a way that is cut in one "
            "direction, or a link that is overloaded)";
   }
   for (const auto& [address, tried] : host.tried) {
-    if (tried.has_no_route) {
-      return fmt::format("this host has no route to {}: give both addresses of one network, or a "
-                         "route (`ip route get {}`)",
-                         address, address);
-    }
     if (tried.in_time == 0) {
       return fmt::format("what this host sends does not arrive there, or nothing comes back; not "
                          "one of {} trial connections to {} was answered: a firewall, or a way "
@@ -140,26 +176,34 @@ std::string about_others(const LaboratoryView& view, const HostView& host) {
            "was interrupted or overloaded";
   }
   const std::set<std::string> hosts = announcing_hosts(view, host);
+  const std::string elsewhere = announced_elsewhere(view);
+  if (view.programs.empty() && hosts.empty() && !elsewhere.empty()) {
+    return fmt::format("nothing answers in DDS domain {}: {}", view.domain, elsewhere);
+  }
   const std::string where = hosts.empty() ? "" : fmt::format(" from {}", fmt::join(hosts, ", "));
   if (is_found(view, analysis_program) || (view.programs.empty() && !hosts.empty())) {
     return fmt::format("announcements come{}{}, but no answer: {}", where,
                        is_found(view, analysis_program) ? ", of a dyncal-analysis too" : "",
-                       about_no_answer(host));
+                       about_no_answer(view, host));
   }
   if (!view.programs.empty()) {
     std::set<std::string> names;
     for (const DiscoveredProgram& one : view.programs) {
       names.insert(fmt::format("{} on {}", one.identity.program, one.identity.host));
     }
-    return fmt::format("{} answer{}, but no dyncal-analysis is among them: start one",
-                       fmt::join(names, ", "), names.size() == 1 ? "s" : "");
+    return fmt::format("{} answer{}, but no dyncal-analysis is among them: {}",
+                       fmt::join(names, ", "), names.size() == 1 ? "s" : "",
+                       elsewhere.empty() ? "start one" : elsewhere);
   }
-  const std::string bad = about_bad_link(host); // to a peer that was named
+  std::string cause = about_way(view, host); // to a peer that was named
+  if (cause.empty()) {
+    cause = about_bad_link(host);
+  }
   return fmt::format("nothing is heard in DDS domain {}{}: {}", view.domain,
                      view.announced_by_multicast ? ", by multicast neither" : "",
-                     bad.empty() ? "where the network carries no multicast, each program needs "
-                                   "--peer with the address of the others"
-                                 : bad);
+                     cause.empty() ? "where the network carries no multicast, each program needs "
+                                     "--peer with the address of the others"
+                                   : cause);
 }
 
 } // namespace

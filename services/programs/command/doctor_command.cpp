@@ -13,6 +13,7 @@
 
 #include "services/base/json_text.hpp"
 #include "services/checks/doctor/checks.hpp"
+#include "services/checks/doctor/dds_variables.hpp"
 #include "services/checks/doctor/laboratory_view.hpp"
 #include "services/checks/doctor/report.hpp"
 #include "services/checks/doctor/unheard_analysis.hpp"
@@ -111,6 +112,7 @@ Findings judge(const LaboratoryLook& look, const NetworkOptions& network,
   append(findings, doctor::check_network(view));
   append(findings, doctor::check_loss(view));
   append(findings, about_security(network, strangers, look.host));
+  append(findings, doctor::check_variables(view, look.host));
   append(findings, doctor::check_host(look.host, view.domain));
   return findings;
 }

@@ -1,6 +1,8 @@
 #include "services/programs/command/laboratory_look.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <iterator>
 
 #include "services/base/version.hpp"
 #include "services/bus/host_clocks/clock_messages.hpp"
@@ -26,26 +28,41 @@ doctor::LaboratoryView look(doctor::LaboratoryWatch& watch, doctor::Announcement
   }
   doctor::LaboratoryView view = watch.view();
   view.seconds = passed_s();
-  if (listener != nullptr) {
-    view.announced_by_multicast = listener->heard();
-    view.announced_from = listener->heard_from();
-  }
   return view;
 }
 
+// `interface`: the one that this program uses; empty: all.
+void add_announcements(const std::vector<doctor::Announcement>& heard, const std::string& interface,
+                       doctor::LaboratoryView& view) {
+  view.announced_by_multicast.emplace();
+  const auto is_here = [&](const doctor::Announcement& one) {
+    return one.domain == view.domain && (interface.empty() || one.interface == interface);
+  };
+  for (const doctor::Announcement& one : heard) {
+    if (is_here(one)) {
+      view.announced_by_multicast->insert(one.participant);
+      view.announced_from.insert(one.address);
+      view.addresses[one.participant] = one.address;
+    }
+  }
+  std::ranges::copy_if(
+      heard, std::back_inserter(view.announced_elsewhere), [&](const doctor::Announcement& one) {
+        return !is_here(one) && !view.announced_by_multicast->contains(one.participant);
+      });
+}
+
+std::string interface_with(const std::string& address, const doctor::HostView& host) {
+  const auto found = std::ranges::find(host.interfaces, address, &doctor::HostInterface::address);
+  return found == host.interfaces.end() ? "" : found->name;
+}
+
 // Null where multicast is not to be used, or cannot be; then a finding says so.
-std::optional<doctor::AnnouncementListener> open_listener(const NetworkOptions& network,
-                                                          Findings& findings) {
-  if (network.no_multicast) {
+std::optional<doctor::AnnouncementListener>
+open_listener(const NetworkOptions& network, const std::string& address, Findings& findings) {
+  if (network.no_multicast || address.starts_with("127.")) { // nothing is sent by multicast there
     return std::nullopt;
   }
-  const auto address = network.interface_name.empty()
-                           ? Expected<std::string>(std::string())
-                           : bus::interface_address(network.interface_name);
-  if (address && address->starts_with("127.")) {
-    return std::nullopt; // nothing is sent by multicast there
-  }
-  auto listener = doctor::AnnouncementListener::open(network.domain, address ? *address : "");
+  auto listener = doctor::AnnouncementListener::open(network.domain);
   if (!listener) {
     findings.push_back({Severity::warning, "multicast", listener.error().message});
     return std::nullopt;
@@ -72,14 +89,22 @@ Expected<void> look_at_laboratory(const NetworkOptions& network, double seconds,
   DYNCAL_TRY(auto participant, join_network(network, "dyncal-doctor", {.watch_discovery = true}));
   const auto own = this_program("dyncal-doctor", software_version(), network.dds);
   DYNCAL_TRY(auto watch, doctor::LaboratoryWatch::open(participant, own, bus::system_clock()));
+  std::string address;
+  if (!network.interface_name.empty()) {
+    DYNCAL_TRY(address, bus::interface_address(network.interface_name));
+  }
   LaboratoryLook found;
-  auto listener = open_listener(network, found.about_multicast);
+  auto listener = open_listener(network, address, found.about_multicast);
   found.host = doctor::look_at_host(".");
+  found.host.used_address = address;
   found.view = look(*watch, listener ? &*listener : nullptr, seconds, stop);
   found.host.udp_after = doctor::udp_counters();
   found.host.link_changes_after = doctor::link_changes();
   found.host.queues_after = doctor::send_queues();
   found.view.domain = network.domain;
+  if (listener) {
+    add_announcements(listener->heard(), interface_with(address, found.host), found.view);
+  }
   if (!doctor::analysis_is_heard(found.view)) {
     found.host.tried = doctor::try_hosts(silent_hosts(found, network), stop);
   }

@@ -54,6 +54,17 @@ TEST_F(CheckEndpoints, FindsNothingWhereTheyMatch) {
   EXPECT_THAT(findings[0].sentence, HasSubstr("2 writers and readers of 2 participants"));
 }
 
+TEST_F(CheckEndpoints, NamesWhoWritesSamplesAndDescribesNoSource) {
+  view_.addresses[source_id] = "10.98.0.1";
+  view_.discovery.endpoints = {writer_, reader_};
+  EXPECT_THAT(problems(check_writers(view_)),
+              ElementsAre(HasSubstr("dyncal-acs (Cyclone DDS, 10.98.0.1) writes samples of bench "
+                                    "acc-1 (topic AcsSamples) and describes no source")));
+  writer_.topic = "SourceDescription";
+  view_.discovery.endpoints.push_back(writer_);
+  EXPECT_THAT(check_writers(view_), IsEmpty());
+}
+
 TEST_F(CheckEndpoints, NamesReliability) {
   writer_.reliable = false;
   EXPECT_THAT(

@@ -104,6 +104,25 @@ TEST_F(CheckSources, NamesTwinsAndWhereTheyAre) {
                           "one of them, or give it another name"));
 }
 
+TEST_F(CheckSources, NamesTheHostsOfTwinsOfWhichOneDescriptionCame) {
+  for (const std::uint64_t session : {1, 2, 1, 2, 1}) {
+    dau().turns.add(session);
+  }
+  view_.senders[{"acc-1", "dau"}] = {"0110", "010f"};
+  view_.discovery.participants = {{"0110", "dyncal-dau", "Cyclone DDS"},
+                                  {"010f", "dyncal-dau", "Fast DDS"}};
+  view_.addresses = {{"0110", "10.98.0.1"}, {"010f", "10.98.0.2"}};
+  EXPECT_THAT(problems(check()), ElementsAre(HasSubstr("dyncal-dau (Fast DDS, 10.98.0.2) and "
+                                                       "dyncal-dau (Cyclone DDS, 10.98.0.1)")));
+}
+
+TEST_F(CheckSources, LetsAFileWaitForItsRun) {
+  dau().state = network::SourceState::starting;
+  EXPECT_THAT(warnings(check()), ElementsAre(HasSubstr("has received nothing yet")));
+  dau().description.emplace().driver = "file";
+  EXPECT_THAT(warnings(check()), IsEmpty());
+}
+
 TEST_F(CheckSources, ComparesWithTheBenchFile) {
   EXPECT_THAT(problems(check(bench_file("sensor = \"1\"\n"))), IsEmpty());
   EXPECT_THAT(problems(check(bench_file("sensor = \"2\"\n"))),

@@ -96,6 +96,41 @@ TEST_F(UnheardAnalysis, JudgesEachHostByItself) {
               AllOf(HasSubstr("trial connections to 10.98.0.2"), Not(HasSubstr("overloaded"))));
 }
 
+TEST_F(UnheardAnalysis, NamesTheDomainThatProgramsAreIn) {
+  view_.announced_elsewhere = {{9, "0110", "dyncal-analysis", "10.98.0.1", "lab"},
+                               {0, "010f", "", "10.98.0.9", "lab"}}; // no program of dyncal
+  EXPECT_THAT(why(), AllOf(HasSubstr("dyncal-analysis announces itself in DDS domain 9, from "
+                                     "10.98.0.1: give --domain 9"),
+                           Not(HasSubstr("10.98.0.9"))));
+  answer("dyncal-dau");
+  EXPECT_THAT(why(), HasSubstr("no dyncal-analysis is among them: dyncal-analysis announces"));
+}
+
+TEST_F(UnheardAnalysis, NamesTheInterfaceThatProgramsAreAt) {
+  view_.announced_elsewhere = {{7, "0110", "dyncal-analysis", "10.99.0.1", "other"}};
+  EXPECT_THAT(why(), HasSubstr("on the network of interface other, from 10.99.0.1, and this "
+                               "program uses another one: give --interface other"));
+}
+
+TEST_F(UnheardAnalysis, NamesAnInterfaceThatDoesNotLeadToAPeer) {
+  host_.used_address = "10.98.0.3";
+  host_.tried["10.99.0.1"] = {.begun = 40, .in_time = 40, .own_address = "10.99.0.3"};
+  EXPECT_THAT(why(), HasSubstr("10.99.0.1 is reached by 10.99.0.3, and this program uses "
+                               "10.98.0.3 alone"));
+  host_.used_address = "10.99.0.3";
+  EXPECT_THAT(why(), Not(HasSubstr("is reached by")));
+}
+
+TEST_F(UnheardAnalysis, NamesAnotherSubnet) {
+  host_.interfaces[0].prefix_bits = 8;
+  host_.interfaces[1].prefix_bits = 24;
+  view_.announced_from.insert("10.97.0.1");
+  host_.tried["10.97.0.1"] = {.begun = 40};
+  EXPECT_THAT(why(), HasSubstr("10.97.0.1 is at this network, but of another subnet"));
+  host_.interfaces[1].prefix_bits = 8;
+  EXPECT_THAT(why(), AllOf(Not(HasSubstr("subnet")), HasSubstr("firewall")));
+}
+
 TEST_F(UnheardAnalysis, TellsAFullQueueOfThisHost) {
   host_.queues_before = {{"lab", {1000, 10}}, {"lo", {0, 0}}};
   host_.queues_after = {{"lab", {1300, 710}}, {"lo", {0, 0}}};
