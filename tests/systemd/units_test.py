@@ -7,7 +7,8 @@ A host of its own (systemd_host.py) has dyncal installed as deploy/README.md say
 /etc/dyncal and its services as units; the instruments are a virtual bench. Held: `systemctl start`
 returns when the service serves; a run is whole with the recorder and the page beside it; a service
 that is killed in a run, or hangs, is started again by systemd and the run is whole; an invalid
-option is not tried again; stopping ends each with success. Exit status 77 and one line where such a
+option is not tried again; a run of a person in the group `dyncal` is read by it, one of another by
+nobody else; stopping ends each with success. Exit status 77 and one line where such a
 host cannot be made.
 """
 
@@ -22,6 +23,7 @@ from systemd_host import SystemdHost, why_not  # finds bench_laboratory, too
 
 from bench_laboratory import BenchLaboratory, Failure, wait_until  # isort: skip
 
+SYSTEM_USER = pathlib.Path(__file__).parents[2] / "deploy/debian/dyncal-daemons.sysusers"
 BENCH = "live"
 ANALYSIS = "dyncal-analysis"
 SOURCES = [f"dyncal-dau@{BENCH}", f"dyncal-acs@{BENCH}"]
@@ -129,6 +131,34 @@ def late_bench_file_is_found(host, laboratory):
     host.systemctl("start", f"dyncal-acs@{BENCH}")
 
 
+def run_of_a_person_is_for_the_group(host, domain):
+    """Who belongs to the group `dyncal` shares runs with the services, and with nobody else."""
+    for unit in SERVICES:
+        found = (host.show(unit, "Group"), host.show(unit, "UMask"))
+        if found != ("dyncal", "0027"):
+            raise Failure(f"{unit} has group and umask {found}")
+    for person, groups, readable in (("ada", "dyncal", True), ("eve", "", False)):
+        runs = f"/srv/{person}"
+        host.call("useradd", *(["--groups", groups] if groups else []), person)
+        host.call("install", "-d", "-o", person, "-m", "755", runs)
+        as_person = ["setpriv", "--reuid", person, "--regid", person, "--init-groups"]
+        words = ["dyncal", "run", f"/etc/dyncal/{BENCH}.toml", "--folder", f"{runs}/kept"]
+        words += ["--domain", domain, "--interface", "lo"]
+        run = host.call(*as_person, "env", "--chdir", runs, *words)
+        if run.returncode != 0:
+            raise Failure(f"dyncal run of {person} ends with {run.returncode}: {run.stderr[-500:]}")
+        found = host.call("find", runs, "-name", "result.json").stdout.strip()
+        reads = {
+            group: host.call(
+                "setpriv", "--reuid", 4711, "--regid", group, "--clear-groups", "test", "-r", found
+            ).returncode
+            == 0
+            for group in ("dyncal", "4711")
+        }
+        if not found or reads != {"dyncal": readable, "4711": False}:
+            raise Failure(f"the result of {person}, '{found}', is read by {reads}")
+
+
 def stop(host):
     for unit in SERVICES:
         host.systemctl("stop", unit)
@@ -138,6 +168,8 @@ def stop(host):
 
 
 def test_units(host, domain):
+    host.write("etc/sysusers.d/dyncal.conf", SYSTEM_USER.read_text(encoding="utf-8"))
+    host.call("systemd-sysusers")
     with_loopback = f"DYNCAL_OPTIONS=--domain {domain} --interface lo\n"
     host.write("etc/dyncal/options", with_loopback)
     host.write(f"etc/systemd/system/{ANALYSIS}.service.d/impatient.conf", IMPATIENT)
@@ -162,6 +194,7 @@ def test_units(host, domain):
                 lambda: is_restarted_in_a_run(host, laboratory, ANALYSIS, signal.SIGSTOP, 30.0),
             ),
             ("an invalid option", lambda: invalid_option_is_not_tried_again(host)),
+            ("a person's run", lambda: run_of_a_person_is_for_the_group(host, domain)),
             ("a bench file that comes late", lambda: late_bench_file_is_found(host, laboratory)),
             ("stopped", lambda: stop(host)),
         )

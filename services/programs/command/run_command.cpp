@@ -23,6 +23,7 @@
 #include "services/programs/command/laboratory_look.hpp"
 #include "services/programs/command/progress_line.hpp"
 #include "services/programs/command/run_again.hpp"
+#include "services/records/run_folder/folder_access.hpp"
 #include "services/records/run_folder/run_folder.hpp"
 #include "services/run/bench_queue.hpp"
 #include "services/run/guard_watch.hpp"
@@ -274,6 +275,7 @@ Expected<void> check_bench(const BenchFile& bench) {
 } // namespace
 
 Expected<RunOutcome> conduct_run(const RunOptions& command, const std::stop_token& asked) {
+  FolderAccess().set_umask();
   DYNCAL_TRY(RunIdentity::begin(command.run, utc_now_ns()));
   DYNCAL_TRY(const auto bench, read_bench_file(command.bench_file));
   DYNCAL_TRY(check_bench(bench));

@@ -20,6 +20,7 @@
 #include "services/bench/file/named_files.hpp"
 #include "services/contract/run_identity.hpp"
 #include "services/contract/time_name.hpp"
+#include "services/records/run_folder/folder_access.hpp"
 #include "services/records/run_folder/folder_copy.hpp"
 #include "services/views/report/run_figures.hpp"
 
@@ -127,20 +128,20 @@ Expected<std::unique_ptr<RunFolder>> RunFolder::create(const std::filesystem::pa
                                                        const std::string& name) {
   const fs::path folder = fs::absolute(root / bench.bench / name).lexically_normal();
   const fs::path unfinished = folder.string() + ".part";
-  std::error_code problem;
-  fs::create_directories(folder.parent_path(), problem);
-  if (problem) {
-    return fail(cannot_make(folder.parent_path(), problem.message()));
+  const FolderAccess access;
+  if (const int cause = access.make_folders(folder.parent_path()); cause != 0) {
+    return fail(cannot_make(folder.parent_path(), std::strerror(cause)));
   }
-  if (::mkdir(unfinished.c_str(), 0777) != 0) {
-    return fail(cannot_make(unfinished, std::strerror(errno)));
+  if (const int cause = access.make_folder(unfinished); cause != 0) {
+    return fail(cannot_make(unfinished, std::strerror(cause)));
   }
   auto lock = lock_folder(unfinished);
   const auto made =
       lock ? fill(unfinished, bench).and_then([&] { return take_name(unfinished, folder); })
            : Expected<void>(fail(lock.error()));
   if (!made) {
-    fs::remove_all(unfinished, problem);
+    std::error_code ignored;
+    fs::remove_all(unfinished, ignored);
     return fail(made.error());
   }
   ::fsync(open_folder(folder.parent_path()).number());
