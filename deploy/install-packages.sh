@@ -47,6 +47,7 @@ test_packages=(
   python3-h5py                                 # exports, read by others
   postgresql                                   # a server of the test's own, on a socket
   libxml2-utils openssl                        # certificates: independent validator, keys
+  softhsm2 libengine-pkcs11-openssl            # keys in tokens
   man-db groff-base zsh fish                   # manual pages, completion of the command line
   weasyprint poppler-utils                     # reports as PDF, and their text
   chromium libjs-dygraphs                      # the page in a browser

@@ -45,7 +45,9 @@ void add_certify(CLI::App& command, CertifyOptions& options) {
           },
           "DATE"));
   CLI::Option* key =
-      command.add_option("--key", options.key.key, "private key to sign with, PEM (default: none)");
+      command.add_option("--key", options.key.key,
+                         "private key to sign with: a PEM file, or pkcs11:token=...;object=... of "
+                         "one in a token (default: none)");
   CLI::Option* certificate = command.add_option(
       "--certificate", options.key.certificate,
       "X.509 certificate of the key, PEM; others up to the CA may follow it in the file");

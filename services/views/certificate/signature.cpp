@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <ctime>
+#include <memory>
+#include <utility>
 
 #include <fmt/core.h>
 #include <libxml/tree.h>
@@ -17,6 +19,7 @@
 #include <xmlsec/xmldsig.h>
 #include <xmlsec/xmlsec.h>
 
+#include "services/security/token_key.hpp"
 #include "services/views/certificate/x509_certificates.hpp"
 
 namespace dyncal::inline views {
@@ -286,6 +289,14 @@ std::string problem_of_chain(const Certificates& given, const Certificates& trus
   return problem;
 }
 
+Expected<std::shared_ptr<EVP_PKEY>> key_of(const std::string& name) {
+  if (is_in_a_token(name)) {
+    return open_token_key(name);
+  }
+  DYNCAL_TRY(auto key, read_private_key(name));
+  return std::shared_ptr<EVP_PKEY>(std::move(key));
+}
+
 } // namespace
 
 Expected<void> sign(XmlDocument& document, const SigningKey& files) {
@@ -293,17 +304,17 @@ Expected<void> sign(XmlDocument& document, const SigningKey& files) {
     return not_signed("xmlsec does not start");
   }
   DYNCAL_TRY(const auto certificates, read_certificates(files.certificate));
-  DYNCAL_TRY(const auto key, read_private_key(files.key));
+  DYNCAL_TRY(const auto key, key_of(files.key));
   if (X509_check_private_key(certificates.front().get(), key.get()) != 1) {
     ERR_clear_error();
     return not_signed(fmt::format("the key in {} does not belong to the first certificate in {}",
-                                  files.key.string(), files.certificate.string()));
+                                  files.key, files.certificate.string()));
   }
   const xmlSecTransformId method = method_for(key.get());
   if (method == xmlSecTransformIdUnknown) {
     return not_signed(fmt::format("{}: the key must be RSA with {} bits or more, or of an elliptic "
                                   "curve",
-                                  files.key.string(), min_rsa_bits));
+                                  files.key, min_rsa_bits));
   }
   XmlSecPointer<xmlSecKey> signing_key = xmlsec_key(key.get());
   XmlSecPointer<xmlSecDSigCtx> context(xmlSecDSigCtxCreate(nullptr));
@@ -313,6 +324,9 @@ Expected<void> sign(XmlDocument& document, const SigningKey& files) {
   context->signKey = signing_key.release();
   if (xmlSecDSigCtxSign(context.get(), add_template(document, method)) < 0) {
     return not_signed("xmlsec fails");
+  }
+  if (!verifies(document, certificates.front().get())) { // a token may give anything
+    return not_signed("what the key has signed does not verify");
   }
   return {};
 }

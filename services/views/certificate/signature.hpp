@@ -20,7 +20,7 @@
 namespace dyncal::inline views {
 
 struct SigningKey {
-  std::filesystem::path key;         // PEM; a password is asked for on the terminal
+  std::string key; // PEM file, whose password is asked for on the terminal, or in a token (pkcs11:)
   std::filesystem::path certificate; // PEM: the signer's first, then others up to the CA
 };
 
