@@ -2,9 +2,36 @@
 
 #include <algorithm>
 
+#include "services/bus/fastdds/screen/security_tokens.hpp"
+
 namespace dyncal::bus {
 
 using namespace rtps_format;
+
+namespace {
+
+constexpr std::array<unsigned char, entity_bytes> participant_writer{0x00, 0x01, 0x00, 0xc2};
+constexpr std::array<unsigned char, entity_bytes> handshake_writer{0x00, 0x02, 0x01, 0xc3};
+
+// What comes before anybody is trusted. Both vendors send it in one piece; pieces could not be
+// looked at.
+bool handshake_is_readable(const Submessage& one) {
+  constexpr std::size_t writer_at = 8;
+  if ((one.id != data && one.id != data_frag) || one.body.size() < writer_at + entity_bytes) {
+    return true;
+  }
+  const Bytes writer = one.body.subspan(writer_at, entity_bytes);
+  const bool is_handshake = std::ranges::equal(writer, handshake_writer);
+  if (one.id == data_frag) {
+    return !is_handshake && !std::ranges::equal(writer, participant_writer);
+  }
+  const auto begin = qos_begin(one.body, data_bytes_before_qos, one.flags);
+  const auto qos = begin ? inline_qos(one.body, *begin, one.flags) : std::nullopt;
+  return !is_handshake || !qos || (one.flags & data_flag) == 0 ||
+         handshake_is_whole(one.body.subspan(qos->end));
+}
+
+} // namespace
 
 bool MessageCheck::accepts(Bytes datagram, Instant now) {
   forget_the_gone(now);
@@ -23,7 +50,7 @@ bool MessageCheck::accepts(Bytes datagram, Instant now) {
     }
     accepted = numbers_.accepts(way, one.id, one.flags, one.body) &&
                (one.id != data || announcements_.accepts(way.from, one.flags, one.body, now)) &&
-               accepted;
+               handshake_is_readable(one) && accepted;
     return true;
   });
   return accepted;

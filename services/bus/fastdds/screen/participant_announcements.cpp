@@ -4,6 +4,8 @@
 #include <optional>
 #include <utility>
 
+#include "services/bus/fastdds/screen/security_tokens.hpp"
+
 namespace dyncal::bus {
 
 using namespace rtps_format;
@@ -17,6 +19,7 @@ constexpr std::array<unsigned char, entity_bytes> subscriptions_writer{0x00, 0x0
 
 constexpr std::uint16_t pid_participant_guid = 0x0050;
 constexpr std::uint16_t pid_endpoint_guid = 0x005a;
+constexpr std::uint16_t pid_data_representation = 0x0073;
 // Lease duration, protocol version, vendor, locators and built-in endpoints of a participant.
 constexpr std::array<std::uint16_t, 9> lasting = {
     0x0002, 0x0015, 0x0016, 0x0031, 0x0032, 0x0033, 0x0048, 0x0058, pid_participant_guid};
@@ -26,7 +29,18 @@ struct Announced {
   std::string lasting_fields;
 };
 
-// Nothing where it is no list of parameters.
+// What Fast DDS reads for as long as it says that it is, and asks for memory for: gigabytes of data
+// representations that are not there.
+bool is_whole(std::uint16_t parameter, Bytes value, unsigned char flags) {
+  if (parameter == pid_data_representation) {
+    constexpr std::size_t count_bytes = sizeof(std::uint32_t);
+    return value.size() >= count_bytes && number_at<std::uint32_t>(value, 0, flags) <=
+                                              (value.size() - count_bytes) / sizeof(std::uint16_t);
+  }
+  return !is_security_token(parameter) || token_is_whole(value, flags);
+}
+
+// Nothing where it is no list of parameters, or one in it is not whole.
 std::optional<Announced> announced_in(Bytes payload, std::uint16_t guid_parameter) {
   constexpr std::size_t encapsulation_bytes = 4;
   if (payload.size() < encapsulation_bytes || payload[0] != 0 ||
@@ -45,6 +59,9 @@ std::optional<Announced> announced_in(Bytes payload, std::uint16_t guid_paramete
       return std::nullopt;
     }
     const Bytes parameter = payload.subspan(at, 4 + length);
+    if (!is_whole(id, parameter.subspan(4), flags)) {
+      return std::nullopt;
+    }
     if (id == guid_parameter) {
       found.guid = parameter.subspan(4);
     }

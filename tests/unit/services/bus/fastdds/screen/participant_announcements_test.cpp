@@ -64,6 +64,17 @@ TEST_F(Announcements, AreOfThemselves) {
   EXPECT_FALSE(announced(publications, guid_of(Bytes(12, 7), 0x5a) + sentinel));
 }
 
+TEST_F(Announcements, AreAsLongAsTheySay) {
+  const Bytes guid = guid_of(participant, 0x5a);
+  const Bytes two = u16(0) + u16(2);
+  EXPECT_TRUE(announced(publications, guid + parameter(0x73, u32(2) + two) + sentinel));
+  EXPECT_TRUE(announced(publications, guid + parameter(0x73, u32(0)) + sentinel));
+  EXPECT_FALSE(announced(publications, guid + parameter(0x73, u32(3) + two) + sentinel));
+  EXPECT_FALSE(announced(publications, guid + parameter(0x73, u32(~0U) + two) + sentinel));
+  EXPECT_FALSE(announced(publications, guid + parameter(0x73, u16(1)) + sentinel));
+  EXPECT_FALSE(announced(10, parameter(0x1001, u32(~0U) + two))) << "a token";
+}
+
 TEST_F(Announcements, StayAsTheyAre) {
   EXPECT_TRUE(announced(10));
   EXPECT_FALSE(announced(0)) << "it would be gone at once";
