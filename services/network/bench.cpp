@@ -48,6 +48,10 @@ void raise_severity_by_run(const Run& run, bus::Clock::Instant now, Condition& c
   if (!run.is_over() && run.analysis && run.analysis->health == Health::failed) {
     condition.raise_severity(Severity::error, "the analysis has failed: " + run.analysis->message);
   }
+  // That two programs send as one source, among others.
+  if (!run.is_over() && run.analysis && !run.analysis->message.empty()) {
+    condition.raise_severity(Severity::note, run.analysis->message);
+  }
   if (run.is_paused()) {
     const std::string& reason =
         run.message.empty() && run.analysis ? run.analysis->message : run.message;

@@ -62,7 +62,8 @@ std::optional<Expected<void>> ResumeWait::answer() const {
   // Without the guard, which has heard nothing since the other conductor died: it hears this one
   // when a step is announced.
   const RunOutlook outlook =
-      run_outlook(analysis, watch_.clock().now() - watch_.analysis_heard(), watch_.commands());
+      run_outlook(analysis, watch_.analysis_participant(),
+                  watch_.clock().now() - watch_.analysis_heard(), watch_.commands());
   if (analysis && outlook.kind == Kind::over && watch_.commands().aborted_by()) {
     return fail(outlook.reason.code,
                 fmt::format("run '{}' is not resumed: {}", name_, outlook.reason.message));

@@ -5,6 +5,8 @@
 
 #include <fmt/core.h>
 
+#include "services/base/printable_text.hpp"
+#include "services/bus/participant_name.hpp"
 #include "services/contract/topics.hpp"
 
 namespace dyncal::inline run {
@@ -19,25 +21,25 @@ Expected<RunCommands> RunCommands::open(bus::Participant& participant, bus::Cloc
                                         std::set<std::uint32_t> steps,
                                         const std::shared_ptr<bus::WakeUp>& wake_up) {
   DYNCAL_TRY(auto reader, participant.reader(bus::topics::command, bench, wake_up));
-  return RunCommands(clock, std::move(run), std::move(steps), std::move(reader));
+  return RunCommands(participant, clock, std::move(run), std::move(steps), std::move(reader));
 }
 
 void RunCommands::take(bool excites) {
-  reader_.take([&](const wire::Command& command) {
+  reader_.take_with_writer([&](const wire::Command& command, const bus::WriterId& writer) {
     if (command.target() == conductor && command.run() == run_) {
-      answer(command, excites);
+      answer(command, writer, excites);
     }
   });
 }
 
-void RunCommands::answer(const wire::Command& command, bool excites) {
+void RunCommands::answer(const wire::Command& command, const bus::WriterId& writer, bool excites) {
   if (command.id() == 0) {
-    static_cast<void>(obey(command, excites)); // who gives no id knows no answer
+    static_cast<void>(obey(command, writer, excites)); // who gives no id knows no answer
     return;
   }
   const auto known = std::ranges::find(known_, command.id(), &Answer::command);
   if (known == known_.end()) {
-    known_.push_back({command.id(), obey(command, excites)});
+    known_.push_back({command.id(), obey(command, writer, excites)});
     answers_.push_back(known_.back());
   } else {
     answers_.push_back(*known);
@@ -59,27 +61,35 @@ std::optional<RunCommands::Answer> RunCommands::take_answer() {
   return first;
 }
 
-std::string RunCommands::obey(const wire::Command& command, bool excites) {
-  const std::string sender = command.sender().empty() ? "?" : command.sender();
+RunCommands::Sender RunCommands::sender_of(const wire::Command& command,
+                                           const bus::WriterId& writer) const {
+  const std::string participant = writer.participant();
+  const std::string comment =
+      command.sender().empty() ? "" : fmt::format(": '{}'", one_line(command.sender()));
+  return {participant, bus::name_of(participant_->discovered(), participant) + comment};
+}
+
+std::string RunCommands::obey(const wire::Command& command, const bus::WriterId& writer,
+                              bool excites) {
   if (!excites && command.kind() != wire::COMMAND_ABORT) {
     return "the run excites no step any more";
   }
   switch (command.kind()) {
   case wire::COMMAND_PAUSE:
-    paused_by_ = sender;
+    paused_by_ = sender_of(command, writer);
     return "";
   case wire::COMMAND_CONTINUE:
     paused_by_.reset();
     return "";
   case wire::COMMAND_ABORT:
-    aborted_by_ = sender;
+    aborted_by_ = sender_of(command, writer);
     return "";
   case wire::COMMAND_REPEAT:
     if (!steps_.contains(command.step())) {
       return fmt::format("the run's plan has no step {}", command.step());
     }
     if (command.id() == 0) {
-      ask_for(command.step(), sender);
+      ask_for(command.step(), command.sender());
     } else {
       repeats_.insert(command.step());
     }

@@ -5,7 +5,9 @@
 // answered, so each may come more than once, even late: a command is obeyed once by its id, and
 // answered as often as it comes. Those without an id are of programs of the first contract: REPEAT
 // of one sender for one step is one command while it comes within `repetition_limit` of the last
-// time. The ids of the last `remembered` commands are known. Belongs to one thread.
+// time. Who commanded is told by DDS discovery; what the message says of it is a comment, for
+// anybody writes anything there. The ids of the last `remembered` commands are known. Belongs to
+// one thread.
 #pragma once
 
 #include <chrono>
@@ -30,12 +32,17 @@ public:
   static constexpr std::chrono::seconds repetition_limit{2};
   static constexpr std::size_t remembered = 64;
 
+  struct Sender {
+    std::string participant; // its id, as in discovery.hpp
+    std::string sentence;    // for people: "dyncal-web:4711 on lab-2: 'ada@desk'"
+  };
   struct Answer {
     std::uint64_t command = 0;
     std::string refusal; // empty: it is obeyed
   };
 
-  // `steps`: of the plan. Fails (network) as readers do. `clock` outlives the object.
+  // `steps`: of the plan. Fails (network) as readers do. `participant` and `clock` outlive the
+  // object.
   [[nodiscard]] static Expected<RunCommands> open(bus::Participant& participant, bus::Clock& clock,
                                                   const std::string& bench, std::string run,
                                                   std::set<std::uint32_t> steps,
@@ -45,30 +52,32 @@ public:
   void take(bool excites = true);
   // To the commands that came, one after the other; nothing when all are given.
   [[nodiscard]] std::optional<Answer> take_answer();
-  // The sender of the command, "?" without a name.
-  [[nodiscard]] const std::optional<std::string>& paused_by() const { return paused_by_; }
-  [[nodiscard]] const std::optional<std::string>& aborted_by() const { return aborted_by_; }
+  [[nodiscard]] const std::optional<Sender>& paused_by() const { return paused_by_; }
+  [[nodiscard]] const std::optional<Sender>& aborted_by() const { return aborted_by_; }
   // The steps to be excited once more that were asked for since the last call.
   [[nodiscard]] std::set<std::uint32_t> take_repeats();
 
 private:
-  RunCommands(bus::Clock& clock, std::string run, std::set<std::uint32_t> steps,
-              bus::Reader<wire::Command> reader)
-      : clock_(&clock), run_(std::move(run)), steps_(std::move(steps)), reader_(std::move(reader)) {
-  }
-  void answer(const wire::Command& command, bool excites);
+  RunCommands(bus::Participant& participant, bus::Clock& clock, std::string run,
+              std::set<std::uint32_t> steps, bus::Reader<wire::Command> reader)
+      : participant_(&participant), clock_(&clock), run_(std::move(run)), steps_(std::move(steps)),
+        reader_(std::move(reader)) {}
+  void answer(const wire::Command& command, const bus::WriterId& writer, bool excites);
   // Returns why it does not.
-  [[nodiscard]] std::string obey(const wire::Command& command, bool excites);
+  [[nodiscard]] std::string obey(const wire::Command& command, const bus::WriterId& writer,
+                                 bool excites);
+  [[nodiscard]] Sender sender_of(const wire::Command& command, const bus::WriterId& writer) const;
   void ask_for(std::uint32_t step, const std::string& sender);
 
+  bus::Participant* participant_;
   bus::Clock* clock_;
   std::string run_;
   std::set<std::uint32_t> steps_;
   bus::Reader<wire::Command> reader_;
   std::deque<Answer> known_;   // of the last commands with an id
   std::deque<Answer> answers_; // that are still to be given
-  std::optional<std::string> paused_by_;
-  std::optional<std::string> aborted_by_;
+  std::optional<Sender> paused_by_;
+  std::optional<Sender> aborted_by_;
   std::set<std::uint32_t> repeats_;
   std::map<std::pair<std::string, std::uint32_t>, bus::Clock::Instant> asked_; // last, by sender
 };

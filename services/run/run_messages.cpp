@@ -317,7 +317,9 @@ void RunMessages::follow(const wire::ServiceStatus& status, const std::string& p
 }
 
 void RunMessages::leave_out(const bus::WriterId& writer) {
-  of_others_ += analysis_ ? 1 : 0;
+  if (analysis_ && ++of_others_ == 1) {
+    other_publisher_ = writer.participant();
+  }
   if (left_out_.size() < max_left_out) {
     left_out_.insert(writer.participant());
   }

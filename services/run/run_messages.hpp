@@ -29,6 +29,7 @@
 #include "services/base/error.hpp"
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
+#include "services/bus/participant_name.hpp"
 #include "services/evaluation/result/run_outcome.hpp"
 #include "services/run/attendance_links.hpp"
 #include "services/run/guard_watch.hpp"
@@ -79,9 +80,15 @@ public:
   [[nodiscard]] std::size_t unplanned() const { return unplanned_; }
   // Statuses and results of this run from others than its analysis.
   [[nodiscard]] std::size_t of_others() const { return of_others_; }
+  // The first of those others, for people.
+  [[nodiscard]] std::string other_publisher() const {
+    return bus::name_of(participant_->discovered(), other_publisher_);
+  }
   // The newest status of the analysis service that evaluates this run; nothing before the first. It
   // is the one that is armed, until it has been silent for attention_limit; then whichever reports.
   [[nodiscard]] const std::optional<wire::ServiceStatus>& analysis() const { return analysis_; }
+  // Empty before the first.
+  [[nodiscard]] const std::string& analysis_participant() const { return analysis_participant_; }
   [[nodiscard]] bus::Clock::Instant analysis_heard() const { return analysis_heard_; }
 
   // What is to be told of who guards the exciter.
@@ -152,6 +159,7 @@ private:
   std::string analysis_participant_;
   std::set<std::string> left_out_; // participants, at most max_left_out
   std::size_t of_others_ = 0;
+  std::string other_publisher_;
   bus::Clock::Instant analysis_heard_;
   std::size_t signs_of_work_ = 0;
   std::string conductor_; // by its Measurement

@@ -51,14 +51,14 @@ Error refusal_of_resumed(const wire::ServiceStatus& analysis) {
 } // namespace
 
 RunOutlook run_outlook(const std::optional<wire::ServiceStatus>& analysis,
-                       std::chrono::nanoseconds unheard, const RunCommands& commands) {
-  if (commands.aborted_by()) {
-    if (analysis && *commands.aborted_by() == analysis->service().to_string()) {
+                       const std::string& analysis_participant, std::chrono::nanoseconds unheard,
+                       const RunCommands& commands) {
+  if (const auto& by = commands.aborted_by()) {
+    if (analysis && by->participant == analysis_participant) {
       return {Kind::over, refusal_of_resumed(*analysis)};
     }
-    return {
-        Kind::over,
-        {ErrorCode::no_result, fmt::format("ended by a command of '{}'", *commands.aborted_by())}};
+    return {Kind::over,
+            {ErrorCode::no_result, fmt::format("ended by a command of {}", by->sentence)}};
   }
   RunOutlook outlook;
   if (analysis && !has_ended(*analysis) && unheard > attention_limit) {
@@ -69,9 +69,9 @@ RunOutlook run_outlook(const std::optional<wire::ServiceStatus>& analysis,
     outlook = outlook_by(*analysis);
   }
   if (outlook.kind == Kind::well && commands.paused_by()) {
-    outlook = {
-        Kind::paused,
-        {ErrorCode::no_result, fmt::format("paused by a command of '{}'", *commands.paused_by())}};
+    outlook = {Kind::paused,
+               {ErrorCode::no_result,
+                fmt::format("paused by a command of {}", commands.paused_by()->sentence)}};
   }
   return outlook;
 }

@@ -10,6 +10,7 @@
 
 #include <chrono>
 #include <optional>
+#include <string>
 
 #include "idl/dyncal.h"
 #include "services/base/error.hpp"
@@ -31,8 +32,9 @@ struct RunOutlook {
 // An analysis that was heard less than this ago attends to the run.
 inline constexpr std::chrono::seconds attention_limit{3};
 
-// `analysis`: its newest status, `unheard` ago.
+// `analysis`: its newest status, `unheard` ago; `analysis_participant`: the id of its participant.
 [[nodiscard]] RunOutlook run_outlook(const std::optional<wire::ServiceStatus>& analysis,
+                                     const std::string& analysis_participant,
                                      std::chrono::nanoseconds unheard, const RunCommands& commands);
 
 } // namespace dyncal::inline run

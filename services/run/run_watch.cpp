@@ -68,8 +68,9 @@ void RunWatch::look_without_hold() {
            "publish as the analysis of this run?");
   }
   if (messages_.of_others() > 0 && !std::exchange(others_said_, true)) {
-    notice("another program than the analysis of this run publishes about it; what it says is left "
-           "out: 'dyncal doctor' names the programs that are there");
+    notice(fmt::format("{} publishes about this run and is not its analysis; what it says is left "
+                       "out",
+                       messages_.other_publisher()));
   }
   if (measurement_.state() == wire::MEASUREMENT_RUNNING) {
     if (const auto sentence = messages_.notice_of_guard()) {
@@ -109,8 +110,8 @@ std::optional<Error> RunWatch::other_recipe() const {
 }
 
 RunOutlook RunWatch::outlook() const {
-  const RunOutlook outlook =
-      run_outlook(messages_.analysis(), clock_.now() - messages_.analysis_heard(), commands_);
+  const RunOutlook outlook = run_outlook(messages_.analysis(), messages_.analysis_participant(),
+                                         clock_.now() - messages_.analysis_heard(), commands_);
   if (outlook.kind != RunOutlook::Kind::well) {
     return outlook;
   }

@@ -62,6 +62,9 @@ public:
   [[nodiscard]] const std::optional<wire::ServiceStatus>& analysis() const {
     return messages_.analysis();
   }
+  [[nodiscard]] const std::string& analysis_participant() const {
+    return messages_.analysis_participant();
+  }
   [[nodiscard]] Instant analysis_heard() const { return messages_.analysis_heard(); }
   [[nodiscard]] std::size_t signs_of_work() const { return messages_.signs_of_work(); }
   [[nodiscard]] std::size_t described() const { return messages_.described(); }

@@ -97,12 +97,21 @@ TEST_P(ForgedMessages, ChangeNoValueAndAreFlaggedWhereTheyAreSamples) {
   ProgramRun& run = bench.start({"run", bench.bench_file(), "--output", folder / "run.json"});
   ASSERT_TRUE(run.wait_for_error_text("step 1 of 2", patience)) << run.errors();
   forger_.send_as("dau");
+  ProgramRun& doctor = bench.start({"doctor"});
+  EXPECT_TRUE(doctor.wait(patience)) << doctor.errors();
+  EXPECT_THAT(doctor.output(),
+              testing::ContainsRegex("forger:[0-9]+ on [^ ]+ .* writes samples of bench live "
+                                     ".topic DauSamples. and describes no source"));
   EXPECT_TRUE(run.wait(patience)) << run.errors();
   forger_.stop();
-  ASSERT_GT(forger_.blocks(), 10U);
+  ASSERT_GT(forger_.forged(), 10U);
   const auto result = read_json(folder / "run.json");
   expect_true_points(result, bench.truth());
   EXPECT_THAT(result["points"].dump(), HasSubstr("another program sends in its name"));
+  EXPECT_THAT(bench.service("dyncal-analysis").errors(),
+              testing::ContainsRegex("two programs send in the name of source 'dau' of bench "
+                                     "'live': dyncal-dau:[0-9]+ on [^ ,]+, and later "
+                                     "forger:[0-9]+ on [^ ,]+, whose messages are left out"));
 }
 
 INSTANTIATE_TEST_SUITE_P(EachVendor, ForgedMessages,

@@ -3,6 +3,9 @@
 #include <array>
 #include <functional>
 #include <limits>
+#include <span>
+
+#include "services/bus/participant_name.hpp"
 
 namespace dyncal::bus {
 namespace {
@@ -37,7 +40,20 @@ void read_builtin(dds_entity_t participant, dds_entity_t topic,
   dds_delete(reader);
 }
 
-std::string name_of(const dds_qos_t* qos) {
+// The first of these that it announces.
+std::string property_of(const dds_qos_t* qos, std::span<const char* const> names) {
+  for (const char* name : names) {
+    char* text = nullptr;
+    if (dds_qget_prop(qos, name, &text) && text != nullptr) {
+      std::string value(text);
+      dds_free(text);
+      return value;
+    }
+  }
+  return "";
+}
+
+std::string entity_name_of(const dds_qos_t* qos) {
   char* text = nullptr;
   if (!dds_qget_entity_name(qos, &text) || text == nullptr) {
     return "";
@@ -138,7 +154,11 @@ Discovery discovered_by_cyclone_dds(dds_entity_t participant) {
       [&](const dds_builtintopic_participant_t& sample) {
         const std::string id = prefix_of(sample.key);
         if (id != own) {
-          discovery.participants.push_back({id, name_of(sample.qos), vendor_of(id)});
+          discovery.participants.push_back(
+              {id,
+               participant_name(entity_name_of(sample.qos), property_of(sample.qos, process_keys),
+                                property_of(sample.qos, host_keys)),
+               vendor_of(id)});
         }
       });
   const auto add = [&](EndpointKind kind) {

@@ -1,6 +1,9 @@
 #include "services/bus/fastdds/fast_dds_discovery.hpp"
 
 #include <limits>
+#include <span>
+
+#include "services/bus/participant_name.hpp"
 
 namespace dyncal::bus {
 namespace {
@@ -20,6 +23,19 @@ double seconds(const fast_dds::Duration& duration) {
   return duration.seconds == fast_dds::infinite.seconds
              ? std::numeric_limits<double>::infinity()
              : duration.seconds + 1e-9 * duration.nanosec;
+}
+
+// The first of these that it announces.
+template <class Properties>
+std::string property_of(const Properties& properties, std::span<const char* const> names) {
+  for (const char* name : names) {
+    for (auto one = properties.begin(); one != properties.end(); ++one) {
+      if (one->first() == name) {
+        return one->second();
+      }
+    }
+  }
+  return "";
 }
 
 #ifdef DYNCAL_FAST_DDS_3
@@ -131,7 +147,11 @@ void FastDdsDiscovery::on_participant_discovery(VendorParticipant* /*participant
       status == rtps::ParticipantDiscoveryStatus::DROPPED_PARTICIPANT) {
     remove_participant(id);
   } else {
-    set({id, data.participant_name.to_string(), vendor_of(id)});
+    set({id,
+         participant_name(data.participant_name.to_string(),
+                          property_of(data.properties, process_keys),
+                          property_of(data.properties, host_keys)),
+         vendor_of(id)});
   }
 }
 
@@ -164,7 +184,11 @@ void FastDdsDiscovery::on_participant_discovery(VendorParticipant* /*participant
       info.status == rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT) {
     remove_participant(id);
   } else {
-    set({id, info.info.m_participantName.to_string(), vendor_of(id)});
+    set({id,
+         participant_name(info.info.m_participantName.to_string(),
+                          property_of(info.info.m_properties, process_keys),
+                          property_of(info.info.m_properties, host_keys)),
+         vendor_of(id)});
   }
 }
 

@@ -35,9 +35,22 @@ void ring(const MemoryEndpoint& endpoint) {
 
 } // namespace
 
-std::uint32_t MemoryExchange::join() {
+std::uint32_t MemoryExchange::join(const std::string& name) {
   const std::lock_guard lock(mutex_);
-  return ++participants_;
+  participants_.push_back(name);
+  return static_cast<std::uint32_t>(participants_.size());
+}
+
+Discovery MemoryExchange::discovered(std::uint32_t by_participant) {
+  const std::lock_guard lock(mutex_);
+  Discovery discovery;
+  for (std::uint32_t number = 1; number <= participants_.size(); ++number) {
+    if (number != by_participant) {
+      discovery.participants.push_back(
+          {writer_id(number, 0).participant(), participants_[number - 1], "memory"});
+    }
+  }
+  return discovery;
 }
 
 std::shared_ptr<MemoryWriterState> MemoryExchange::open_writer(MemoryEndpoint endpoint) {

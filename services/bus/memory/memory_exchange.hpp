@@ -72,7 +72,9 @@ public:
   MemoryExchange(Clock& clock, SteppedClock* stepped) : clock_(clock), stepped_(stepped) {}
 
   [[nodiscard]] Clock& clock() { return clock_; }
-  std::uint32_t join(); // the number of a new participant
+  std::uint32_t join(const std::string& name); // the number of a new participant
+  // All that have joined, but this one.
+  [[nodiscard]] Discovery discovered(std::uint32_t by_participant);
   std::shared_ptr<MemoryWriterState> open_writer(MemoryEndpoint endpoint);
   std::shared_ptr<MemoryReaderState> open_reader(MemoryEndpoint endpoint);
   void close(const std::shared_ptr<MemoryWriterState>& writer);
@@ -106,8 +108,8 @@ private:
   Clock& clock_;
   SteppedClock* stepped_; // the same clock, where time is stepped
   std::mutex mutex_;
-  std::uint32_t participants_ = 0;   // that have joined so far
-  std::uint32_t writers_so_far_ = 0; // opened
+  std::vector<std::string> participants_; // names of all that have joined
+  std::uint32_t writers_so_far_ = 0;      // opened
   std::vector<std::shared_ptr<MemoryWriterState>> writers_;
   std::vector<std::shared_ptr<MemoryReaderState>> readers_;
   MemoryNetwork::Rule lost_;

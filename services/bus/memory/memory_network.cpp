@@ -95,7 +95,7 @@ class MemoryParticipant : public UntypedParticipant {
 public:
   MemoryParticipant(std::shared_ptr<MemoryExchange> exchange, std::string name,
                     std::function<void(const std::string&)> warn)
-      : exchange_(std::move(exchange)), name_(std::move(name)), number_(exchange_->join()),
+      : exchange_(std::move(exchange)), name_(std::move(name)), number_(exchange_->join(name_)),
         malformed_(std::make_shared<MalformedMessages>(std::move(warn))) {}
 
   base::Expected<std::unique_ptr<UntypedWriter>>
@@ -116,6 +116,7 @@ public:
   }
 
   [[nodiscard]] std::uint64_t malformed_messages() const override { return malformed_->count(); }
+  [[nodiscard]] Discovery discovered() const override { return exchange_->discovered(number_); }
 
 private:
   [[nodiscard]] MemoryEndpoint endpoint(const TypeSupport& type, const std::string& topic,

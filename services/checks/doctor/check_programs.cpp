@@ -37,11 +37,12 @@ Findings check_presence(const LaboratoryView& view) {
   return findings;
 }
 
-// Others in the domain, such as tools of others, or `dyncal run`.
+// Others in the domain, such as tools of others, or `dyncal run`. Not every DDS library announces
+// process and host.
 Findings check_others(const LaboratoryView& view) {
   std::set<std::string> services;
   for (const DiscoveredProgram& program : view.programs) {
-    services.insert(program.identity.program);
+    services.insert({program.identity.program, place_of(program.identity)});
   }
   std::set<std::string> others;
   for (const bus::DiscoveredParticipant& one : view.discovery.participants) {

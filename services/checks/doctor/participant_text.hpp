@@ -8,7 +8,7 @@
 
 namespace dyncal::inline checks::doctor {
 
-// By its id: "dyncal-acs (Cyclone DDS, 10.98.0.2)".
+// By its id: "dyncal-acs:4711 on lab-2 (Cyclone DDS, 10.98.0.2)".
 [[nodiscard]] std::string participant_text(const LaboratoryView& view, const std::string& id);
 
 } // namespace dyncal::inline checks::doctor

@@ -62,8 +62,9 @@ bool answers(const LaboratoryView& view, const std::string& program) {
 }
 
 bool is_found(const LaboratoryView& view, const std::string& program) {
-  return std::ranges::any_of(view.discovery.participants,
-                             [&](const auto& one) { return one.name == program; });
+  return std::ranges::any_of(view.discovery.participants, [&](const auto& one) {
+    return one.name == program || one.name.starts_with(program + ":");
+  });
 }
 
 double worst_loss(const LaboratoryView& view) {

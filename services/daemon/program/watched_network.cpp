@@ -47,7 +47,7 @@ WatchedNetwork::join(const NetworkOptions& options, const std::string& program,
   std::string interface_name = interface_called(options.interface_name);
   NetworkChanges changes;
   AddressesAtStart start{addresses_of(interface_name), {}};
-  DYNCAL_TRY(auto joined, join_network(options, program));
+  DYNCAL_TRY(auto joined, join_network(options, program, {.watch_discovery = true}));
   return std::unique_ptr<WatchedNetwork>(
       new WatchedNetwork(std::move(joined), std::move(interface_name), std::move(changes),
                          std::move(start), asked, std::move(when_deaf)));

@@ -149,6 +149,15 @@ void report(const AnalysisFigures& figures, MetricStore& store) {
                   "Objects that had no room or made way, by type.", {{"what", what}},
                   number(count));
   }
+  for (const LeftOutFigures& one : figures.left_out_of_sources) {
+    const MetricLabels labels{{"bench", one.bench}, {"source", one.source}};
+    store.counter("dyncal_analysis_messages_duplicate_total",
+                  "Messages of the source that runs had already; left out.", labels,
+                  number(one.duplicates));
+    store.counter("dyncal_analysis_messages_of_others_total",
+                  "Messages that another program sent in the name of the source; left out.", labels,
+                  number(one.of_other_programs));
+  }
   report_malformed_messages(figures.malformed_messages, store);
   report_refused_packets(figures.refused_packets, store);
 }

@@ -17,6 +17,14 @@ namespace dyncal::inline daemon {
 
 class MetricStore;
 
+// Messages of a source that the analysis has left out, since it was started.
+struct LeftOutFigures {
+  std::string bench;
+  std::string source;
+  std::uint64_t duplicates = 0;
+  std::uint64_t of_other_programs = 0; // in the name of the source
+};
+
 // What the analysis service does, all in all.
 struct AnalysisFigures {
   std::uint64_t runs_waiting = 0;
@@ -28,6 +36,7 @@ struct AnalysisFigures {
   std::uint64_t sources = 0;
   std::uint64_t runs_of_others = 0;                            // that it follows
   std::vector<std::pair<std::string, std::uint64_t>> left_out; // had no room, by what it was
+  std::vector<LeftOutFigures> left_out_of_sources;
   std::uint64_t malformed_messages = 0;
   std::uint64_t refused_packets = 0;
 };

@@ -359,6 +359,7 @@ AnalysisFigures AnalysisService::figures() const {
                       {"sources", benches_.left_out().sources},
                       {"runs", runs_left_out_ + followed_.left_out()},
                       {"runs_of_others", others_.left_out()}};
+  figures.left_out_of_sources = context_.left_out->figures();
   figures.malformed_messages = participant_.malformed_messages();
   figures.refused_packets = participant_.refused_packets()->count();
   return figures;

@@ -38,11 +38,12 @@ Expected<std::unique_ptr<RunSession>> RunSession::create(const AnalysisContext& 
 RunSession::RunSession(const AnalysisContext& context, const wire::Measurement& measurement,
                        std::shared_ptr<SourceRequests> requests, RunPublisher publisher)
     : participant_(context.participant), clock_(context.clock), wake_up_(context.wake_up),
-      bench_(measurement.bench().to_string()), run_(measurement.run().to_string()),
-      conductor_(measurement), requests_(std::move(requests)), publisher_(std::move(publisher)),
-      measurement_(measurement), created_(clock_.now()), state_(Arming{created_}),
-      last_heard_of_run_(created_), last_progress_(created_), worked_(created_),
-      present_since_(created_), next_command_(created_), next_status_(created_ + status_interval) {}
+      left_out_(context.left_out), bench_(measurement.bench().to_string()),
+      run_(measurement.run().to_string()), conductor_(measurement), requests_(std::move(requests)),
+      publisher_(std::move(publisher)), measurement_(measurement), created_(clock_.now()),
+      state_(Arming{created_}), last_heard_of_run_(created_), last_progress_(created_),
+      worked_(created_), present_since_(created_), next_command_(created_),
+      next_status_(created_ + status_interval) {}
 
 void RunSession::prepare(const wire::Measurement& measurement, SourceStreams::Begin begin) {
   auto recipe = parse_recipe(measurement);
@@ -53,7 +54,7 @@ void RunSession::prepare(const wire::Measurement& measurement, SourceStreams::Be
   EvaluationLimits limits = live_limits(*recipe);
   limits.behind = begin == SourceStreams::Begin::behind;
   evaluator_ = std::make_unique<RunEvaluator>(std::move(*recipe), limits);
-  streams_.emplace(participant_, wake_up_, bench_, run_, *evaluator_, begin);
+  streams_.emplace(participant_, wake_up_, left_out_, bench_, run_, *evaluator_, begin);
   if (begin == SourceStreams::Begin::behind) {
     state_ = TakingOver{created_};
     message_ = taking_over_sentence(*streams_);
@@ -167,7 +168,7 @@ void RunSession::work(const KnownSources& sources, RunSession* before) {
   }
   if (now >= next_status_) {
     if (is<Attending>()) {
-      message_ = work_sentence(*evaluator_, *streams_, now - last_progress_);
+      message_ = attending_sentence(*evaluator_, *streams_, now - last_progress_);
     }
     publish();
     next_status_ = now + status_interval;

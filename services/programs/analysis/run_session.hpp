@@ -61,6 +61,7 @@ struct AnalysisContext {
   bus::Clock& clock;
   std::shared_ptr<bus::WakeUp> wake_up;
   AnalysisIdentity identity;
+  std::shared_ptr<LeftOutMessages> left_out = std::make_shared<LeftOutMessages>();
 };
 
 class RunSession {
@@ -137,6 +138,7 @@ private:
   bus::Participant& participant_;
   bus::Clock& clock_;
   std::shared_ptr<bus::WakeUp> wake_up_;
+  std::shared_ptr<LeftOutMessages> left_out_;
   std::string bench_;
   std::string run_;
   RunConductor conductor_;

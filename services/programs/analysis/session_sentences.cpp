@@ -6,11 +6,9 @@ namespace dyncal::inline programs {
 
 using namespace std::chrono_literals;
 
-std::string taking_over_sentence(const SourceStreams& streams) {
-  return fmt::format("taking the run over; its sources have repeated {} messages so far",
-                     streams.recovered());
-}
+namespace {
 
+// What takes longer than a result should.
 std::string work_sentence(const RunEvaluator& evaluator, const SourceStreams& streams,
                           std::chrono::nanoseconds waited) {
   const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(waited);
@@ -23,6 +21,20 @@ std::string work_sentence(const RunEvaluator& evaluator, const SourceStreams& st
                        streams.recovered(), seconds.count());
   }
   return "";
+}
+
+} // namespace
+
+std::string taking_over_sentence(const SourceStreams& streams) {
+  return fmt::format("taking the run over; its sources have repeated {} messages so far",
+                     streams.recovered());
+}
+
+std::string attending_sentence(const RunEvaluator& evaluator, const SourceStreams& streams,
+                               std::chrono::nanoseconds waited) {
+  const std::string second_writer = streams.second_writer();
+  const std::string work = work_sentence(evaluator, streams, waited);
+  return second_writer + (second_writer.empty() || work.empty() ? "" : "; ") + work;
 }
 
 } // namespace dyncal::inline programs

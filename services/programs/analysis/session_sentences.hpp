@@ -11,9 +11,11 @@ namespace dyncal::inline programs {
 
 [[nodiscard]] std::string taking_over_sentence(const SourceStreams& streams);
 
-// What takes longer than a result should, so that anyone who waits for results goes on waiting;
-// empty where nothing does. `waited`: since the last progress.
-[[nodiscard]] std::string work_sentence(const RunEvaluator& evaluator, const SourceStreams& streams,
-                                        std::chrono::nanoseconds waited);
+// That two programs send as one source, and what takes longer than a result should, so that anyone
+// who waits for results goes on waiting; empty where nothing is to be said. `waited`: since the
+// last progress.
+[[nodiscard]] std::string attending_sentence(const RunEvaluator& evaluator,
+                                             const SourceStreams& streams,
+                                             std::chrono::nanoseconds waited);
 
 } // namespace dyncal::inline programs

@@ -18,8 +18,8 @@ class SessionWriters {
 public:
   static constexpr std::size_t max_sessions = 16;
 
-  // Whether a message of this session is of the program that was first; counted where it is not.
-  // One whose writer is not known any more, for it has ended, is taken for the first one's.
+  // Whether a message of this session is of the program that was first. One
+  // whose writer is not known any more, for it has ended, is taken for the first one's.
   bool takes(std::uint64_t session, const bus::WriterId& writer) {
     const auto known = std::ranges::find(sessions_, session, &Session::number);
     if (known == sessions_.end()) {
@@ -31,11 +31,13 @@ public:
     }
     const bool is_first = !writer.is_known() || known->participant.empty() ||
                           writer.participant() == known->participant;
-    of_others_ += is_first ? 0 : 1;
     return is_first;
   }
-  // Messages of other programs.
-  [[nodiscard]] std::uint64_t of_others() const { return of_others_; }
+  // The participant that was first in this session; empty: not known.
+  [[nodiscard]] std::string first(std::uint64_t session) const {
+    const auto known = std::ranges::find(sessions_, session, &Session::number);
+    return known == sessions_.end() ? "" : known->participant;
+  }
 
 private:
   struct Session {
@@ -44,7 +46,6 @@ private:
   };
 
   std::deque<Session> sessions_;
-  std::uint64_t of_others_ = 0;
 };
 
 } // namespace dyncal::inline programs

@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include <fmt/core.h>
+#include <spdlog/spdlog.h>
 
+#include "services/bus/participant_name.hpp"
 #include "services/contract/bench_file_origin.hpp"
 #include "services/contract/session_number.hpp"
 #include "services/contract/source_block.hpp"
@@ -14,10 +16,11 @@
 
 namespace dyncal::inline programs {
 SourceStreams::SourceStreams(bus::Participant& participant, std::shared_ptr<bus::WakeUp> wake_up,
-                             std::string bench, std::string run, RunEvaluator& evaluator,
-                             Begin begin)
-    : participant_(participant), wake_up_(std::move(wake_up)), bench_(std::move(bench)),
-      run_(std::move(run)), asker_(fmt::format("{}/catch-up/{:016x}", bench_, random_session())),
+                             std::shared_ptr<LeftOutMessages> left_out, std::string bench,
+                             std::string run, RunEvaluator& evaluator, Begin begin)
+    : participant_(participant), wake_up_(std::move(wake_up)), left_out_(std::move(left_out)),
+      bench_(std::move(bench)), run_(std::move(run)),
+      asker_(fmt::format("{}/catch-up/{:016x}", bench_, random_session())),
       evaluator_(evaluator), begin_(begin) {
   for (const std::string& source : evaluator_.recipe().sources()) {
     streams_.emplace(source, Stream{});
@@ -200,7 +203,9 @@ void SourceStreams::take_samples(Instant now) {
   }
   const auto live = [&](Stream& stream, const auto& message, auto& follower) {
     stream.twins.add(message.session());
-    follower.take_live(message, now);
+    if (!follower.take_live(message, now)) {
+      ++left_out_->of(bench_, message.source().to_string()).duplicates;
+    }
   };
   const auto again = [&](Stream& /*stream*/, const auto& message, auto& follower) {
     follower.take_again(message, now);
@@ -227,11 +232,26 @@ void SourceStreams::take(bus::Reader<Message>& reader, Take take) {
       return;
     }
     if (!found->second.writers.takes(message.session(), writer)) {
-      evaluator_.note_second_writer(found->first);
+      note_second_writer(found->first, found->second, message.session(), writer);
     } else if (auto* follower = std::get_if<StreamFollower<Message>>(&*found->second.follower)) {
       take(found->second, message, *follower);
     }
   });
+}
+
+void SourceStreams::note_second_writer(const std::string& name, Stream& stream,
+                                       std::uint64_t session, const bus::WriterId& writer) {
+  evaluator_.note_second_writer(name);
+  ++left_out_->of(bench_, name).of_other_programs;
+  if (stream.second_writer.empty()) {
+    const bus::Discovery discovery = participant_.discovered();
+    stream.second_writer =
+        fmt::format("two programs send in the name of source '{}' of bench '{}': {}, and later {}, "
+                    "whose messages are left out; end one of them",
+                    name, bench_, bus::name_of(discovery, stream.writers.first(session)),
+                    bus::name_of(discovery, writer.participant()));
+    spdlog::warn("run {}: {}", run_, stream.second_writer);
+  }
 }
 
 Expected<std::vector<SourceStreams::Request>> SourceStreams::requests_due(Instant now) {
@@ -299,6 +319,12 @@ std::uint64_t SourceStreams::recovered() const {
   return messages;
 }
 
+std::string SourceStreams::second_writer() const {
+  const auto found = std::ranges::find_if(
+      streams_, [](const auto& stream) { return !stream.second.second_writer.empty(); });
+  return found == streams_.end() ? "" : found->second.second_writer;
+}
+
 std::vector<std::string> SourceStreams::unanswered() const {
   std::vector<std::string> names;
   for (const auto& [name, stream] : streams_) {
@@ -364,7 +390,10 @@ std::optional<LostSource> SourceStreams::lost_source(Instant now, Instant watche
                                                      std::chrono::seconds silence_limit,
                                                      bool may_not_end) const {
   for (const auto& [name, stream] : streams_) {
-    if (stream.twins.twins() || (is_triggered(stream) && stream.writers.of_others() > 0)) {
+    if (is_triggered(stream) && !stream.second_writer.empty()) {
+      return LostSource{stream.second_writer, false};
+    }
+    if (stream.twins.twins()) {
       return LostSource{two_send_as(bench_, name, stream.service_before, stream.service), false};
     }
     if (stream.unfit) {

@@ -13,7 +13,8 @@
 // after `session_limit`, and its source counts as lost: another's description says nothing of them.
 // A session has one writer: the program that was heard first in it. Blocks of another one are left
 // out and counted, and the steps that they come in are flagged; records of another one end the run,
-// for nothing tells which step they spoil. Belongs to the run's one thread.
+// for nothing tells which step they spoil. Both programs are named as DDS discovery knows them.
+// Belongs to the run's one thread.
 #pragma once
 
 #include <chrono>
@@ -31,6 +32,7 @@
 #include "services/contract/known_sources.hpp"
 #include "services/evaluation/run_evaluator.hpp"
 #include "services/programs/analysis/described_sessions.hpp"
+#include "services/programs/analysis/left_out_messages.hpp"
 #include "services/programs/analysis/session_writers.hpp"
 #include "services/programs/analysis/stream_follower.hpp"
 #include "services/programs/analysis/waiting_blocks.hpp"
@@ -64,9 +66,10 @@ public:
     CatchUp what;
   };
 
-  // `participant` and `evaluator` outlive the object.
+  // `participant` and `evaluator` outlive the object. What is left out is counted in `left_out`.
   SourceStreams(bus::Participant& participant, std::shared_ptr<bus::WakeUp> wake_up,
-                std::string bench, std::string run, RunEvaluator& evaluator, Begin begin);
+                std::shared_ptr<LeftOutMessages> left_out, std::string bench, std::string run,
+                RunEvaluator& evaluator, Begin begin);
   SourceStreams(const SourceStreams&) = delete;
   SourceStreams& operator=(const SourceStreams&) = delete;
 
@@ -89,6 +92,10 @@ public:
   [[nodiscard]] bool is_held_up(Instant now) const;
   // Messages that had to be asked for.
   [[nodiscard]] std::uint64_t recovered() const;
+
+  // One sentence about the first source in whose name two programs have sent in one session; empty:
+  // none.
+  [[nodiscard]] std::string second_writer() const;
 
   // Sources that have described themselves and are to be asked for an answer.
   [[nodiscard]] std::vector<std::string> unanswered() const;
@@ -123,7 +130,8 @@ private:
     std::optional<Follower> follower; // from the first description on
     DuplicateSourceDetector twins;
     SessionWriters writers{};
-    std::string service{}; // that described it last, host and process; empty: not known
+    std::string second_writer{}; // sentence; empty: there was none
+    std::string service{};       // that described it last, host and process; empty: not known
     std::string service_before{};
   };
 
@@ -145,12 +153,15 @@ private:
   [[nodiscard]] Expected<void> open_answer_readers();
   template <class Message, class Take>
   void take(bus::Reader<Message>& reader, Take take);
+  void note_second_writer(const std::string& name, Stream& stream, std::uint64_t session,
+                          const bus::WriterId& writer);
   void hand_over(const std::string& name, Stream& stream, const wire::SampleBlock& block);
   void add(const std::string& name, const wire::SampleBlock& block);
   void hand_over_waiting(const std::string& name, Stream& stream, Instant now);
 
   bus::Participant& participant_;
   std::shared_ptr<bus::WakeUp> wake_up_;
+  std::shared_ptr<LeftOutMessages> left_out_;
   std::string bench_;
   std::string run_;
   std::string asker_;

@@ -90,7 +90,7 @@ void StreamFollower<Message>::hold(const Message& message) {
 }
 
 template <class Message>
-void StreamFollower<Message>::take_live(const Message& message, Instant now) {
+bool StreamFollower<Message>::take_live(const Message& message, Instant now) {
   heard_ = now;
   if (request_) {
     hold(message);
@@ -103,7 +103,10 @@ void StreamFollower<Message>::take_live(const Message& message, Instant now) {
   } else if (!is_known(message)) {
     begin_catch_up(now);
     hold(message);
+  } else {
+    return false;
   }
+  return true;
 }
 
 template <class Message>

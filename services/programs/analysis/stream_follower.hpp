@@ -65,7 +65,8 @@ public:
     awaits_beginning_ = true;
     begin_catch_up(now);
   }
-  void take_live(const Message& message, Instant now);
+  // False: it had come before, and is left out.
+  bool take_live(const Message& message, Instant now);
   void take_again(const Message& message, Instant now);
   // What has to be asked for now, again and again while nothing comes.
   [[nodiscard]] std::optional<CatchUp> due(Instant now);

@@ -1,9 +1,15 @@
 // What each vendor tells of the others in its domain.
 #include "services/bus/discovery.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <array>
 #include <memory>
 
+#include <fmt/core.h>
+
+#include "services/bus/participant_name.hpp"
 #include "services/bus/vendor.hpp"
 #include "services/contract/topics.hpp"
 #include "tests/unit/services/bus/bus_pair.hpp"
@@ -51,7 +57,11 @@ TEST_P(DiscoveryTest, TellsOfOthersWithPartitionAndQosUntilTheyAreGone) {
   }));
   const Discovery discovery = watching.discovered();
   ASSERT_EQ(discovery.participants.size(), 1U) << "it leaves itself out";
-  EXPECT_EQ(discovery.participants[0].name, "other");
+  std::array<char, 256> host{};
+  ASSERT_EQ(gethostname(host.data(), host.size() - 1), 0);
+  EXPECT_EQ(discovery.participants[0].name, fmt::format("other:{} on {}", getpid(), host.data()));
+  EXPECT_EQ(name_of(discovery, discovery.participants[0].id), discovery.participants[0].name);
+  EXPECT_EQ(name_of(discovery, "0110"), "participant 0110");
   EXPECT_EQ(discovery.participants[0].vendor,
             GetParam().writer == Vendor::fast_dds ? "Fast DDS" : "Cyclone DDS");
   ASSERT_EQ(discovery.endpoints.size(), 2U);

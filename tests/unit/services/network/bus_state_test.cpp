@@ -92,6 +92,11 @@ TEST_F(BusStateTest, PausesWhileTheAnalysisWaits) {
   EXPECT_EQ(state(), BenchState::paused);
   EXPECT_EQ(worst().what, "paused: no samples of dau");
   EXPECT_TRUE(has_event(Severity::warning, "no samples of dau"));
+  status.health(wire::HEALTH_OK);
+  status.message("two programs send as dau");
+  laboratory_.take(status);
+  EXPECT_EQ(worst().severity, Severity::note);
+  EXPECT_EQ(worst().what, "two programs send as dau");
 }
 
 TEST_F(BusStateTest, IsSilentBeforeThreeSecondsAndGoneAfterAMinute) {

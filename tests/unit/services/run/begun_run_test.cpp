@@ -157,17 +157,20 @@ TEST_F(BegunRunTest, IsNotResumedWithAnotherRecipe) {
 // From another folder: what the run began with, only the analysis knows.
 class ElsewhereBegunRun : public BegunRunTest {
 protected:
-  bus::Participant analysis_host_ = network_.join("analysis host");
-  bus::Writer<wire::Command> commands_ = analysis_host_.writer(bus::topics::command, "b").value();
+  bus::Writer<wire::Command> commands_ = analysis_.command_writer();
+  bus::Writer<wire::Command> persons_commands_ =
+      bench_host_.writer(bus::topics::command, "b").value();
 
-  void ask_to_end(const std::string& sender = "analysis@test:1") {
+  void ask_to_end() { ask_to_end(commands_); }
+  // Whoever it says that it is.
+  static void ask_to_end(bus::Writer<wire::Command>& commands) {
     wire::Command command;
     command.bench("b");
     command.target("conductor");
     command.kind(wire::COMMAND_ABORT);
     command.run("r1");
-    command.sender(sender);
-    commands_.write(command);
+    command.sender("ada@desk");
+    commands.write(command);
   }
 };
 
@@ -227,10 +230,11 @@ TEST_F(ElsewhereBegunRun, IsEndedByAPersonsCommand) {
   clock_.every(500ms, [this] {
     analysis_.report(wire::ARM_ARMED, wire::HEALTH_WAITING, "taking the run over");
   });
-  clock_.at(1s, [this] { ask_to_end("ada@desk"); });
+  clock_.at(1s, [this] { ask_to_end(persons_commands_); });
   const auto outcome = resume(std::nullopt);
   ASSERT_FALSE(outcome);
-  EXPECT_EQ(outcome.error().message, "run 'r1' is not resumed: ended by a command of 'ada@desk'");
+  EXPECT_EQ(outcome.error().message,
+            "run 'r1' is not resumed: ended by a command of bench: 'ada@desk'");
 }
 
 TEST_F(ElsewhereBegunRun, IsResumedAtOnceWhereItsResultsHaveThisRecipe) {
@@ -372,7 +376,8 @@ TEST_F(ConductedRun, LeavesOutAnAttemptThatItNeverMade) {
   EXPECT_DOUBLE_EQ(outcome->results[0].magnitude, 1.0);
   EXPECT_DOUBLE_EQ(outcome->results[1].magnitude, 1.0);
   EXPECT_THAT(notices_, testing::Contains(HasSubstr("that it did not plan or excite")));
-  EXPECT_THAT(notices_, testing::Contains(HasSubstr("another program than the analysis")));
+  EXPECT_THAT(notices_,
+              testing::Contains(HasSubstr("publishes about this run and is not its analysis")));
 }
 
 TEST_F(ConductedRun, TakesTheAttemptsThatItMade) {

@@ -20,6 +20,10 @@ public:
       : bench_(std::move(bench)), run_(std::move(run)), service_(std::move(service)),
         contract_version_(contract_version), participant_(network.join(service_)) {}
 
+  // Its own, for commands.
+  [[nodiscard]] bus::Writer<wire::Command> command_writer() {
+    return participant_.writer(bus::topics::command, bench_).value();
+  }
   void report(wire::ArmState arm, const std::string& failure = "") {
     report(arm, failure.empty() ? wire::HEALTH_OK : wire::HEALTH_FAILED, failure);
   }

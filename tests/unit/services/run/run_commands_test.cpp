@@ -48,7 +48,8 @@ protected:
 TEST_F(RunCommandsTest, ALatePauseDoesNotPauseAgainWhatWasContinued) {
   command(wire::COMMAND_PAUSE, 7);
   EXPECT_EQ(answer_to(7), "");
-  EXPECT_EQ(commands_.paused_by(), "ada@desk");
+  ASSERT_TRUE(commands_.paused_by());
+  EXPECT_EQ(commands_.paused_by()->sentence, "other: 'ada@desk'") << "who it is, and its comment";
   command(wire::COMMAND_CONTINUE, 8);
   EXPECT_EQ(answer_to(8), "");
   for (int i = 0; i < 3; ++i) {

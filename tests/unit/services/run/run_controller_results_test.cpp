@@ -197,8 +197,8 @@ TEST_F(RunControllerResultsTest, LeavesOutWhatAnotherProgramPublishesAboutTheRun
   EXPECT_EQ(outcome->problem, "");
   EXPECT_EQ(outcome->results.size(), 1U);
   EXPECT_TRUE(outcome->transfer_functions.empty());
-  EXPECT_THAT(notices_, testing::Contains(testing::HasSubstr("another program than the analysis "
-                                                             "of this run"))
+  EXPECT_THAT(notices_, testing::Contains(testing::HasSubstr("publishes about this run and is "
+                                                             "not its analysis"))
                             .Times(1));
 }
 

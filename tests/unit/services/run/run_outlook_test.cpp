@@ -45,7 +45,7 @@ protected:
   }
   [[nodiscard]] RunOutlook look(const wire::ServiceStatus& analysis,
                                 std::chrono::nanoseconds unheard = 0s) const {
-    return run_outlook(analysis, unheard, commands_);
+    return run_outlook(analysis, "of the analysis", unheard, commands_);
   }
 };
 
@@ -83,7 +83,7 @@ TEST_F(RunOutlookTest, IsPausedFromThePauseToTheContinuation) {
   command(wire::COMMAND_PAUSE);
   const RunOutlook paused = look(status(wire::ARM_ARMED));
   EXPECT_EQ(paused.kind, Kind::paused);
-  EXPECT_EQ(paused.reason.message, "paused by a command of 'ada@desk'");
+  EXPECT_EQ(paused.reason.message, "paused by a command of other: 'ada@desk'");
   EXPECT_EQ(look(status(wire::ARM_ARMED), 4s).kind, Kind::waits); // what is limited counts first
   command(wire::COMMAND_CONTINUE);
   EXPECT_EQ(look(status(wire::ARM_ARMED)).kind, Kind::well);
@@ -93,7 +93,7 @@ TEST_F(RunOutlookTest, IsOverByCommandWhateverElseThereIs) {
   command(wire::COMMAND_ABORT);
   const RunOutlook over = look(status(wire::ARM_ARMED), 100s);
   EXPECT_EQ(over.kind, Kind::over);
-  EXPECT_EQ(over.reason.message, "ended by a command of 'ada@desk'");
+  EXPECT_EQ(over.reason.message, "ended by a command of other: 'ada@desk'");
 }
 
 TEST_F(RunOutlookTest, LeavesOutCommandsToOthersAndAboutOtherRuns) {

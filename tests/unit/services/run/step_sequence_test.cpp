@@ -104,8 +104,10 @@ TEST_F(StepSequenceTest, APauseSwitchesTheOutputOffForAsLongAsItLasts) {
   EXPECT_EQ(outcome.problem, "");
   EXPECT_THAT(attempts_of(outcome), ElementsAre(1, 2, 1));
   ASSERT_EQ(outcome.pauses.size(), 1U);
-  EXPECT_EQ(outcome.pauses[0].reason, "paused by a command of 'ada@desk' (the output is off)");
-  EXPECT_THAT(messages_, Contains("paused by a command of 'ada@desk' (the output is off)"));
+  EXPECT_EQ(outcome.pauses[0].reason,
+            "paused by a command of operator: 'ada@desk' (the output is off)");
+  EXPECT_THAT(messages_,
+              Contains("paused by a command of operator: 'ada@desk' (the output is off)"));
 }
 
 TEST_F(StepSequenceTest, AnAnalysisThatDiesInAPauseIsWaitedForFromThenOn) {
@@ -119,9 +121,9 @@ TEST_F(StepSequenceTest, AnAbortEndsTheRunWithWhatThereIs) {
   bench_.excitation.duration_s = 10.0;
   clock_.at(14s, [this] { command(wire::COMMAND_ABORT); });
   const RunOutcome outcome = conduct();
-  EXPECT_EQ(outcome.problem, "ended by a command of 'ada@desk'");
+  EXPECT_EQ(outcome.problem, "ended by a command of operator: 'ada@desk'");
   EXPECT_EQ(state_, wire::MEASUREMENT_ABORTED);
-  EXPECT_THAT(messages_, Contains("ended by a command of 'ada@desk'"));
+  EXPECT_THAT(messages_, Contains("ended by a command of operator: 'ada@desk'"));
   EXPECT_LT(clock_.elapsed(), 18s);
   EXPECT_EQ(outcome.results.front().step, 1U);
 }
@@ -129,7 +131,7 @@ TEST_F(StepSequenceTest, AnAbortEndsTheRunWithWhatThereIs) {
 TEST_F(StepSequenceTest, AnAbortBeforeTheFirstStepIsNoPause) {
   clock_.at(0s, [this] { command(wire::COMMAND_ABORT); });
   const RunOutcome outcome = conduct();
-  EXPECT_EQ(outcome.problem, "ended by a command of 'ada@desk'");
+  EXPECT_EQ(outcome.problem, "ended by a command of operator: 'ada@desk'");
   EXPECT_THAT(excited_, IsEmpty());
   EXPECT_THAT(outcome.pauses, IsEmpty());
 }
