@@ -10,7 +10,7 @@ using namespace rtps_format;
 
 namespace {
 
-constexpr std::array<unsigned char, entity_bytes> participant_writer{0x00, 0x01, 0x00, 0xc2};
+constexpr std::array<unsigned char, entity_bytes> announcement_writer{0x00, 0x01, 0x00, 0xc2};
 constexpr std::array<unsigned char, entity_bytes> handshake_writer{0x00, 0x02, 0x01, 0xc3};
 
 // What comes before anybody is trusted. Both vendors send it in one piece; pieces could not be
@@ -23,7 +23,7 @@ bool handshake_is_readable(const Submessage& one) {
   const Bytes writer = one.body.subspan(writer_at, entity_bytes);
   const bool is_handshake = std::ranges::equal(writer, handshake_writer);
   if (one.id == data_frag) {
-    return !is_handshake && !std::ranges::equal(writer, participant_writer);
+    return !is_handshake && !std::ranges::equal(writer, announcement_writer);
   }
   const auto begin = qos_begin(one.body, data_bytes_before_qos, one.flags);
   const auto qos = begin ? inline_qos(one.body, *begin, one.flags) : std::nullopt;
