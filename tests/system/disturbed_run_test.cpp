@@ -38,7 +38,7 @@ protected:
   [[nodiscard]] double true_magnitude(const nlohmann::json& point) const {
     const auto truth = bench_->truth();
     for (const auto& expected : truth["transfer_function"]) {
-      if ("dau/" + expected["channel"].get<std::string>() == point["channel"] &&
+      if ("dau/" + expected["channel"].get<std::string>() == point["channel"].get<std::string>() &&
           expected["frequency_hz"] == point["frequency_hz"]) {
         return expected["magnitude"].get<double>();
       }

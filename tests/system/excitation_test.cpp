@@ -49,7 +49,7 @@ TEST(Excitation, ClosedLoopBringsTheLevelToItsValue) {
   int compared = 0;
   for (const auto& point : result["transfer_function"]) {
     for (const auto& known : truth["transfer_function"]) {
-      if ("dau/" + known["channel"].get<std::string>() != point["channel"] ||
+      if ("dau/" + known["channel"].get<std::string>() != point["channel"].get<std::string>() ||
           known["frequency_hz"] != point["frequency_hz"]) {
         continue;
       }

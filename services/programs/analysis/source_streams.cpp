@@ -20,8 +20,8 @@ SourceStreams::SourceStreams(bus::Participant& participant, std::shared_ptr<bus:
                              std::string run, RunEvaluator& evaluator, Begin begin)
     : participant_(participant), wake_up_(std::move(wake_up)), left_out_(std::move(left_out)),
       bench_(std::move(bench)), run_(std::move(run)),
-      asker_(fmt::format("{}/catch-up/{:016x}", bench_, random_session())),
-      evaluator_(evaluator), begin_(begin) {
+      asker_(fmt::format("{}/catch-up/{:016x}", bench_, random_session())), evaluator_(evaluator),
+      begin_(begin) {
   for (const std::string& source : evaluator_.recipe().sources()) {
     streams_.emplace(source, Stream{});
   }
