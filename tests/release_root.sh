@@ -47,6 +47,7 @@ enter_root() {
     [[ -z $network ]] || ip link set lo up multicast on
     mount -t proc proc "$root/proc"
     mount --bind /dev "$root/dev"
+    mount --bind /dev/pts "$root/dev/pts" # terminals
     exec chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 \
       DEBIAN_FRONTEND=noninteractive "$@"
   ' enter_root "$root" "$network" "$@"

@@ -6,6 +6,8 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include "analysis/base/preferred_frequencies.hpp"
+
 namespace dyncal::inline bench::bench_draft {
 namespace {
 
@@ -35,6 +37,13 @@ std::string quoted_list(const std::vector<std::string>& texts) {
   return fmt::format("[{}]", fmt::join(all, ", "));
 }
 
+// A range of preferred frequencies stays one.
+std::string frequencies_text(const BenchDraft& draft) {
+  const std::vector<std::string>& texts = draft.frequencies_hz;
+  return texts.size() == 1 && analysis::preferred_frequencies(texts.front()) ? quoted(texts.front())
+                                                                             : quoted_list(texts);
+}
+
 // A key, bare where TOML allows it.
 std::string key_of(const std::string& name) {
   const bool bare = !name.empty() && std::ranges::all_of(name, [](unsigned char letter) {
@@ -54,8 +63,7 @@ std::string number(double value) {
 }
 
 void add_head(const BenchDraft& draft, std::string& text) {
-  text +=
-      fmt::format(R"(# Bench {}, made by 'dyncal new-bench'. Hold it against what is there:
+  text += fmt::format(R"(# Bench {}, made by 'dyncal new-bench'. Hold it against what is there:
 #   dyncal check FILE        the whole file, without driving anything
 #   dyncal run FILE          one run
 bench = {}
@@ -69,9 +77,9 @@ repeat_first = true # the first frequency once more at the end: shows a drift
 settling_s = {:<13} # before every step
 duration_s = {:<13} # of every step; at least three periods of the lowest frequency
 )",
-                  draft.name.find('\n') == std::string::npos ? draft.name : "", quoted(draft.name),
-                  quoted_list(draft.frequencies_hz), number(draft.level_m_s2), draft.repetitions,
-                  number(draft.settling_s), number(draft.duration_s));
+                      draft.name.find('\n') == std::string::npos ? draft.name : "",
+                      quoted(draft.name), frequencies_text(draft), number(draft.level_m_s2),
+                      draft.repetitions, number(draft.settling_s), number(draft.duration_s));
 }
 
 void add_generator(const BenchDraft& draft, std::string& text) {

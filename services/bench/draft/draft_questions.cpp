@@ -11,6 +11,7 @@
 #include <fmt/ranges.h>
 
 #include "analysis/base/frequency.hpp"
+#include "analysis/base/preferred_frequencies.hpp"
 #include "drivers/link/address.hpp"
 #include "services/base/per_enumerator.hpp"
 
@@ -120,8 +121,14 @@ public:
   }
 
   void frequencies(std::vector<std::string>& values) {
-    ask("Frequencies in Hz, with blanks between them", fmt::format("{}", fmt::join(values, " ")),
+    ask("Frequencies in Hz, with blanks between them, or third-octave 10..200",
+        fmt::format("{}", fmt::join(values, " ")),
         [&](const std::string& answer) -> std::optional<std::string> {
+          if (auto preferred = analysis::preferred_frequencies(answer)) {
+            values = std::move(*preferred);
+            return values.empty() ? std::optional(fmt::format("none lies in '{}'", answer))
+                                  : std::nullopt;
+          }
           std::vector<std::string> list;
           std::size_t from = 0;
           while ((from = answer.find_first_not_of(" \t", from)) != std::string::npos) {

@@ -4,8 +4,10 @@
 #include <cctype>
 
 #include <fmt/core.h>
+#include <toml++/toml.h>
 
 #include "analysis/base/frequency.hpp"
+#include "analysis/base/preferred_frequencies.hpp"
 
 namespace dyncal::inline bench {
 namespace {
@@ -81,12 +83,28 @@ void check_number_of_steps(TomlTable& table, const ExcitationSettings& excitatio
   }
 }
 
+// A list, or those of ISO 266 in a range.
+std::vector<std::string> read_frequencies(TomlTable& table) {
+  const toml::node* node = table.node("frequencies_hz");
+  if (node == nullptr || !node->is_string()) {
+    return table.texts("frequencies_hz");
+  }
+  auto preferred = analysis::preferred_frequencies(table.text("frequencies_hz"));
+  if (!preferred || preferred->empty()) {
+    table.refuse("frequencies_hz",
+                 "must be a list, or a range of ISO 266 that holds one: \"third-octave 10..200\", "
+                 "\"octave 16..1000\"");
+    return {};
+  }
+  return std::move(*preferred);
+}
+
 } // namespace
 
 ExcitationSettings read_excitation(TomlTable table) {
   ExcitationSettings excitation;
-  excitation.frequencies_hz = table.texts("frequencies_hz");
-  if (excitation.frequencies_hz.empty()) {
+  excitation.frequencies_hz = read_frequencies(table);
+  if (excitation.frequencies_hz.empty() && !table.refused("frequencies_hz")) {
     table.refuse(
         "frequencies_hz",
         "must list at least one frequency as decimal text, for example [\"10\", \"12.5\"]");

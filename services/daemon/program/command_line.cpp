@@ -108,13 +108,15 @@ std::string about_conversion(const CLI::App& command, const std::string& what) {
                      number_text(option == nullptr ? "" : option->get_type_name()));
 }
 
-// "--level: Value -1 not in range 0.000000 to 1797693..." and so on for 309 digits.
+// "--level: Value -1 not in range 0.000000 to 1797693..." and so on for 309 digits, or, by CLI11 of
+// Debian 13, "[2.22507e-308 - 1.79769e+308]".
 std::string about_range(const CLI::App& command, const std::string& what) {
   constexpr std::string_view value_begins = ": Value ";
   const std::size_t begin = what.find(value_begins);
   const std::size_t end = what.find(" not in range ");
   if (begin == std::string::npos || end == std::string::npos ||
-      what.find("17976931348623157", end) == std::string::npos) {
+      (what.find("17976931348623157", end) == std::string::npos &&
+       what.find("1.79769e+308", end) == std::string::npos)) {
     return what;
   }
   const std::string name = what.substr(0, begin);

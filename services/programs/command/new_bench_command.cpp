@@ -70,7 +70,9 @@ void add_places(CLI::App& command, BenchDraft& draft) {
 }
 
 void add_excitation(CLI::App& command, BenchDraft& draft) {
-  command.add_option("--frequencies", draft.frequencies_hz, "in Hz, decimal text, comma separated")
+  command
+      .add_option("--frequencies", draft.frequencies_hz,
+                  "in Hz, decimal text, comma separated; or \"third-octave 10..200\"")
       ->delimiter(',')
       ->capture_default_str();
   add_default(command, "--level", draft.level_m_s2, "in m/s^2, amplitude", CLI::PositiveNumber);

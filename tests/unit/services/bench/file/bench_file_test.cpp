@@ -13,7 +13,9 @@
 namespace dyncal::inline bench {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::SizeIs;
 
 const char* const complete = R"(bench = "acc-1"
 [excitation]
@@ -212,6 +214,18 @@ TEST(BenchFile, RefusesFrequenciesThatAreNotPositiveNumbers) {
   EXPECT_THAT(problem_of(replaced(complete, "\"12.5\"", "12.5")), HasSubstr("list of texts"));
   EXPECT_THAT(problem_of(replaced(complete, "level = 10.0", "level = [1.0, 2.0, 3.0]")),
               HasSubstr("lists 3 levels for 2 frequencies"));
+}
+
+TEST(BenchFile, TakesPreferredFrequenciesInARange) {
+  const auto file = parse_bench_file(
+      replaced(complete, "[\"10\", \"12.5\"]", "\"third-octave 10..20\""), "bench.toml");
+  ASSERT_TRUE(file) << file.error().message;
+  EXPECT_THAT(file->excitation.frequencies_hz, ElementsAre("10", "12.5", "16", "20"));
+  EXPECT_THAT(file->excitation.levels_m_s2, SizeIs(4));
+  for (const char* range : {"third-octave 21..24", "third-octave", "10 20"}) {
+    EXPECT_THAT(problem_of(replaced(complete, "[\"10\", \"12.5\"]", fmt::format("\"{}\"", range))),
+                HasSubstr("'excitation.frequencies_hz' must be a list, or a range of ISO 266"));
+  }
 }
 
 TEST(BenchFile, NamesTheExcitedAxisIfItIsStated) {

@@ -97,6 +97,7 @@ TEST_F(MetricsTest, ServesWhatTheAnalysisDoes) {
                          .sources = 9,
                          .runs_of_others = 10,
                          .left_out = {{"runs", 11}},
+                         .left_out_of_sources = {{"acc-1", "dau", 12, 13}},
                          .malformed_messages = 6,
                          .refused_packets = 7},
          store_);
@@ -110,6 +111,9 @@ TEST_F(MetricsTest, ServesWhatTheAnalysisDoes) {
   EXPECT_EQ(values.at(R"(dyncal_analysis_held{what="sources"})"), 9);
   EXPECT_EQ(values.at(R"(dyncal_analysis_held{what="runs_of_others"})"), 10);
   EXPECT_EQ(values.at(R"(dyncal_analysis_left_out_total{what="runs"})"), 11);
+  const std::string source = R"({bench="acc-1",source="dau"})";
+  EXPECT_EQ(values.at("dyncal_analysis_messages_duplicate_total" + source), 12);
+  EXPECT_EQ(values.at("dyncal_analysis_messages_of_others_total" + source), 13);
   EXPECT_EQ(values.at("dyncal_malformed_messages_total"), 6);
   EXPECT_EQ(values.at("dyncal_refused_packets_total"), 7);
 }
