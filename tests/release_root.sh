@@ -45,7 +45,9 @@ enter_root() {
     set -e
     root=$1; network=$2; shift 2
     [[ -z $network ]] || ip link set lo up multicast on
+    mount --rbind "$root" "$root" # a mount, as the root of a system is
     mount -t proc proc "$root/proc"
+    mount -t sysfs sysfs "$root/sys" # of the network namespace
     mount --bind /dev "$root/dev"
     mount --bind /dev/pts "$root/dev/pts" # terminals
     exec chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 \

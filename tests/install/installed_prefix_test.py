@@ -124,11 +124,12 @@ def check_files(options, prefix):
         all(p.is_relative_to(prefix / "include/dyncal") for p in headers),
         "a header is outside include/dyncal",
     )
-    trees = [str(TOP).encode() + b"/", str(options.build).encode() + b"/"]
+    folders = (re.escape(str(folder).encode()) for folder in (TOP, options.build))
+    tree = re.compile(rb"(?<![\w./-])(" + b"|".join(folders) + rb")/")  # not /etc/dyncal/
     for path in files_below(prefix):
         content = path.read_bytes()
         expect(
-            not any(tree in content for tree in trees),
+            not tree.search(content),
             f"{path} names a file of the source or build tree",
         )
     for header in headers:

@@ -11,6 +11,7 @@
 #include "services/bus/cyclonedds/cyclone_dds_discovery.hpp"
 #include "services/bus/cyclonedds/cyclone_dds_log.hpp"
 #include "services/bus/cyclonedds/cyclone_dds_security.hpp"
+#include "services/bus/cyclonedds/cyclone_dds_threads.hpp"
 #include "services/bus/cyclonedds/cyclone_dds_type.hpp"
 #include "services/bus/host_network.hpp"
 #include "services/bus/qos_profiles.hpp"
@@ -60,6 +61,7 @@ base::Expected<std::shared_ptr<Domain>> open_domain(int number, const std::strin
                 "Cyclone DDS domain " + std::to_string(number) +
                     " is open in this process with other network settings");
   }
+  DYNCAL_TRY(check_threads_for_cyclone_dds());
   const dds_entity_t handle =
       dds_create_domain(static_cast<dds_domainid_t>(number), config.c_str());
   if (handle < 0) {

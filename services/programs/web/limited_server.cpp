@@ -321,12 +321,15 @@ bool LimitedServer::answer(Connection& connection) {
   bool is_closed = false;
   const bool is_last = connection.requests >= max_requests;
   const auto nothing = [](httplib::Request&) {};
-  // Newer versions of the library hand on addresses, too, which nothing here asks for.
+  // Newer versions of the library are told of the visitor, and do not ask the stream.
+  std::string visitor;
+  int port = 0;
+  stream.get_remote_ip_and_port(visitor, port);
   const auto process = [&](auto& server) {
     if constexpr (requires { server.process_request(stream, is_last, is_closed, nothing); }) {
       return server.process_request(stream, is_last, is_closed, nothing);
     } else {
-      return server.process_request(stream, "", 0, "", 0, is_last, is_closed, nothing);
+      return server.process_request(stream, visitor, port, "", 0, is_last, is_closed, nothing);
     }
   };
   const bool was_served = process(*this);

@@ -74,9 +74,12 @@ mount -t devtmpfs devtmpfs /dev 2>/dev/null
 mkdir -p /dev/pts /dev/shm /run/host
 mount -t devpts devpts /dev/pts
 mount -t tmpfs tmpfs /dev/shm
-mount -t hostfs -o "$1" none /run/host
+mount_host() { # folder, place; by newer kernels it has a name
+  mount -t hostfs -o "$1" none "$2" 2>/dev/null || mount -t hostfs -o "hostfs=$1" none "$2"
+}
+mount_host "$1" /run/host
 writable=$(cat /run/host/writable)
-[[ -z $writable ]] || mount -t hostfs -o "$writable" none "$writable"
+[[ -z $writable ]] || mount_host "$writable" "$writable"
 modules=/usr/lib/uml/modules/$(uname -r)/kernel
 for module in net/can/can net/can/can-raw drivers/net/can/dev/can-dev drivers/net/can/vcan \
   drivers/net/can/vxcan \

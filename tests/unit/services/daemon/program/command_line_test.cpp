@@ -64,8 +64,10 @@ TEST(CommandLine, ANumberThatIsTooSmallIsNamedWithWhatItMayBe) {
   EXPECT_EQ(problem({"run", "a.toml", "--level", "0"}), "invalid --level = 0: must be above 0");
   EXPECT_EQ(problem({"run", "a.toml", "--offset", "-1"}),
             "invalid --offset = -1: must be 0 or more");
-  EXPECT_EQ(problem({"run", "a.toml", "--domain", "233"}),
-            "--domain: Value 233 not in range 0 to 232");
+  // By CLI11 of Debian 12 and 13.
+  EXPECT_THAT(problem({"run", "a.toml", "--domain", "233"}),
+              testing::AnyOf("--domain: Value 233 not in range 0 to 232",
+                             "--domain: Value 233 not in range [0 - 232]"));
 }
 
 TEST(CommandLine, UnknownCommand) {
