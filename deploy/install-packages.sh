@@ -54,7 +54,7 @@ test_packages=(
   nginx-light                                  # the page behind a proxy
   user-mode-linux busybox-static can-utils     # a kernel with CAN where this one has none
 )
-package_packages=(debhelper dpkg-dev fakeroot lintian)
+package_packages=(build-essential debhelper dpkg-dev fakeroot lintian)
 # How the code is written is looked at by one version, which Debian 12 alone has: elsewhere these
 # tests say that they are skipped.
 if grep -qsx 'VERSION_CODENAME=bookworm' /etc/os-release; then
