@@ -64,7 +64,8 @@ class Token(unittest.TestCase):
     def certify(self, file, key, certificate="rsa"):
         return dyncal("certify", self.run_folder, "--lab", stored_run.LAB, "--sensor",
                       stored_run.SENSOR, "--output", file, "--key", key, "--certificate",
-                      self.folder / f"{certificate}.pem")  # fmt: skip
+                      self.folder / f"{certificate}.pem",
+                      *stored_run.kept(certificate_test.DYNCAL, self.run_folder))  # fmt: skip
 
     def key(self, name, pin="pin"):
         return f"pkcs11:token=lab;object={name};type=private?pin-source=file:{self.folder / pin}"
@@ -74,7 +75,8 @@ class Token(unittest.TestCase):
         made = self.certify(file, self.key("rsa"))
         self.assertEqual((made.returncode, made.stderr), (0, ""))
         trust = self.folder / "ca.pem"
-        checked = dyncal("verify", file, "--trust", trust, "--run", self.run_folder)
+        checked = dyncal("verify", file, "--trust", trust, "--run", self.run_folder,
+                         *stored_run.kept(certificate_test.DYNCAL, self.run_folder))  # fmt: skip
         self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
         if shutil.which("xmlsec1"):
             checked = run("xmlsec1", "--verify", "--trusted-pem", trust, "--enabled-key-data",

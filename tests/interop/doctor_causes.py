@@ -108,7 +108,7 @@ def add_twin(lab, vendor):
 
 
 def add_forger(lab, vendor):
-    words = [lab.programs / "forging_source", vendor, lab.domain, "netns", "dau"]
+    words = [lab.programs / "forging_source", vendor, lab.domain, "netns"]
     lab.run_on(lab.on(THERE, *words), lab.folder / "forger.log")
 
 

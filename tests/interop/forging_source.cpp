@@ -1,21 +1,28 @@
-// A program that sends samples in the name of a source of another program, until it is ended.
+// A program that writes samples on a bench and describes no source there, until it is ended.
 //
-//   forging_source DDS DOMAIN BENCH SOURCE
+//   forging_source DDS DOMAIN BENCH
 #include <csignal>
 #include <cstdlib>
 
-#include "tests/faults/forger.hpp"
+#include "services/bus/bus.hpp"
+#include "services/bus/vendor.hpp"
+#include "services/contract/topics.hpp"
 
 int main(int count, char** words) {
-  if (count != 5) {
+  namespace bus = dyncal::bus;
+  if (count != 4) {
     return 2;
   }
   sigset_t ending;
   sigemptyset(&ending);
   sigaddset(&ending, SIGTERM);
   sigprocmask(SIG_BLOCK, &ending, nullptr); // of its threads, too
-  dyncal::tests::Forger forger(words[1], std::atoi(words[2]), words[3]);
-  forger.send_as(words[4]);
+  bus::ParticipantOptions options;
+  options.vendor = bus::parse_vendor(words[1]).value();
+  options.domain = std::atoi(words[2]);
+  options.name = "forger";
+  auto participant = bus::Participant::create(options).value();
+  const auto writer = participant.writer(bus::topics::dau_samples, words[3]).value();
   int signal = 0;
   return sigwait(&ending, &signal);
 }

@@ -89,7 +89,7 @@ std::vector<std::string> read_frequencies(TomlTable& table) {
   if (node == nullptr || !node->is_string()) {
     return table.texts("frequencies_hz");
   }
-  auto preferred = analysis::preferred_frequencies(table.text("frequencies_hz"));
+  auto preferred = analysis::preferred_frequencies(node->as_string()->get());
   if (!preferred || preferred->empty()) {
     table.refuse("frequencies_hz",
                  "must be a list, or a range of ISO 266 that holds one: \"third-octave 10..200\", "

@@ -70,7 +70,7 @@ std::string validity_of(TomlTable& table, const std::string& issued) {
   if (!table.has("interval_months")) {
     return stated;
   }
-  const int months = table.whole_number("interval_months", 12, 1);
+  const int months = table.whole_number("interval_months", 0, 1);
   if (!stated.empty()) {
     table.refuse("interval_months", "stands in place of 'valid_until'");
   }
