@@ -197,7 +197,7 @@ FAULTS_MADE = (
     ),
     Fault(
         "samples forged in the name of a source",
-        r"forger \(.*10\.98\.0\.2\) writes samples of bench netns",
+        r"forger:.*10\.98\.0\.2\) writes samples of bench netns",
         add=add_forger,
     ),
     Fault(

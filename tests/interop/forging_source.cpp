@@ -3,6 +3,7 @@
 //   forging_source DDS DOMAIN BENCH
 #include <csignal>
 #include <cstdlib>
+#include <string>
 
 #include "services/bus/bus.hpp"
 #include "services/bus/vendor.hpp"
@@ -18,11 +19,13 @@ int main(int count, char** words) {
   sigaddset(&ending, SIGTERM);
   sigprocmask(SIG_BLOCK, &ending, nullptr); // of its threads, too
   bus::ParticipantOptions options;
-  options.vendor = bus::parse_vendor(words[1]).value();
+  options.vendor =
+      std::string(words[1]) == "fastdds" ? bus::Vendor::fast_dds : bus::Vendor::cyclone_dds;
   options.domain = std::atoi(words[2]);
   options.name = "forger";
-  auto participant = bus::Participant::create(options).value();
-  const auto writer = participant.writer(bus::topics::dau_samples, words[3]).value();
+  auto participant = bus::Participant::create(options);
+  const auto writer = participant.and_then(
+      [&](bus::Participant& joined) { return joined.writer(bus::topics::dau_samples, words[3]); });
   int signal = 0;
-  return sigwait(&ending, &signal);
+  return writer ? sigwait(&ending, &signal) : 1;
 }

@@ -66,7 +66,7 @@ std::string day_after(const std::string& day, int months) {
 
 // The day itself, or an interval after `issued`.
 std::string validity_of(TomlTable& table, const std::string& issued) {
-  const std::string stated = date_of(table, "valid_until");
+  std::string stated = date_of(table, "valid_until");
   if (!table.has("interval_months")) {
     return stated;
   }
