@@ -1,7 +1,7 @@
 #include "services/bus/cyclonedds/cyclone_dds_threads.hpp"
 
+#include <exception>
 #include <future>
-#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -17,12 +17,13 @@ base::Expected<void> check_threads_for_cyclone_dds() {
   std::promise<void> end;
   const std::shared_future<void> ended = end.get_future().share();
   std::vector<std::jthread> threads;
+  threads.reserve(threads_of_a_domain);
   base::Expected<void> result;
   try {
     for (int i = 0; i < threads_of_a_domain; ++i) {
       threads.emplace_back([ended] { ended.wait(); });
     }
-  } catch (const std::system_error&) {
+  } catch (const std::exception&) { // no thread, or no memory for one
     result = fail(base::ErrorCode::network,
                   "no further thread can be made for Cyclone DDS; raise TasksMax or MemoryMax of "
                   "its systemd unit, or the user's limits (ulimit -u, -v)");

@@ -106,6 +106,9 @@ Expected<void> gather(CertifyOptions& options, const std::string& place,
              with_progress("holding the result against its recording", [&](const auto& count) {
                return read_held_result(certify.run, place, count, stop);
              }));
+  if (options.file.key) {
+    DYNCAL_TRY(require_proof(certify.held));
+  }
   certify.number = options.number.number;
   certify.replaces = options.number.replaces;
   if (replaced) {

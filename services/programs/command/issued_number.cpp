@@ -1,6 +1,9 @@
 #include "services/programs/command/issued_number.hpp"
 
+#include <algorithm>
+
 #include <CLI/CLI.hpp>
+#include <fmt/core.h>
 
 #include "services/contract/digest.hpp"
 
@@ -32,7 +35,14 @@ replaced_document(const NumberOptions& options, const std::string& place, const 
     return no_register(options.replaces);
   }
   DYNCAL_TRY(const auto known, DocumentRegister::open(place));
-  return known->find(options.replaces, kind);
+  DYNCAL_TRY(const auto documents, known->of_number(options.replaces));
+  if (documents.empty()) {
+    return fail(
+        ErrorCode::bad_argument,
+        fmt::format("no document has number {}, so none can be replaced", options.replaces));
+  }
+  const auto found = std::ranges::find(documents, kind, &IssuedDocument::kind);
+  return found == documents.end() ? std::nullopt : std::optional(*found);
 }
 
 IssuedDocument document_of(const StoredResult& result, const std::string& text,
@@ -46,6 +56,15 @@ IssuedDocument document_of(const StoredResult& result, const std::string& text,
           .run = result.run,
           .serial = {},
           .file = std::filesystem::absolute(file).lexically_normal().string()};
+}
+
+Expected<void> require_proof(const HeldResult& held) {
+  if (held.objections.empty()) {
+    return {};
+  }
+  return fail(ErrorCode::no_result,
+              fmt::format("{}: nothing is signed or issued of it, forced or not: {}",
+                          held.result.file.string(), held.objections.front()));
 }
 
 Expected<void> enter_document(const std::string& place, const IssuedDocument& document) {

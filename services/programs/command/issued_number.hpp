@@ -7,7 +7,7 @@
 
 #include "services/programs/command/keep_options.hpp"
 #include "services/records/store/document_register.hpp"
-#include "services/views/report/stored_result.hpp"
+#include "services/views/objections/held_result.hpp"
 
 namespace dyncal::inline programs {
 
@@ -20,14 +20,18 @@ struct NumberOptions {
 // --number, --replaces, and those of the store
 void add_number_options(CLI::App& command, NumberOptions& options);
 
-// The document whose place the new one takes. Fails (bad_argument) where `replaces` is no number
-// of the register.
+// The document of this kind whose place the new one takes; nothing: there is none of this kind, or
+// nothing is replaced. Fails (bad_argument) where `replaces` is no number of the register.
 [[nodiscard]] Expected<std::optional<IssuedDocument>>
 replaced_document(const NumberOptions& options, const std::string& place, const std::string& kind);
 
 // Of the file with this text.
 [[nodiscard]] IssuedDocument document_of(const StoredResult& result, const std::string& text,
                                          const std::filesystem::path& file);
+
+// Before a document that counts. Fails (no_result) where nothing shows that the result is what was
+// measured.
+[[nodiscard]] Expected<void> require_proof(const HeldResult& held);
 
 // Into the register at `place`, before its file is written. Fails (bad_argument) without a place.
 [[nodiscard]] Expected<void> enter_document(const std::string& place,

@@ -64,6 +64,7 @@ Expected<ReportContents> gather(const ReportOptions& report, const std::string& 
   if (report.issue) {
     DYNCAL_TRY(const auto replaced, replaced_document(report.number, place, "PDF"));
     DYNCAL_TRY(request.held, read_held_result(request.run, place, count, stop));
+    DYNCAL_TRY(require_proof(*request.held));
   }
   return gather_report(request);
 }

@@ -159,7 +159,7 @@ public:
       }
       ++found_.values;
       if (!has_values_of(point.channel)) {
-        difference_ = fmt::format("it knows no channel {}", point.channel);
+        differ(fmt::format("it knows no channel {}", point.channel));
       } else if (const StoredPoint* same = find_same(again_, point)) {
         note(deviation_u(point, *same), point.channel, point.frequency_text_hz, point.magnitude,
              same->magnitude);
@@ -180,8 +180,31 @@ public:
       } else {
         note(deviation_u(value, *same), value.channel, value.frequency_text_hz, value.magnitude,
              same->magnitude);
-        note_flags(value, *same);
+        note_flags(value.flag_names, same->flag_names,
+                   value.channel + " at " + value.frequency_text_hz + " Hz");
       }
+    }
+    for (const StoredDelay& one : kept_.group_delays) {
+      compare_delay(one);
+    }
+  }
+
+  // What casts doubt on values, and stands in the file no more, may be why nobody doubts them.
+  void compare_doubts() {
+    for (const StoredPoint& point : kept_.points) {
+      if (const StoredPoint* same = find_same(again_, point)) {
+        note_flags(point.flag_names, same->flag_names,
+                   fmt::format("{}, step {}", point.channel, point.step));
+      }
+    }
+    for (const StoredChannel& again : again_.channels) {
+      const auto kept = std::ranges::find(kept_.channels, again.channel, &StoredChannel::channel);
+      if (kept == kept_.channels.end()) {
+        differ(fmt::format("channel {} is not in the file", again.channel));
+        continue;
+      }
+      note_flags(kept->flag_names, again.flag_names, again.channel);
+      note_closures(*kept, again);
     }
   }
 
@@ -201,21 +224,52 @@ private:
             double again) {
     if (by_u <= allowed_u_) {
       found_.largest_deviation_u = std::max(found_.largest_deviation_u, by_u);
-    } else if (difference_.empty()) {
-      difference_ = fmt::format("{} at {} Hz: |H| is {:.6g} in the file and {:.6g} by the recording"
-                                "; value or U differ by {:.2g} u",
-                                channel, frequency, kept, again, by_u);
+    } else {
+      differ(fmt::format("{} at {} Hz: |H| is {:.6g} in the file and {:.6g} by the recording; "
+                         "value or U differ by {:.2g} u",
+                         channel, frequency, kept, again, by_u));
     }
   }
 
-  // One that is missing in the file may be why nobody doubted the value.
-  void note_flags(const StoredValue& kept, const StoredValue& again) {
-    for (const std::string& flag : again.flag_names) {
-      if (std::ranges::find(kept.flag_names, flag) == kept.flag_names.end() &&
-          difference_.empty()) {
-        difference_ = fmt::format("{} at {} Hz has the flag {} by the recording", kept.channel,
-                                  kept.frequency_text_hz, flag);
+  void compare_delay(const StoredDelay& kept) {
+    const analysis::GroupDelay* again = again_.group_delay_of(kept.channel);
+    const double u_s = kept.delay.u_delay_s();
+    const bool is_same =
+        again != nullptr &&
+        (again->delay_s == kept.delay.delay_s ||
+         std::abs(again->delay_s - kept.delay.delay_s) <= allowed_u_ * u_s) &&
+        (again->u_delay_s() == u_s || std::abs(again->u_delay_s() - u_s) <= allowed_u_ * u_s);
+    if (!is_same) {
+      differ(fmt::format("{}: the group delay is another by the recording", kept.channel));
+    }
+  }
+
+  void note_flags(const std::vector<std::string>& kept, const std::vector<std::string>& again,
+                  const std::string& where) {
+    for (const std::string& flag : again) {
+      if (std::ranges::find(kept, flag) == kept.end()) {
+        differ(fmt::format("{} has the flag {} by the recording", where, flag));
       }
+    }
+  }
+
+  void note_closures(const StoredChannel& kept, const StoredChannel& again) {
+    for (const Closure& open : again.closures) {
+      const bool is_known = open.verdict != Verdict::open ||
+                            std::ranges::any_of(kept.closures, [&](const Closure& one) {
+                              return one.kind == open.kind && one.subject == open.subject &&
+                                     one.verdict == open.verdict;
+                            });
+      if (!is_known) {
+        differ(fmt::format("{}: a closure is open by the recording: {}", again.channel,
+                           open.sentence));
+      }
+    }
+  }
+
+  void differ(std::string how) {
+    if (difference_.empty()) {
+      difference_ = std::move(how);
     }
   }
 
@@ -241,6 +295,7 @@ Expected<RepeatedEvaluation> hold_against(const StoredResult& kept, const Stored
   const bool is_whole = comparison.found().missing == 0;
   if (is_whole) {
     comparison.compare_means();
+    comparison.compare_doubts();
   }
   if (!comparison.difference().empty() && !is_same_version) {
     return fail(ErrorCode::no_result,

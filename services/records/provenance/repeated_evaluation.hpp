@@ -2,10 +2,11 @@
 //
 // The version that made the result gives the same file to the last bit, but for the statistics of
 // sample clocks, which end where the live analysis stopped to listen, and for the instants at which
-// the conductor began, paused and ended, which may differ by 10 s. Another version may give
-// what differs by up to 0.1 u, in values and in U. A value for which the recording has fewer
-// samples than the analysis had cannot be held against it: it is missing, and means are then held
-// against the single results alone (views/report/mean_check.hpp).
+// the conductor began, paused and ended, which may differ by 10 s. Another version may give what
+// differs by up to 0.1 u, in values, in U and in the group delay; a flag, or a closure that is
+// open, must be in the file as well. A value for which the recording has fewer samples than the
+// analysis had cannot be held against it: it is missing, and means are then held against the single
+// results alone (views/report/mean_check.hpp).
 //
 // Fails (no_result) where the two differ, naming the first difference, or where the recording is of
 // other runs; (bad_file) where it cannot be read; (interrupted). Evaluates in threads of its own.

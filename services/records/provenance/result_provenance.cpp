@@ -23,17 +23,18 @@ Expected<std::string> said_by_store(const StoredResult& result, const std::strin
   if (!kept) {
     return std::string();
   }
-  if (*kept != result.sha256) {
+  if (kept->sha256 != result.sha256) {
     return fail(ErrorCode::no_result,
                 fmt::format("{}: is not the result that the store has of run '{}': its SHA-256 is "
                             "{}..., that in the store {}...; it was changed after it was kept: "
                             "take the run folder from a back-up",
                             result.file.string(), result.run,
                             result.sha256.substr(0, shown_of_hash),
-                            kept->substr(0, shown_of_hash)));
+                            kept->sha256.substr(0, shown_of_hash)));
   }
-  return fmt::format("The result file is the one that was kept when the run ended (SHA-256 {}...).",
-                     result.sha256.substr(0, shown_of_hash));
+  return fmt::format("The result file is the one that the store has of the run, since {} (SHA-256 "
+                     "{}...).",
+                     kept->since_utc, result.sha256.substr(0, shown_of_hash));
 }
 
 std::string said_of(const RepeatedEvaluation& repeated, const StoredResult& result) {

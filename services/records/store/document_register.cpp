@@ -57,7 +57,7 @@ Expected<std::vector<IssuedDocument>> DocumentRegister::where(const std::string&
 }
 
 Expected<void> DocumentRegister::check_replaced(const IssuedDocument& document) {
-  DYNCAL_TRY(const auto replaced, where("number", document.replaces));
+  DYNCAL_TRY(const auto replaced, of_number(document.replaces));
   if (replaced.empty()) {
     return fail(ErrorCode::bad_argument,
                 fmt::format("no document has number {}, so none can be replaced by {}",
@@ -75,7 +75,7 @@ Expected<void> DocumentRegister::check_replaced(const IssuedDocument& document) 
 }
 
 Expected<void> DocumentRegister::check(const IssuedDocument& document) {
-  DYNCAL_TRY(const auto known, where("number", document.number));
+  DYNCAL_TRY(const auto known, of_number(document.number));
   for (const IssuedDocument& one : known) {
     const bool is_of_other = one.result_sha256 != document.result_sha256 ||
                              one.serial != document.serial || one.replaces != document.replaces;
@@ -99,13 +99,6 @@ Expected<void> DocumentRegister::enter(const IssuedDocument& document) {
          document.file}));
     return {};
   });
-}
-
-Expected<std::optional<IssuedDocument>> DocumentRegister::find(const std::string& number,
-                                                               const std::string& kind) {
-  DYNCAL_TRY(const auto known, where("number", number));
-  const auto found = std::ranges::find(known, kind, &IssuedDocument::kind);
-  return found == known.end() ? std::nullopt : std::optional(*found);
 }
 
 Expected<std::optional<IssuedDocument>> DocumentRegister::find_file(const std::string& sha256) {

@@ -37,21 +37,21 @@ public:
   // In the database of a store; makes it if there is none.
   [[nodiscard]] static Expected<std::unique_ptr<DocumentRegister>> open(const std::string& place);
 
-  // Whether it could be entered now, before it is made: without its SHA-256.
-  [[nodiscard]] Expected<void> check(const IssuedDocument& document);
   // Before its file is written: a number that was given to nothing does less harm than a document
   // that nobody knows.
   [[nodiscard]] Expected<void> enter(const IssuedDocument& document);
   [[nodiscard]] Expected<std::optional<IssuedDocument>> find_file(const std::string& sha256);
-  // That of a number and kind.
-  [[nodiscard]] Expected<std::optional<IssuedDocument>> find(const std::string& number,
-                                                             const std::string& kind);
+  // Of each kind at most one.
+  [[nodiscard]] Expected<std::vector<IssuedDocument>> of_number(const std::string& number) {
+    return where("number", number);
+  }
   // The number by which it was replaced; empty: none.
   [[nodiscard]] Expected<std::string> replacement_of(const std::string& number);
 
 private:
   explicit DocumentRegister(std::unique_ptr<Database> database) : database_(std::move(database)) {}
   Expected<std::vector<IssuedDocument>> where(const std::string& column, const std::string& value);
+  Expected<void> check(const IssuedDocument& document);
   Expected<void> check_replaced(const IssuedDocument& document);
 
   std::unique_ptr<Database> database_;

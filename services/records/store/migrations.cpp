@@ -48,9 +48,9 @@ const std::vector<Change>& changes() {
        "CREATE INDEX closures_of_result ON closures (result_sha256)"},
       {"CREATE TABLE documents ("
        "document_sha256 TEXT PRIMARY KEY, number TEXT NOT NULL, kind TEXT NOT NULL, "
-       "identifier TEXT NOT NULL, replaces TEXT NOT NULL, issued_utc TEXT NOT NULL, result_sha256 "
-       "TEXT NOT NULL, "
-       "bench TEXT NOT NULL, run TEXT NOT NULL, serial TEXT NOT NULL, file TEXT NOT NULL)",
+       "identifier TEXT NOT NULL, replaces TEXT NOT NULL, issued_utc TEXT NOT NULL, "
+       "result_sha256 TEXT NOT NULL, bench TEXT NOT NULL, run TEXT NOT NULL, serial TEXT NOT NULL, "
+       "file TEXT NOT NULL)",
        "CREATE UNIQUE INDEX documents_by_number ON documents (number, kind)"},
   };
   return all;

@@ -137,20 +137,21 @@ Expected<StoreAddition> Store::add(const std::filesystem::path& path) {
 }
 
 // A run of files is known by its time as well: its name says nothing.
-Expected<std::optional<std::string>> Store::hash_of(const StoredResult& result) {
+Expected<std::optional<KeptHash>> Store::hash_of(const StoredResult& result) {
   DYNCAL_TRY(const auto rows,
-             database_->execute("SELECT result_sha256, state, began_utc FROM results "
+             database_->execute("SELECT result_sha256, state, began_utc, added_utc FROM results "
                                 "WHERE bench = $1 AND run = $2 AND recipe_sha256 = $3",
                                 {result.bench, result.run, result.recipe_sha256}));
-  std::optional<std::string> hash;
+  std::optional<KeptHash> hash;
   for (const DatabaseRow& row : rows) {
     const bool is_of_other_files =
         result.run == run_of_files && text_of(row[2]) != result.began_utc;
-    if (text_of(row[0]) == result.sha256) {
-      return std::optional(result.sha256);
+    const KeptHash kept{text_of(row[0]), text_of(row[3])};
+    if (kept.sha256 == result.sha256) {
+      return std::optional(kept);
     }
     if (!is_of_other_files && text_of(row[1]) != to_string(RunCompletion::unfinished)) {
-      hash = text_of(row[0]);
+      hash = kept;
     }
   }
   return hash;

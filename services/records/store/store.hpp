@@ -67,6 +67,11 @@ struct Calibration {
   std::vector<OpenClosure> open_closures{};
 };
 
+struct KeptHash {
+  std::string sha256;    // of a result file
+  std::string since_utc; // when it was added
+};
+
 class Store {
 public:
   // Makes it if there is none.
@@ -76,8 +81,8 @@ public:
 
   // A result file or a run folder.
   [[nodiscard]] Expected<StoreAddition> add(const std::filesystem::path& path);
-  // The SHA-256 of the file that is kept of this run by this recipe; nothing: none is.
-  [[nodiscard]] Expected<std::optional<std::string>> hash_of(const StoredResult& result);
+  // Of the file that is kept of this run by this recipe; nothing: none is.
+  [[nodiscard]] Expected<std::optional<KeptHash>> hash_of(const StoredResult& result);
   // By time.
   [[nodiscard]] Expected<std::vector<StoredRun>> runs(const RunFilter& filter,
                                                       const SharedWorkCount& count = nullptr);

@@ -91,13 +91,52 @@ TEST_F(RepeatedEvaluationTest, LetsAnotherVersionDifferByATenthOfU) {
               HasSubstr("serial"));
 }
 
-TEST_F(RepeatedEvaluationTest, FindsAFlagThatWasTakenOut) {
-  again_.values.front().flag_names.emplace_back("samples_lost");
-  EXPECT_THAT(refusal([](StoredResult& one) {
-                one.analysis_software = "dyncal 0.1.9";
-                one.values.front().flag_names.clear();
+// Another version may give flags of its own: what it doubts is analysed anew.
+TEST_F(RepeatedEvaluationTest, FindsWhatCastsDoubtAndWasTakenOut) {
+  again_.values.front().flag_names = {"samples_lost"};
+  again_.points.front().flag_names = {"samples_lost"};
+  again_.channels.front().flag_names = {"closure_open"};
+  again_.channels.front().closures = {{.kind = ClosureKind::level,
+                                       .subject = "dau",
+                                       .verdict = Verdict::open,
+                                       .sentence = "the level is another"}};
+  const auto by_other = [&](const std::function<void(StoredResult&)>& change) {
+    return refusal([&](StoredResult& one) {
+      one.analysis_software = "dyncal 0.1.9";
+      change(one);
+    });
+  };
+  EXPECT_EQ(by_other([](StoredResult&) {}), "");
+  EXPECT_EQ(by_other([](StoredResult& one) {
+              one.values.front().flag_names.emplace_back("of another version");
+              one.channels.front().closures.front().sentence = "said otherwise";
+            }),
+            "");
+  EXPECT_THAT(by_other([](StoredResult& one) { one.values.front().flag_names.clear(); }),
+              HasSubstr("has the flag samples_lost"));
+  EXPECT_THAT(by_other([](StoredResult& one) { one.points.front().flag_names.clear(); }),
+              HasSubstr("has the flag samples_lost"));
+  EXPECT_THAT(by_other([](StoredResult& one) { one.channels.front().flag_names.clear(); }),
+              HasSubstr("has the flag closure_open"));
+  EXPECT_THAT(by_other([](StoredResult& one) {
+                one.channels.front().closures.front().verdict = Verdict::closes;
               }),
-              HasSubstr("has the flag"));
+              HasSubstr("a closure is open by the recording: the level is another"));
+  EXPECT_THAT(by_other([](StoredResult& one) { one.channels.clear(); }),
+              HasSubstr("is not in the file"));
+}
+
+TEST_F(RepeatedEvaluationTest, LetsTheGroupDelayOfAnotherVersionDifferByATenthOfU) {
+  ASSERT_FALSE(again_.group_delays.empty());
+  const auto by_u = [&](double times) {
+    return refusal([&](StoredResult& one) {
+      one.analysis_software = "dyncal 0.1.9";
+      analysis::GroupDelay& delay = one.group_delays.front().delay;
+      delay.delay_s += times * delay.u_delay_s();
+    });
+  };
+  EXPECT_EQ(by_u(0.09), "");
+  EXPECT_THAT(by_u(-0.2), HasSubstr("the group delay is another"));
 }
 
 TEST_F(RepeatedEvaluationTest, CountsWhatTheRecordingLacks) {
