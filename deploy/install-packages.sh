@@ -30,6 +30,7 @@ optional_build_packages=(
   libpqxx-dev        # results of runs in PostgreSQL
   libhdf5-dev        # recordings as HDF5, files of the SmartUp receiver
   libxml2-dev libxmlsec1-dev # certificates: dyncal certify, dyncal verify
+  libxlsxwriter-dev          # dyncal means: XLSX
   cmark-gfm python3          # the guide as HTML
   help2man                   # manual pages
   libcpp-httplib-dev # dyncal-web
@@ -43,6 +44,7 @@ test_packages=(
   faketime                                     # clocks of hosts that are wrong
   python3-numpy python3-scipy python3-mpmath   # independent reference values
   python3-canmatrix                            # independent DBC decoder
+  python3-venv                                 # the rules for digital certificates, from PyPI
   python3-jsonschema                           # results against their schema
   python3-h5py                                 # exports, read by others
   postgresql                                   # a server of the test's own, on a socket

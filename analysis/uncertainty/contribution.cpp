@@ -48,6 +48,8 @@ constexpr std::array rows{
     Row{ContributionKind::folded_harmonic, "folded_harmonic", "folded harmonics of", true,
         Repeats::common},
     Row{ContributionKind::background, "background", "background in", true, Repeats::anew},
+    Row{ContributionKind::transverse_motion, "transverse_motion",
+        "transverse motion of the exciter", false, Repeats::common},
     Row{ContributionKind::other, "other", "other", false, Repeats::common}};
 
 constexpr bool in_order() {

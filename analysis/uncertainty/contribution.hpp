@@ -48,7 +48,8 @@ enum class ContributionKind {
   mains_hum,       // a mains line too near the excitation to be told from it; subject: the channel
   folded_harmonic, // a harmonic that sampling folds onto the excitation; subject: the channel
   background,      // what else there is at the excitation's frequency; subject: the channel
-  other            // a row that this version does not know; its subject is its name
+  transverse_motion, // of the exciter, in a channel across the excited axis
+  other              // a row that this version does not know; its subject is its name
 };
 
 enum class Repeats { anew, common, common_delay };

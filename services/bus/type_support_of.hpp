@@ -29,7 +29,7 @@ concept HasChecksumOfContract3 = requires(T sample) {
 // Bytes of the members that were appended to a topic's type since its first release, when they are
 // empty: only these may be missing in a message. A type that grows more has one of its own.
 template <class T>
-inline constexpr std::size_t appended_bytes = HasChecksumOfContract3<T> ? 64
+inline constexpr std::size_t appended_bytes = HasChecksumOfContract3<T> ? 128
                                               : HasChecksum<T>          ? checksum_bytes
                                                                         : 0;
 

@@ -6,6 +6,7 @@
 
 #include "services/evaluation/closures/closures.hpp"
 #include "services/evaluation/method/monte_carlo_check.hpp"
+#include "services/evaluation/method/transverse_motion.hpp"
 #include "services/evaluation/record/described_source.hpp"
 #include "services/evaluation/record/step_temperature.hpp"
 
@@ -214,15 +215,19 @@ bool RunEvaluator::evaluate_next_steps(EvaluationOutput& output) {
 // With what the evaluation of a step by itself does not know.
 Evaluation RunEvaluator::completed(Evaluation evaluation, std::uint32_t attempt,
                                    std::optional<double> degc) const {
-  return [evaluation = std::move(evaluation), attempt, degc, count = count_,
+  return [evaluation = std::move(evaluation), attempt, degc, recipe = recipe_, count = count_,
           given_up = given_up_.get_token()](const std::stop_token& stop) {
     if (given_up.stop_requested()) {
       return std::vector<StepResult>{};
     }
     std::vector<StepResult> results = evaluation(stop);
-    for (StepResult& result : results) {
-      result.attempt = attempt;
-      result.temperature_degc = degc;
+    const std::vector<bool> has_more = add_transverse_motion(*recipe, results);
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      results[i].attempt = attempt;
+      results[i].temperature_degc = degc;
+      if (has_more[i]) {
+        redo_monte_carlo_check(recipe->monte_carlo_trials, stop, results[i]);
+      }
     }
     add_done(count);
     return results;

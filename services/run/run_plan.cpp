@@ -71,6 +71,9 @@ Expected<Recipe> plan_recipe(const BenchFile& file, const std::string& run,
       file.excitation.level_deviation_rel.value_or(recipe.level_deviation_rel);
   recipe.reference_delay_s = file.corrections.reference_delay_s;
   recipe.reference_calibration = file.corrections.reference;
+  recipe.reference_standard = file.corrections.reference_standard;
+  recipe.channel_axes = file.method.axes;
+  recipe.transverse_motion = file.excitation.transverse_motion;
   recipe.systematic.reference_magnitude_rel = file.uncertainty.reference_magnitude_rel;
   recipe.systematic.reference_phase_rad = file.uncertainty.reference_phase_rad;
   recipe.systematic.acs_delay_s = file.uncertainty.acs_delay_s;

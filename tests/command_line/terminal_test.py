@@ -81,11 +81,13 @@ def check_pipes():
 
 def check_questions(folder):
     terminal = Terminal("new-bench", cwd=folder)
-    answers = ["asked-1", "analogue", "socket", "none", "ch2", "host:5026", "ref", "10 12.5"]
+    answers = ["asked-1", "analogue", "socket", "none", "ch2", "host:5026", "ref", "", "10 12.5"]
     answers += ["2.5", "4"]
     terminal.read_until(lambda text: "Name of the bench: " in text)
     for number, answer in enumerate(answers):
-        terminal.read_until(lambda text, number=number: text.count("]: ") >= number)
+        terminal.read_until(
+            lambda text, number=number: text.count("]: ") + text.count("later): ") >= number
+        )
         terminal.write(answer + "\n")
     terminal.read_until(lambda text: "is written" in text)
     expect(terminal.process.wait(30) == 0, terminal.text)

@@ -198,7 +198,7 @@ class HalfATurn(unittest.TestCase):
         texts = [mean["frequency_text_hz"] for mean in self.means]
         self.assertEqual([row[0] for row in values], texts)
         for row, mean in zip(values, self.means):
-            self.check_stated(row[5], row[7], mean)
+            self.check_stated(row[6], row[8], mean)
         single = [row for row in rows["single"] if row]
         self.assertEqual(len(single), len(FREQUENCIES) * REPETITIONS)
         for row in single:

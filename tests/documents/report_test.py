@@ -12,6 +12,7 @@ import os
 import pathlib
 import re
 import shutil
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -63,10 +64,17 @@ class Report(unittest.TestCase):
         magnitude = stored_run.rounded(value["magnitude"], value["U_magnitude"])
         degrees = stored_run.rounded(value["phase_deg"], value["U_phase_deg"])
         radians = stored_run.rounded(value["phase_rad"], value["U_phase_rad"])
+        level = statistics.fmean(
+            one["measured_level_m_s2"]
+            for one in self.result["points"]
+            if one["channel"] == value["channel"]
+            and one["frequency_text_hz"] == value["frequency_text_hz"]
+        )
         row = [
             value["frequency_text_hz"],
-            f"{value['level_m_s2']:g}",
+            f"{level:.4g}",
             *magnitude,
+            stored_run.two_digits(100 * value["U_magnitude"] / value["magnitude"]),
             f"{value['k_magnitude']:.2f}",
             *degrees,
             *radians,

@@ -15,7 +15,27 @@ LAB = LAB_FOLDER / "laboratory.toml"
 SENSOR = LAB_FOLDER / "sensor.toml"
 FREQUENCIES = ["10", "12.5", "16", "20", "25", "31.5", "40", "50", "63", "80", "100", "199.87"]
 CHANNELS = {"dau/acceleration_x": 0.02, "dau/acceleration_z": 0.98}
+AXIS = "z"
 REPETITIONS = 3
+
+
+def budget_of(channel, budget):
+    """What the exciter moves across the excited axis is in the channels there."""
+    rows = copy.deepcopy(budget)
+    if not channel.endswith(f"_{AXIS}"):
+        rows.append(
+            {
+                **rows[-1],
+                "name": "transverse motion of the exciter",
+                "kind": "transverse_motion",
+                "subject": "",
+                "distribution": "rectangular",
+                "repeats": "common",
+                "u_magnitude_rel": 1e-4,
+                "u_phase_rad": 1e-4,
+            }
+        )
+    return rows
 
 
 def expanded(entry, u_magnitude, u_phase, k_magnitude, k_phase):
@@ -49,6 +69,8 @@ def clean_run(example_writer, seed=1):
     for name, hour in (("began_utc", 12), ("ended_utc", 13)):
         result[name] = f"2026-03-01T{hour}:00:05.500000000Z"
     result["planned_steps"] = len(FREQUENCIES) * REPETITIONS
+    sensor = {"source": "dau", "kind": "dau", "device": "MPU-9250", "serial": "0xbccb0100"}
+    result["sources"].append({**result["sources"][0], **sensor})
     for clock in result["sample_clock"]:
         clock.update(flags=[], flag_names=[], lost=0)
     for channel, gain in CHANNELS.items():
@@ -74,6 +96,7 @@ def clean_run(example_writer, seed=1):
                 frequency_text_hz=text,
                 frequency_hz=frequency,
                 level_m_s2=10.0,
+                excited_axis=AXIS,
                 magnitude=magnitude,
                 phase_rad=phase,
                 phase_deg=math.degrees(phase),
@@ -94,6 +117,8 @@ def clean_run(example_writer, seed=1):
                     frequency_text_hz=text,
                     frequency_hz=frequency,
                     level_m_s2=10.0,
+                    excited_axis=AXIS,
+                    budget=budget_of(channel, point_of["budget"]),
                     valid=True,
                     magnitude=magnitude,
                     phase_rad=phase,
@@ -122,6 +147,14 @@ def kept(dyncal, run):
     store.unlink()
     subprocess.run([dyncal, "store", "add", run, "--store", store], capture_output=True)
     return ["--store", store]
+
+
+def two_digits(value):
+    """As people read an uncertainty."""
+    place = math.floor(math.log10(value)) - 1
+    if round(value / 10**place) >= 100:
+        place += 1
+    return f"{value:.{max(-place, 0)}f}"
 
 
 def rounded(value, expanded_uncertainty):

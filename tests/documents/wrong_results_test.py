@@ -148,7 +148,8 @@ def of_version_1(result):
         clock["events"] = clock.pop("event_count")
     for point in old["points"]:
         for row in point["budget"]:
-            row["kind"] = {"fit_noise": "noise of", "reference": "reference"}[row["kind"]]
+            names = {"fit_noise": "noise of", "reference": "reference"}
+            row["kind"] = names.get(row["kind"], row["name"])
     return old
 
 

@@ -1,10 +1,13 @@
-// Whatever stands in a laboratory or sensor file: no crash, no hang; it is refused with a sentence
-// that names the file, or read, and then every text that it holds is one that a document may carry.
+// Whatever stands in a laboratory, sensor or reference file: no crash, no hang; it is refused with
+// a sentence that names the file, or read, and then every text that it holds is one that a document
+// may carry.
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <string>
 
+#include "services/bench/file/reference_file.hpp"
 #include "services/views/lab_file/laboratory_file.hpp"
 #include "services/views/lab_file/sensor_file.hpp"
 
@@ -40,7 +43,22 @@ void check(const LaboratoryFile& file) {
     require(!person.name.empty() && is_printable(person.name) && is_printable(person.role));
   }
   if (file.reference) {
-    require(!file.reference->certificate.empty() && !file.reference->equipment.serial.empty());
+    require(!file.reference->devices.front().certificate.empty() &&
+            !file.reference->devices.front().serial.empty());
+  }
+}
+
+// Of what it names nothing is there.
+void check_reference(const std::string& text) {
+  NamedFiles files("/nowhere", NamedFiles::Place::as_named);
+  const auto reference = parse_reference_file(text, "reference.toml", files);
+  if (!reference) {
+    require(reference.error().message.starts_with("/nowhere/reference.toml"));
+    return;
+  }
+  require(!reference->standard.devices.empty());
+  for (const analysis::ReferenceCalibrationPoint& point : reference->response) {
+    require(std::isfinite(point.magnitude) && point.magnitude > 0.0);
   }
 }
 
@@ -60,5 +78,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   } else {
     require(sensor.error().message.starts_with("/nowhere/sensor.toml"));
   }
+  check_reference(text);
   return 0;
 }

@@ -11,7 +11,7 @@ import copy
 import readers
 import toml_text
 
-READERS = ("bench", "laboratory", "sensor")
+READERS = ("bench", "laboratory", "sensor", "reference")
 # What chooses among sets of keys of its own table.
 DISCRIMINATORS = ("driver", "kind")
 SAMPLES = {

@@ -1,10 +1,12 @@
 // What the readers of dyncal's TOML files say to a text, for the tests of the guide: one JSON
-// object a line in, {"reader": "bench"|"laboratory"|"sensor", "text": ..., "path": ...}, one a line
+// object a line in, {"reader": "bench"|"laboratory"|"sensor"|"reference",
+// "text": ..., "path": ...}, one a line
 // out, {"problem": ..., "asked": [...]}; "problem" is empty for a text that is accepted. "path" is
 // in the folder of the files that the text names.
 //
 //   read_tables --flags    prints the flags of results instead, as JSON
 
+#include <filesystem>
 #include <iostream>
 #include <string>
 #include <string_view>
@@ -13,6 +15,7 @@
 
 #include "services/bench/file/asked_keys.hpp"
 #include "services/bench/file/bench_file.hpp"
+#include "services/bench/file/reference_file.hpp"
 #include "services/evaluation/result/result_flag.hpp"
 #include "services/views/lab_file/laboratory_file.hpp"
 #include "services/views/lab_file/sensor_file.hpp"
@@ -31,6 +34,11 @@ std::string problem_of(const Expected<File>& file) {
 std::string read(const std::string& reader, const std::string& text, const std::string& path) {
   if (reader == "bench") {
     return problem_of(parse_bench_file(text, path));
+  }
+  if (reader == "reference") {
+    const std::filesystem::path file(path);
+    NamedFiles files(file.parent_path(), NamedFiles::Place::as_named);
+    return problem_of(parse_reference_file(text, file.filename().string(), files));
   }
   return reader == "laboratory" ? problem_of(parse_laboratory_file(text, path))
                                 : problem_of(parse_sensor_file(text, path));

@@ -29,6 +29,8 @@ def reader_of(tables):
     """Which of dyncal's files this is."""
     if "laboratory" in tables:
         return "laboratory"
+    if "reference" in tables and "bench" not in tables:
+        return "reference"
     return "sensor" if "sensor" in tables else "bench"
 
 

@@ -76,7 +76,7 @@ WINGS = {
         ["figures", "signals"],
         ["report"],
         ["lab_file", "live", "model"],
-        ["objections"],
+        ["objections", "spreadsheet"],
         ["certificate", "document"],
     ],
 }

@@ -45,6 +45,7 @@ struct BenchDraft {
   double duration_s = 3.0;
 
   std::string reference = "reference"; // channels of the ACS
+  std::string reference_file;          // of its calibration; empty: not known yet
   std::string sync = "sync";
   std::string sensor_sync = "sync"; // of the sensor's record
   std::string sensor_channel;       // empty: as usual for the kind of sensor

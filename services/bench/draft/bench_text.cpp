@@ -7,32 +7,16 @@
 #include <fmt/ranges.h>
 
 #include "analysis/base/preferred_frequencies.hpp"
+#include "services/base/toml_string.hpp"
 
 namespace dyncal::inline bench::bench_draft {
 namespace {
-
-// A TOML basic string.
-std::string quoted(const std::string& text) {
-  std::string escaped = "\"";
-  for (const char letter : text) {
-    const auto code = static_cast<unsigned char>(letter);
-    if (letter == '"' || letter == '\\') {
-      escaped += '\\';
-      escaped += letter;
-    } else if (code < 0x20 || code == 0x7f) {
-      escaped += fmt::format("\\u{:04x}", code);
-    } else {
-      escaped += letter;
-    }
-  }
-  return escaped + '"';
-}
 
 std::string quoted_list(const std::vector<std::string>& texts) {
   std::vector<std::string> all;
   all.reserve(texts.size());
   for (const std::string& text : texts) {
-    all.push_back(quoted(text));
+    all.push_back(toml_string(text));
   }
   return fmt::format("[{}]", fmt::join(all, ", "));
 }
@@ -40,8 +24,9 @@ std::string quoted_list(const std::vector<std::string>& texts) {
 // A range of preferred frequencies stays one.
 std::string frequencies_text(const BenchDraft& draft) {
   const std::vector<std::string>& texts = draft.frequencies_hz;
-  return texts.size() == 1 && analysis::preferred_frequencies(texts.front()) ? quoted(texts.front())
-                                                                             : quoted_list(texts);
+  return texts.size() == 1 && analysis::preferred_frequencies(texts.front())
+             ? toml_string(texts.front())
+             : quoted_list(texts);
 }
 
 // A key, bare where TOML allows it.
@@ -49,11 +34,11 @@ std::string key_of(const std::string& name) {
   const bool bare = !name.empty() && std::ranges::all_of(name, [](unsigned char letter) {
     return std::isalnum(letter) != 0 || letter == '_' || letter == '-';
   });
-  return bare ? name : quoted(name);
+  return bare ? name : toml_string(name);
 }
 
 std::string channel(const std::string& source, const std::string& name) {
-  return quoted(fmt::format("{}/{}", source, name));
+  return toml_string(fmt::format("{}/{}", source, name));
 }
 
 // TOML needs the point or exponent of a floating-point number.
@@ -78,7 +63,7 @@ settling_s = {:<13} # before every step
 duration_s = {:<13} # of every step; at least three periods of the lowest frequency
 )",
                       draft.name.find('\n') == std::string::npos ? draft.name : "",
-                      quoted(draft.name), frequencies_text(draft), number(draft.level_m_s2),
+                      toml_string(draft.name), frequencies_text(draft), number(draft.level_m_s2),
                       draft.repetitions, number(draft.settling_s), number(draft.duration_s));
 }
 
@@ -103,7 +88,7 @@ driver = "by-hand"         # the run asks for every step; somebody sets the gene
 driver = "scpi"            # its output drives the power amplifier
 address = {}
 )",
-                        quoted(draft.generator_address));
+                        toml_string(draft.generator_address));
     break;
   }
   text += fmt::format(
@@ -122,7 +107,8 @@ driver = "can"
 interface = {}       # set up by the system: ip link set can0 up type can bitrate 500000
 dbc = {}
 )",
-                      quoted(draft.interface), quoted(draft.dbc.empty() ? dbc_name : draft.dbc));
+                      toml_string(draft.interface),
+                      toml_string(draft.dbc.empty() ? dbc_name : draft.dbc));
   if (draft.dbc.empty()) {
     text +=
         R"(counter = "SampleCounter"  # signal that counts samples; leave it out where there is none
@@ -147,7 +133,7 @@ sensor = {}    # as the unit numbers it; 'dyncal run' lists those that send
 channels = {{ Data_11 = "sync" }}    # the input of the unit that sync is connected to
 nominal_rate_hz = 1000.0   # as the sensor is set; 'dyncal check' looks at it
 )",
-                        quoted(draft.listen), quoted(draft.sensor_id));
+                        toml_string(draft.listen), toml_string(draft.sensor_id));
     return;
   case SensorKind::file:
     text += fmt::format(R"(
@@ -156,7 +142,7 @@ driver = "file"
 path = {}       # CSV (first column t_ns), .npy or .wav; units of its columns:
 units = {{ {} = "m/s^2", {} = "V" }}
 )",
-                        quoted(draft.sensor_file), key_of(channel_of(draft)),
+                        toml_string(draft.sensor_file), key_of(channel_of(draft)),
                         key_of(draft.sensor_sync));
     return;
   case SensorKind::can:
@@ -175,7 +161,7 @@ driver = "series"
 address = {}
 units = {{ {} = "m/s^2" }}
 )",
-                        quoted(draft.dso_address), quoted(draft.sensor_address),
+                        toml_string(draft.dso_address), toml_string(draft.sensor_address),
                         key_of(channel_of(draft)));
     return;
   case SensorKind::analogue:
@@ -194,7 +180,7 @@ driver = "file"
 path = {}
 units = {{ {} = "m/s^2"{} }}
 )",
-                        quoted(draft.acs_file), key_of(draft.reference), sensor);
+                        toml_string(draft.acs_file), key_of(draft.reference), sensor);
     if (draft.sensor == SensorKind::can) {
       text +=
           "time_base = \"utc\"          # its stamps, as those of the host that has the sensor\n";
@@ -207,7 +193,7 @@ driver = "socket"          # the stream of the analogue system
 address = {}
 nominal_rate_hz = 10000.0  # as it is set; 'dyncal check' looks at it
 )",
-                      quoted(draft.acs_address));
+                      toml_string(draft.acs_address));
   if (draft.sensor == SensorKind::can) {
     text += "# Its stream must say \"time_base\": \"utc\".\n";
   }
@@ -264,8 +250,8 @@ dut = [{}]
 shots = 5                  # of every step
 
 [corrections]
-# Measure it with 'dyncal calibrate dso-delay', then: dso_delay = {{ file = "dso-delay.json" }}
-dso_delay = {{ value_s = 0.0, u_s = 1e-6 }}
+# Measure it with 'dyncal calibrate dso-delay', and take the # away:
+# dso_delay = {{ file = "dso-delay.json" }}
 )",
                         reference, channel("acs", draft.sync), channel("tss", channel_of(draft)));
     return;
@@ -281,24 +267,31 @@ dut = [{}]
   }
 }
 
+// What only the user can know is asked for, never filled in: until then results are flagged.
 void add_uncertainty(const BenchDraft& draft, std::string& text) {
+  if (!draft.reference_file.empty()) {
+    text += draft.sensor == SensorKind::series ? "" : "\n[corrections]\n";
+    text += fmt::format("reference = {}   # its certificate\n", toml_string(draft.reference_file));
+  }
   text += R"(
-# Standard uncertainties: examples. Take yours from the certificate of the reference.
+# Standard uncertainties (k = 1). Write your own behind what is not known yet, and take the # away:
+# until then results are flagged.
 [uncertainty]
-reference_magnitude_rel = 1e-3
-reference_phase_rad = 1.7e-3
 )";
-  if (draft.sensor == SensorKind::smartup || draft.sensor == SensorKind::file) {
-    text += "adc_delay_s = 1e-6         # of the unit's sync ADC, until it is calibrated\n";
-  } else if (draft.sensor == SensorKind::can) {
+  if (draft.reference_file.empty()) {
     text +=
-        "acs_delay_s = 1e-6         # of the reference's channel and the ACS's clock against UTC\n";
+        "# reference_magnitude_rel =   # of the reference; better, [corrections] reference names "
+        "its file\n# reference_phase_rad =\n";
+  }
+  if (draft.sensor == SensorKind::smartup || draft.sensor == SensorKind::file) {
+    text += "# adc_delay_s =               # of the unit's sync ADC, until it is calibrated\n";
   } else if (draft.sensor == SensorKind::series) {
-    text += "acs_rate_rel = 1e-6        # of the ACS's clock\n";
+    text += "# acs_rate_rel =              # of the ACS's clock\n";
   }
-  if (draft.sensor != SensorKind::can) {
-    text += "acs_delay_s = 1e-7         # between the ACS's channels, where nothing is known\n";
-  }
+  text += draft.sensor == SensorKind::can
+              ? "# acs_delay_s =               # of the reference's channel and the ACS's clock "
+                "against UTC\n"
+              : "# acs_delay_s =               # between the ACS's channels\n";
 }
 
 } // namespace

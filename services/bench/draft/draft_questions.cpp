@@ -185,6 +185,8 @@ void ask_for_places(Interview& interview, BenchDraft& draft) {
       ? interview.file("File of the analogue system's record", draft.acs_file)
       : interview.address("Address of the analogue system, HOST:PORT", draft.acs_address);
   interview.text("Its channel of the reference", draft.reference);
+  interview.optional_file("File of the reference's certificate, reference.toml (empty: later)",
+                          draft.reference_file);
   if (draft.sensor != SensorKind::analogue && draft.sensor != SensorKind::can) {
     interview.text("Its channel of sync", draft.sync);
   }

@@ -21,9 +21,12 @@
 #include "services/bench/file/bench_problem.hpp"
 #include "services/bench/file/named_files.hpp"
 #include "services/bench/file/source_settings.hpp"
+#include "services/contract/channel_axis.hpp"
 #include "services/contract/channel_name.hpp"
 #include "services/contract/dut_phase.hpp"
 #include "services/contract/evaluation_method.hpp"
+#include "services/contract/reference_standard.hpp"
+#include "services/contract/transverse_motion.hpp"
 
 namespace dyncal::inline bench {
 
@@ -37,6 +40,7 @@ struct ExcitationSettings {
   std::vector<std::string> frequencies_hz; // decimal text, checked to be a positive number
   std::vector<double> levels_m_s2;         // one per frequency
   std::string axis;                        // excited: "x", ...; empty: not stated
+  TransverseMotion transverse_motion;
   int repetitions = 1;
   bool repeat_first = false; // the first step once more at the end
   int attempts = 3; // excitations of a step, until its result is as good as another can make it
@@ -83,6 +87,7 @@ struct MethodSettings {
       true; // series time stamping; false shows what the correction of every shot is worth
   std::vector<ChannelName> dut; // empty: all channels of the DAU but sync and temperature
   std::optional<ChannelName> temperature;
+  std::vector<ChannelAxis> axes;      // of channels whose names do not say it
   std::vector<double> mains_hz;       // empty: what a recipe takes
   double frequency_search_rel = 1e-3; // how far the excitation may be from its nominal frequency;
                                       // 0: exactly there in both clocks
@@ -102,8 +107,11 @@ struct AdcCorrectionSettings {
 struct CorrectionSettings {
   std::optional<AdcCorrectionSettings> adc;
   std::vector<analysis::ReferenceCalibrationPoint> reference; // empty: it reads right
-  double reference_delay_s = 0.0; // of the reference's channel against the ACS's sync
-  double dso_delay_s = 0.0;       // of the oscilloscope's trigger output
+  ReferenceStandard reference_standard;     // as its file states it; without devices: it does not
+  std::vector<std::string> reference_notes; // of its certificate
+  bool reference_phase_in_rad = false;      // as stated, so that degrees may have been meant
+  double reference_delay_s = 0.0;           // of the reference's channel against the ACS's sync
+  double dso_delay_s = 0.0;                 // of the oscilloscope's trigger output
   double u_dso_delay_s = 0.0;
 };
 

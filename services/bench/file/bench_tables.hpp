@@ -40,7 +40,8 @@ namespace dyncal::inline bench {
 // [corrections]: what is known of ADC, trigger and delays beforehand.
 //
 //   adc = { file = "sync-adc.json", channel = "sync", phase_sign = "lag", test_amplitude_vpp = 2 }
-//   reference = "reference.csv"                      response of the reference (reference_file.hpp)
+//   reference = "reference.toml"                      the reference by its certificate, or its
+//                                                     response alone (reference_file.hpp)
 //   reference_delay_s = 0.0
 //   dso_delay = { file = "dso-delay.json" }           value_s and u_s (standard uncertainty), as
 //                                                     `dyncal calibrate dso-delay` writes them,

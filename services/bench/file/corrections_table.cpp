@@ -84,11 +84,14 @@ CorrectionSettings read_corrections(TomlTable table, NamedFiles& files) {
     corrections.adc = read_adc(std::move(*adc), files);
   }
   if (table.has("reference")) {
-    auto points = read_reference_file(files.resolve(table.required_text("reference")));
-    if (points) {
-      corrections.reference = std::move(*points);
+    auto file = read_reference_file(table.required_text("reference"), files);
+    if (file) {
+      corrections.reference = std::move(file->response);
+      corrections.reference_standard = std::move(file->standard);
+      corrections.reference_notes = std::move(file->notes);
+      corrections.reference_phase_in_rad = file->phase_in_rad;
     } else {
-      table.refuse("reference", "names " + points.error().message);
+      table.refuse("reference", "names " + file.error().message);
     }
   }
   corrections.reference_delay_s = table.number("reference_delay_s", 0.0, "seconds");

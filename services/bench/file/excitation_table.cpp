@@ -53,6 +53,34 @@ void read_axis(TomlTable& table, ExcitationSettings& excitation) {
   }
 }
 
+void read_transverse_motion(TomlTable table, ExcitationSettings& excitation) {
+  const std::vector<double> ratios = table.numbers("ratio", "of the motion along the axis");
+  const std::vector<double> frequencies_hz = table.numbers("frequencies_hz", "Hz");
+  for (std::size_t i = 0; i < ratios.size(); ++i) {
+    if (!(ratios[i] >= 0.0 && ratios[i] <= 1.0)) {
+      table.refuse_entry("ratio", i, "must be between 0 and 1; is it given in per cent?");
+    }
+  }
+  if (ratios.empty()) {
+    table.refuse("ratio", "is missing: the largest motion across the axis, over that along it");
+  } else if (frequencies_hz.empty() ? ratios.size() != 1 : ratios.size() != frequencies_hz.size()) {
+    table.refuse("ratio", "needs one entry for each of 'frequencies_hz'; one alone holds at all");
+  }
+  for (std::size_t i = 0; i < std::max(ratios.size(), frequencies_hz.size()); ++i) {
+    const bool has_frequency = i < frequencies_hz.size();
+    if (has_frequency && !(frequencies_hz[i] > 0.0)) {
+      table.refuse_entry("frequencies_hz", i, "must be positive, in Hz");
+    }
+    excitation.transverse_motion.points.push_back(
+        {has_frequency ? frequencies_hz[i] : 0.0, i < ratios.size() ? ratios[i] : 0.0});
+  }
+  excitation.transverse_motion.source = table.required_text("source");
+  if (excitation.axis.empty()) {
+    table.refuse("ratio", "needs excitation.axis, which it is across");
+  }
+  table.finish();
+}
+
 void read_window(TomlTable& table, ExcitationSettings& excitation) {
   excitation.whole_record =
       table.one_of("window", {"search", "whole-record"}, "search") == "whole-record";
@@ -124,6 +152,9 @@ ExcitationSettings read_excitation(TomlTable table) {
     table.refuse("level_deviation_rel", "must be positive: 0.1 flags steps that are off by 10 %");
   }
   read_axis(table, excitation);
+  if (auto motion = table.table("transverse_motion")) {
+    read_transverse_motion(std::move(*motion), excitation);
+  }
   excitation.repetitions = table.whole_number("repetitions", 1, 1);
   check_number_of_steps(table, excitation);
   excitation.repeat_first = table.yes_no("repeat_first", excitation.repeat_first);

@@ -154,6 +154,9 @@ MethodSettings read_method(TomlTable table, const Sources& sources) {
     method.temperature = read_role(table, "temperature", sources);
   }
   check_roles(table, method);
+  for (const auto& [channel, axis] : table.text_map("axes")) {
+    method.axes.push_back({parse_role(table, "axes", sources, channel).text(), axis});
+  }
   method.frequency_search_rel =
       table.number("frequency_search_rel", method.frequency_search_rel, "parts of the frequency");
   if (method.frequency_search_rel < 0.0 || method.frequency_search_rel > 0.1) {

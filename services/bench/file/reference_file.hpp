@@ -1,36 +1,46 @@
-// Reads the calibration of the reference transducer: CSV, a header line with the names of the
-// columns, then a point a line; lines that begin with # and empty ones are passed over.
+// Reads what is known of the reference of a bench: a table of its response alone (CSV,
+// reference_table.hpp), or its certificate as well (TOML):
 //
-//   frequency_hz          needed, as are magnitude and phase_rad
-//   level_m_s2            the points of each level are a curve; without it they hold at every level
-//   magnitude             what the reference's channel reads over what is: 1.002 reads 0.2 % high
-//   phase_rad             phase of the reading, as lead
-//   u_magnitude_rel, u_phase_rad     standard uncertainties of the whole
-//   degrees_of_freedom    of the whole; empty or "infinite": infinite
-//   NAME.u_magnitude_rel, NAME.u_phase_rad, NAME.degrees_of_freedom
-//                         the same of a contribution, for example "transverse motion"
+//   [reference]            its certificate (calibrated_device.hpp); documents take it from here
+//   [response]             left out: its channel reads right, as that of an interferometer does
+//   unit = "pC/(m/s^2)"    of the magnitudes (sensitivity_unit.hpp); "1": what the channel reads
+//                          over what is
+//   k = 2                  coverage factor of columns U_...
+//   phase_sign = "lead"    or "lag"
+//   rows = """..."""       the table, or file = "table.csv" from the folder of this file
+//   notes = ["..."]        what the certificate says of single values
+//   [amplifier]            where the transducer has one: its certificate, and
+//   [amplifier.response]   its gain over frequency, with the keys of [response]
+//   [channel]              sensitivity and unit by which the reference's system divides its voltage
+//                          (measuring_chain.hpp), unless the response has unit "1"
 //
-// With both, what the named contributions leave of the whole is a contribution without a name.
-//
-// Fails (bad_file) with "FILE:LINE:COLUMN: ..." on the first thing that is not valid: unknown or
-// missing columns, fields that are no numbers, implausible values, contributions larger than the
-// whole. Any thread.
+// Fails (bad_file) with file, line and key or column on the first problem. Any thread.
 #pragma once
 
-#include <filesystem>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "analysis/instrument/reference_calibration.hpp"
 #include "services/base/error.hpp"
+#include "services/bench/file/named_files.hpp"
+#include "services/contract/reference_standard.hpp"
 
 namespace dyncal::inline bench {
 
-[[nodiscard]] Expected<std::vector<analysis::ReferenceCalibrationPoint>>
-read_reference_file(const std::filesystem::path& path);
+struct ReferenceFile {
+  std::vector<analysis::ReferenceCalibrationPoint> response; // empty: it reads right
+  ReferenceStandard standard;     // without devices where the file is a table alone
+  std::vector<std::string> notes; // of the certificate, on single values
+  bool phase_in_rad = false;      // as stated, so that degrees may have been meant
+};
 
-// The same from text; `name` is for messages.
-[[nodiscard]] Expected<std::vector<analysis::ReferenceCalibrationPoint>>
-parse_reference_file(std::string_view text, const std::string& name);
+// `name` as the bench file has it; further files are resolved from its folder.
+[[nodiscard]] Expected<ReferenceFile> read_reference_file(const std::string& name,
+                                                          NamedFiles& files);
+
+// One in TOML from its text.
+[[nodiscard]] Expected<ReferenceFile>
+parse_reference_file(std::string_view text, const std::string& name, NamedFiles& files);
 
 } // namespace dyncal::inline bench

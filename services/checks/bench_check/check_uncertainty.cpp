@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include <fmt/core.h>
 
@@ -75,6 +77,36 @@ void check_reference(const BenchView& view, Findings& findings) {
                    doubtful_phase_rad, degrees, findings);
 }
 
+// How far a phase is from that of a chain that delays nothing, inverted or not.
+double from_straight_rad(double phase_rad) {
+  return std::abs(std::remainder(phase_rad, std::numbers::pi));
+}
+
+// What its file says beside the values, and how it says them.
+void check_reference_file(const BenchView& view, Findings& findings) {
+  const CorrectionSettings& corrections = view.bench.corrections;
+  const KeyPath key{"corrections", "reference"};
+  for (const std::string& note : corrections.reference_notes) {
+    findings.push_back(view.at(Severity::note, key, "names a certificate that says: " + note));
+  }
+  if (!corrections.reference.empty() && corrections.reference_standard.devices.empty()) {
+    findings.push_back(view.at(
+        Severity::note, key,
+        "names a table alone; in a reference file (reference.toml) it would stand beside the "
+        "certificate, of which documents take name, number and days"));
+  }
+  const auto furthest = std::ranges::max_element(corrections.reference, {}, [](const auto& point) {
+    return from_straight_rad(point.phase_rad);
+  });
+  if (corrections.reference_phase_in_rad && furthest != corrections.reference.end() &&
+      from_straight_rad(furthest->phase_rad) > doubtful_phase_rad) {
+    findings.push_back(view.at(Severity::warning, key,
+                               fmt::format("states a phase of {:.3g} rad at {} Hz: is it given in "
+                                           "degrees? then name the column phase_deg",
+                                           furthest->phase_rad, furthest->frequency_hz)));
+  }
+}
+
 void check_delays(const BenchView& view, Findings& findings) {
   const BenchFile& bench = view.bench;
   const EvaluationMethod kind = bench.method.kind;
@@ -128,6 +160,7 @@ Findings check_uncertainty(const BenchView& view) {
                  "the reference's phase", findings);
   }
   check_reference(view, findings);
+  check_reference_file(view, findings);
   check_delays(view, findings);
   check_can(view, findings);
   return findings;

@@ -19,10 +19,13 @@
 #include "analysis/instrument/reference_calibration.hpp"
 #include "analysis/method/sample_stamping.hpp"
 #include "services/base/error.hpp"
+#include "services/contract/channel_axis.hpp"
 #include "services/contract/channel_name.hpp"
 #include "services/contract/dut_phase.hpp"
 #include "services/contract/evaluation_method.hpp"
+#include "services/contract/reference_standard.hpp"
 #include "services/contract/role_rules.hpp"
+#include "services/contract/transverse_motion.hpp"
 
 namespace dyncal::inline evaluation {
 
@@ -67,6 +70,9 @@ struct Recipe {
   std::vector<double> mains_hz{analysis::usual_mains_hz.begin(), analysis::usual_mains_hz.end()};
   double reference_delay_s = 0.0; // of the reference's channel against the ACS's sync
   std::vector<analysis::ReferenceCalibrationPoint> reference_calibration; // empty: it reads right
+  ReferenceStandard reference_standard;  // of documents; without devices: not stated
+  std::vector<ChannelAxis> channel_axes; // of channels whose names do not say it
+  TransverseMotion transverse_motion;
   analysis::SystematicUncertainty systematic;
   std::string text; // of the bench file, for those who read the message
   std::string sha256;

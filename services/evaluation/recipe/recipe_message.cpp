@@ -35,6 +35,27 @@ void message_members(auto& visit, Either<analysis::ReferenceCalibrationPoint> au
   visit(point.contributions, message.contributions());
 }
 
+void message_members(auto& visit, Either<CalibratedDevice> auto& one, auto& message) {
+  visit(one.name, message.name());
+  visit(one.manufacturer, message.manufacturer());
+  visit(one.model, message.model());
+  visit(one.serial, message.serial());
+  visit(one.certificate, message.certificate());
+  visit(one.issued_by, message.issued_by());
+  visit(one.issued, message.issued());
+  visit(one.valid_until, message.valid_until());
+}
+
+void message_members(auto& visit, Either<ChannelAxis> auto& one, auto& message) {
+  visit(one.channel, message.channel());
+  visit(one.axis, message.axis());
+}
+
+void message_members(auto& visit, Either<TransverseMotionPoint> auto& one, auto& message) {
+  visit(one.frequency_hz, message.frequency_hz());
+  visit(one.ratio, message.ratio());
+}
+
 void message_members(auto& visit, Either<RecipeStep> auto& step, auto& message) {
   visit(step.step, message.step());
   visit(step.repetition, message.repetition());
@@ -53,6 +74,14 @@ void message_members(auto& visit, Either<Recipe> auto& recipe, auto& measurement
   visit(recipe.monte_carlo_trials, measurement.monte_carlo_trials());
   visit(recipe.reference_delay_s, measurement.reference_delay_s());
   visit(recipe.reference_calibration, measurement.reference_calibration());
+  visit(recipe.reference_standard.devices, measurement.reference_devices());
+  visit(recipe.reference_standard.standard, measurement.reference_standard());
+  visit(recipe.reference_standard.traceability, measurement.reference_traceability());
+  visit(recipe.reference_standard.file, measurement.reference_file());
+  visit(recipe.reference_standard.file_sha256, measurement.reference_file_sha256());
+  visit(recipe.channel_axes, measurement.channel_axes());
+  visit(recipe.transverse_motion.points, measurement.transverse_motion());
+  visit(recipe.transverse_motion.source, measurement.transverse_motion_source());
   visit(recipe.systematic.reference_magnitude_rel, measurement.u_reference_magnitude_rel());
   visit(recipe.systematic.reference_phase_rad, measurement.u_reference_phase_rad());
   visit(recipe.systematic.acs_delay_s, measurement.u_acs_delay_s());

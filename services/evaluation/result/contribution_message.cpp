@@ -34,6 +34,7 @@ constexpr auto kinds = std::to_array<std::pair<ContributionKind, wire::Contribut
     {ContributionKind::mains_hum, wire::CONTRIBUTION_MAINS_HUM},
     {ContributionKind::folded_harmonic, wire::CONTRIBUTION_FOLDED_HARMONIC},
     {ContributionKind::background, wire::CONTRIBUTION_BACKGROUND},
+    {ContributionKind::transverse_motion, wire::CONTRIBUTION_TRANSVERSE_MOTION},
 });
 static_assert(kinds.size() == static_cast<std::size_t>(ContributionKind::other) + 1);
 

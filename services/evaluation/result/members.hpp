@@ -207,6 +207,40 @@ void members(auto& visit, Either<analysis::AdcCalibrationPoint> auto& one) {
   visit("u_phase_lag_rad", one.u_phase_lag_rad);
 }
 
+void members(auto& visit, Either<ChannelAxis> auto& one) {
+  visit("channel", one.channel);
+  visit("axis", one.axis);
+}
+
+void members(auto& visit, Either<TransverseMotionPoint> auto& one) {
+  visit("frequency_hz", one.frequency_hz);
+  visit("ratio", one.ratio);
+}
+
+void members(auto& visit, Either<TransverseMotion> auto& one) {
+  visit("points", one.points);
+  visit("source", one.source);
+}
+
+void members(auto& visit, Either<CalibratedDevice> auto& one) {
+  visit("name", one.name);
+  visit.unless_empty("manufacturer", one.manufacturer);
+  visit.unless_empty("model", one.model);
+  visit.unless_empty("serial", one.serial);
+  visit.unless_empty("certificate", one.certificate);
+  visit.unless_empty("issued_by", one.issued_by);
+  visit.unless_empty("issued", one.issued);
+  visit.unless_empty("valid_until", one.valid_until);
+}
+
+void members(auto& visit, Either<ReferenceStandard> auto& one) {
+  visit("devices", one.devices);
+  visit.unless_empty("standard", one.standard);
+  visit.unless_empty("traceability", one.traceability);
+  visit.unless_empty("file", one.file);
+  visit.unless_empty("file_sha256", one.file_sha256);
+}
+
 void members(auto& visit, Either<AdcFile> auto& one) {
   visit("path", one.path);
   visit("channel", one.channel);

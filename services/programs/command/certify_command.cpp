@@ -6,6 +6,7 @@
 // and one line when something is missing or speaks against it. Belongs to one thread.
 #include <fmt/core.h>
 
+#include "services/base/printable_text.hpp"
 #include "services/programs/command/command.hpp"
 #include "services/programs/command/issued_number.hpp"
 #include "services/programs/command/keep_options.hpp"
@@ -74,7 +75,8 @@ void print_made(const CertificateFileRequest& request, const CertificateContents
     fmt::print("{}\n", statement);
   }
   if (!request.key && !contents.number.empty()) {
-    fmt::print("number {} is not taken: the certificate is not signed\n", contents.number);
+    fmt::print("number {} is not taken: the certificate is not signed\n",
+               one_line(contents.number));
   }
   for (const std::string& objection : contents.objections) {
     fmt::print("forced in spite of: {}\n", objection);

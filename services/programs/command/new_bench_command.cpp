@@ -65,6 +65,8 @@ void add_places(CLI::App& command, BenchDraft& draft) {
   add_default(command, "--acs-address", draft.acs_address, "of the analogue system");
   command.add_option("--acs-file", draft.acs_file, "the reference's record");
   add_default(command, "--reference", draft.reference, "its channel in the analogue system");
+  command.add_option("--reference-file", draft.reference_file,
+                     "the reference by its certificate, TOML or CSV (default: not known yet)");
   add_default(command, "--sync", draft.sync, "channel of sync in the analogue system");
   add_default(command, "--generator-address", draft.generator_address, "of the generator");
 }
@@ -183,6 +185,7 @@ Expected<std::string> write_files(BenchDraft draft, const std::filesystem::path&
   draft.sensor_file = name_from(folder, draft.sensor_file);
   draft.acs_file = name_from(folder, draft.acs_file);
   draft.dbc = name_from(folder, draft.dbc);
+  draft.reference_file = name_from(folder, draft.reference_file);
   const bool own_dbc = draft.sensor == bench_draft::SensorKind::can && draft.dbc.empty();
   const std::string dbc_name = path.stem().string() + "-sensor.dbc";
   const std::filesystem::path dbc_path = path.parent_path() / dbc_name;

@@ -25,12 +25,11 @@
 #include <vector>
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include "analysis/response/triaxial.hpp"
-#include "services/base/json_text.hpp"
 #include "services/programs/command/axis_results.hpp"
 #include "services/programs/command/command.hpp"
+#include "services/programs/command/triaxial_lines.hpp"
 #include "services/programs/command/work_progress.hpp"
 #include "services/views/report/result_file.hpp"
 
@@ -72,7 +71,6 @@ void add_triaxial(CLI::App& command, TriaxialOptions& triaxial) {
   command.add_flag("--json", triaxial.json, "print JSON");
 }
 
-using Json = nlohmann::ordered_json;
 using Names = AxisChannels;
 
 struct Direction { // one excitation
@@ -86,14 +84,6 @@ struct Measured {
   Names motion_channels;
   std::vector<Direction> directions;
   [[nodiscard]] bool triaxial_reference() const { return !directions.front().motion.empty(); }
-};
-
-struct ResponsePoint {
-  double frequency_hz = 0.0;
-  double level_m_s2 = 0.0;
-  std::array<std::optional<analysis::Axes>, 3> columns; // by direction
-  std::array<std::array<double, 3>, 3> u{};             // [direction][axis], of each real component
-  std::array<std::optional<analysis::TransverseSensitivity>, 3> transverse;
 };
 
 tl::unexpected<Error> bad(std::string message) {
@@ -190,7 +180,8 @@ Expected<std::optional<ResponsePoint>> response_at(const Measured& measured,
   ResponsePoint point{.frequency_hz = place.frequency_hz,
                       .level_m_s2 = place.level_m_s2,
                       .columns = {},
-                      .transverse = {}};
+                      .transverse = {},
+                      .largest = {}};
   std::vector<analysis::TriaxialExcitation> excitations;
   for (const Direction& direction : measured.directions) {
     const auto sensor = axes_at(direction.sensor, measured.channels, place, std::nullopt);
@@ -225,6 +216,25 @@ Expected<std::optional<ResponsePoint>> response_at(const Measured& measured,
   return std::optional(point);
 }
 
+// Of an axis, where its answers to both directions across it are known. One that was not excited
+// itself is taken to answer as much as another.
+std::optional<analysis::LargestTransverse> largest_of(const ResponsePoint& point, std::size_t axis,
+                                                      double transverse_motion_rel) {
+  const std::size_t first = axis == 0 ? 1 : 0;
+  const std::size_t second = axis == 2 ? 1 : 2;
+  if (!point.columns[first] || !point.columns[second]) {
+    return std::nullopt;
+  }
+  const double along =
+      std::abs(point.columns[axis] ? (*point.columns[axis])[axis] : (*point.columns[first])[first]);
+  const double unknown = transverse_motion_rel * along / std::sqrt(3.0);
+  const auto answer = [&](std::size_t direction) {
+    return analysis::TransverseAnswer{(*point.columns[direction])[axis],
+                                      std::hypot(point.u[direction][axis], unknown)};
+  };
+  return analysis::largest_transverse(answer(first), answer(second), along);
+}
+
 Expected<void> add_transverse(ResponsePoint& point, double transverse_motion_rel) {
   for (std::size_t j = 0; j < 3; ++j) {
     if (!point.columns[j]) {
@@ -243,6 +253,9 @@ Expected<void> add_transverse(ResponsePoint& point, double transverse_motion_rel
                               transverse.error().message));
     }
     point.transverse[j] = *transverse;
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    point.largest[i] = largest_of(point, i, transverse_motion_rel);
   }
   return {};
 }
@@ -283,81 +296,11 @@ read_and_evaluate(const TriaxialOptions& command) {
   return std::pair(std::move(measured), std::move(points));
 }
 
-void print_json(const Measured& measured, const std::vector<ResponsePoint>& points) {
-  Json json{{"channels", measured.channels},
-            {"triaxial_reference", measured.triaxial_reference()},
-            {"points", Json::array()}};
-  for (const ResponsePoint& point : points) {
-    Json one{{"frequency_hz", point.frequency_hz},
-             {"level_m_s2", point.level_m_s2},
-             {"excitations", Json::array()}};
-    for (std::size_t j = 0; j < 3; ++j) {
-      if (!point.columns[j]) {
-        continue;
-      }
-      Json axes = Json::array();
-      for (std::size_t i = 0; i < 3; ++i) {
-        const std::complex<double> h = (*point.columns[j])[i];
-        axes.push_back({{"axis", std::string(1, axis_names[i])},
-                        {"real", h.real()},
-                        {"imaginary", h.imag()},
-                        {"u_component", point.u[j][i]},
-                        {"magnitude", std::abs(h)},
-                        {"phase_rad", std::arg(h)},
-                        {"ratio", point.transverse[j]->ratio[i]},
-                        {"u_ratio", point.transverse[j]->u_ratio[i]}});
-      }
-      one["excitations"].push_back({{"along", std::string(1, axis_names[j])},
-                                    {"response", std::move(axes)},
-                                    {"largest_transverse_ratio", point.transverse[j]->largest}});
-    }
-    json["points"].push_back(std::move(one));
-  }
-  fmt::print("{}\n", json_text(json, 2));
-}
-
-void print_table(const TriaxialOptions& command, const Measured& measured,
-                 const std::vector<ResponsePoint>& points) {
-  const bool with_level = have_several_levels(points);
-  const auto level_column = [&](const std::string& text) {
-    return with_level ? fmt::format(" {:>16}", text) : std::string();
-  };
-  fmt::print("{:>12}{} {:>6} {:>12} {:>12} {:>12} {:>12} {:>12}   {}\n", "f / Hz",
-             level_column("level / (m/s^2)"), "along", "|H_x|", "|H_y|", "|H_z|", "transverse", "u",
-             "largest of the ratios to the excited axis");
-  for (const ResponsePoint& point : points) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      if (!point.columns[j]) {
-        continue;
-      }
-      const analysis::Axes& h = *point.columns[j];
-      const analysis::TransverseSensitivity& transverse = *point.transverse[j];
-      const std::size_t largest =
-          transverse.ratio[(j + 1) % 3] > transverse.ratio[(j + 2) % 3] ? (j + 1) % 3 : (j + 2) % 3;
-      fmt::print("{:>12g}{} {:>6} {:>12.6f} {:>12.6f} {:>12.6f} {:>11.3f}% {:>11.3f}%   {}\n",
-                 point.frequency_hz, level_column(fmt::format("{}", point.level_m_s2)),
-                 axis_names[j], std::abs(h[0]), std::abs(h[1]), std::abs(h[2]),
-                 100.0 * transverse.largest, 100.0 * transverse.u_ratio[largest],
-                 axis_names[largest]);
-    }
-  }
-  if (measured.triaxial_reference()) {
-    fmt::print("\ntransverse motion of the exciter is corrected by the triaxial reference\n");
-  } else if (command.transverse_motion_rel > 0.0) {
-    fmt::print(
-        "\ntransverse motion of the exciter is unknown up to {} of the motion along its axis; u "
-        "includes that\n",
-        command.transverse_motion_rel);
-  } else {
-    fmt::print("\ntransverse motion of the exciter is assumed to be zero; --transverse-motion "
-               "states its bound\n");
-  }
-}
-
 Expected<void> run_triaxial(const TriaxialOptions& command) {
   DYNCAL_TRY(const auto evaluated, read_and_evaluate(command));
   const auto& [measured, points] = evaluated;
-  command.json ? print_json(measured, points) : print_table(command, measured, points);
+  const TriaxialText text{measured.channels, measured.triaxial_reference(), points};
+  command.json ? print_json(text) : print_table(text, command.transverse_motion_rel);
   return {};
 }
 

@@ -206,6 +206,8 @@ bench = "{bench}"
 [excitation]
 frequencies_hz = [{frequencies}]
 level = [{levels}]   # m/s^2
+axis = "z"           # excited; channels along x and y lie across it
+transverse_motion = {{ ratio = 0.0, source = "the virtual exciter moves along one axis" }}
 repetitions = {repetitions}
 settling_s = {settling}
 duration_s = {duration}

@@ -1,6 +1,7 @@
 #include "services/records/provenance/result_provenance.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "services/records/exchange/opened_recording.hpp"
 #include "services/records/provenance/repeated_evaluation.hpp"
@@ -35,6 +36,16 @@ Expected<std::string> said_by_store(const StoredResult& result, const std::strin
   return fmt::format("The result file is the one that the store has of the run, since {} (SHA-256 "
                      "{}...).",
                      kept->since_utc, result.sha256.substr(0, shown_of_hash));
+}
+
+std::string said_of_mountings(const StoredResult& result) {
+  std::vector<std::string> runs;
+  for (const CombinedRun& one : result.combined) {
+    runs.push_back(fmt::format("{} (SHA-256 {}...)", one.run, one.sha256.substr(0, shown_of_hash)));
+  }
+  return fmt::format("The result combines {} runs, for each of which the sensor was mounted anew, "
+                     "and each of which was held against its recording or the store: {}.",
+                     runs.size(), fmt::join(runs, ", "));
 }
 
 std::string said_of(const RepeatedEvaluation& repeated, const StoredResult& result) {
@@ -84,6 +95,13 @@ Expected<HeldResult> read_held_result(const std::filesystem::path& run, const st
   DYNCAL_TRY(const auto kept, said_by_store(result, store));
   if (!kept.empty()) {
     held.statements.push_back(kept);
+  }
+  if (!result.combined.empty()) {
+    held.statements.push_back(said_of_mountings(result));
+    if (kept.empty()) {
+      held.objections.push_back("the store does not have the combined result ('dyncal store add')");
+    }
+    return held;
   }
   std::error_code unknown;
   if (std::filesystem::is_directory(run, unknown) && is_recording(run)) {

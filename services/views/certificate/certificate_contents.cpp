@@ -69,7 +69,8 @@ Expected<void> gather_sensor(const CertificateRequest& request, CertificateConte
 
 Expected<void> gather_laboratory(const CertificateRequest& request, CertificateContents& contents) {
   DYNCAL_TRY(contents.laboratory, read_laboratory_file(request.laboratory));
-  return check_for_documents(contents.laboratory);
+  DYNCAL_TRY(contents.reference, documented_reference(contents.result, contents.laboratory));
+  return {};
 }
 
 Expected<void> gather_customer(CertificateContents& contents) {
@@ -116,7 +117,8 @@ void object_to_subject(CertificateContents& contents) {
   std::ranges::move(objections_to_subject({.result = contents.result,
                                            .channels = std::move(names),
                                            .sensor = contents.sensor,
-                                           .reference = *contents.laboratory.reference,
+                                           .laboratory = contents.laboratory,
+                                           .reference = contents.reference,
                                            .began = contents.began,
                                            .ended = contents.ended}),
                     std::back_inserter(contents.objections));

@@ -40,6 +40,7 @@ struct CertifiedChannel {
 struct CertificateContents {
   StoredResult result;
   LaboratoryFile laboratory;
+  ReferenceStandard reference;
   SensorFile sensor;
   Contact customer;
   Conditions conditions;

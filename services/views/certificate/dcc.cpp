@@ -1,5 +1,9 @@
 #include "services/views/certificate/dcc.hpp"
 
+#include <regex>
+
+#include <fmt/format.h>
+
 namespace dyncal::inline views {
 
 std::string single_line(std::string_view text, std::string_view otherwise) {
@@ -55,14 +59,20 @@ void add_identification(XmlElement list, std::string_view type, std::string_view
   add_text(identification, "dcc:name", name);
 }
 
+std::optional<std::string> release_of(const std::string& text) {
+  static const std::regex version(R"((^|[^0-9.])((\d{1,3}\.){0,3}\d{1,3})($|[^0-9.]))");
+  std::smatch found;
+  return std::regex_search(text, found, version) ? std::optional("v" + found[2].str())
+                                                 : std::nullopt;
+}
+
 void add_software(XmlElement list, const std::string& text, std::string_view description) {
   const std::string line = single_line(text);
-  const std::size_t space = line.find(' ');
   XmlElement software = list.add("dcc:software");
-  add_text(software, "dcc:name", line.substr(0, space));
-  software.add("dcc:release", space == std::string::npos ? "not stated" : line.substr(space + 1));
+  add_text(software, "dcc:name", line.substr(0, line.find(' ')));
+  software.add("dcc:release", release_of(line).value_or("v0"));
   software.add("dcc:type", "application");
-  add_text(software, "dcc:description", description);
+  add_text(software, "dcc:description", fmt::format("{}: {}", line, description));
 }
 
 XmlDocument dcc_of(const CertificateContents& contents) {

@@ -32,7 +32,10 @@ void add_make(XmlElement parent, const std::string& manufacturer, const std::str
 // `refType` may be empty.
 void add_identification(XmlElement list, std::string_view type, std::string_view issuer,
                         const std::string& value, std::string_view name);
-// Of a text "dyncal 0.2.0 (1a2b3c4)": name and release.
+// "v0.2.0" of a text with such a number: what the rules for DCCs take for a release, a letter and
+// up to four numbers. Nothing of another text.
+[[nodiscard]] std::optional<std::string> release_of(const std::string& text);
+// Of a text "dyncal 0.2.0 (1a2b3c4)": name, release, and the whole text.
 void add_software(XmlElement list, const std::string& text, std::string_view description);
 // Single-spaced and never empty: what dcc:notEmptyStringType takes.
 [[nodiscard]] std::string single_line(std::string_view text, std::string_view otherwise = "-");

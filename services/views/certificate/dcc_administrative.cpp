@@ -42,7 +42,7 @@ void add_core_data(XmlElement parent, const CertificateContents& contents) {
   }
   core.add("dcc:beginPerformanceDate", contents.began);
   core.add("dcc:endPerformanceDate", contents.ended);
-  core.add("dcc:performanceLocation", "laboratory");
+  core.add("dcc:performanceLocation", contents.laboratory.place.empty() ? "laboratory" : "other");
   core.add("dcc:issueDate", contents.issued);
   if (!contents.replaces.empty()) {
     add_replaced(core, contents);
@@ -52,16 +52,21 @@ void add_core_data(XmlElement parent, const CertificateContents& contents) {
 void add_item(XmlElement parent, const SensorFile& sensor) {
   XmlElement item = parent.add("dcc:items").add("dcc:item");
   add_text(item, "dcc:name", sensor.name.empty() ? "Digital sensor" : sensor.name);
-  if (!sensor.firmware.empty()) {
+  const auto release = release_of(sensor.firmware);
+  if (release) {
     XmlElement software = item.add("dcc:installedSoftwares").add("dcc:software");
     add_text(software, "dcc:name", "firmware");
-    software.add("dcc:release", single_line(sensor.firmware));
+    software.add("dcc:release", *release);
     software.add("dcc:type", "firmware");
+    add_text(software, "dcc:description", sensor.firmware);
   }
   add_make(item, sensor.manufacturer, sensor.model);
   XmlElement identifications = item.add("dcc:identifications");
   add_identification(identifications, "basic_serialNo", "manufacturer", sensor.serial,
                      "Serial number");
+  if (!release && !sensor.firmware.empty()) {
+    add_identification(identifications, "", "manufacturer", sensor.firmware, "Firmware");
+  }
   if (!sensor.owner_identification.empty()) {
     add_identification(identifications, "", "owner", sensor.owner_identification,
                        "Identification of the owner");
@@ -102,16 +107,16 @@ void add_forced(XmlElement list, const std::vector<std::string>& objections) {
 }
 
 void add_traceability(XmlElement list, const ReferenceStandard& reference) {
+  const CalibratedDevice& device = reference.devices.front();
   XmlElement statement = list.add("dcc:statement").attribute("refType", "basic_traceability");
   add_text(statement, "dcc:name", "Metrological traceability");
   statement.add("dcc:traceable", "true");
-  statement.add("dcc:reference", single_line(reference.certificate));
+  statement.add("dcc:reference", single_line(device.certificate));
   add_text(statement, "dcc:declaration",
            fmt::format("{} The reference ({}, serial number {}) was calibrated by {}, certificate "
                        "{}{}.",
-                       reference.traceability, reference.equipment.name, reference.equipment.serial,
-                       reference.issued_by, reference.certificate,
-                       reference.issued.empty() ? "" : " of " + reference.issued));
+                       reference.traceability, device.name, device.serial, device.issued_by,
+                       device.certificate, device.issued.empty() ? "" : " of " + device.issued));
 }
 
 void add_statements(XmlElement parent, const CertificateContents& contents) {
@@ -119,7 +124,10 @@ void add_statements(XmlElement parent, const CertificateContents& contents) {
   if (!contents.objections.empty()) {
     add_forced(list, contents.objections);
   }
-  add_traceability(list, *contents.laboratory.reference);
+  add_traceability(list, contents.reference);
+  add_text(list.add("dcc:statement").attribute("refType", "dyncal_relatesOnly"), "dcc:declaration",
+           "The results relate only to the items calibrated, as they were received and in the "
+           "conditions stated.");
   for (const std::string& text : contents.provenance) {
     add_text(list.add("dcc:statement").attribute("refType", "dyncal_provenance"), "dcc:declaration",
              text);

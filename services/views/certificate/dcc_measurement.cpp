@@ -8,6 +8,7 @@
 #include "services/base/rounding.hpp"
 #include "services/views/certificate/dcc.hpp"
 #include "services/views/lab_file/embedded_picture.hpp"
+#include "services/views/report/run_equipment.hpp"
 #include "services/views/report/stated_value.hpp"
 
 namespace dyncal::inline views {
@@ -30,7 +31,7 @@ XmlElement add_method(XmlElement list, std::string_view type, std::string_view n
 
 void add_methods(XmlElement parent, const CertificateContents& contents) {
   XmlElement list = parent.add("dcc:usedMethods");
-  const bool is_primary = contents.laboratory.reference->standard == "ISO 16063-11";
+  const bool is_primary = contents.reference.standard == "ISO 16063-11";
   add_method(list,
              is_primary ? "vibration_primarySineCalibration" : "vibration_secondarySineCalibration",
              is_primary ? "Calibration by laser interferometry with sinusoidal excitation"
@@ -61,7 +62,7 @@ void add_used_software(XmlElement parent, const StoredResult& result) {
   }
 }
 
-XmlElement add_equipment(XmlElement list, const Equipment& equipment,
+XmlElement add_equipment(XmlElement list, const CalibratedDevice& equipment,
                          const std::string& description) {
   XmlElement one = list.add("dcc:measuringEquipment");
   add_text(one, "dcc:name", equipment.name);
@@ -76,24 +77,29 @@ XmlElement add_equipment(XmlElement list, const Equipment& equipment,
   return one;
 }
 
+std::string certificate_of(const CalibratedDevice& device) {
+  return device.certificate.empty()
+             ? ""
+             : fmt::format("Certificate {} of {}{}.", device.certificate, device.issued_by,
+                           device.issued.empty() ? "" : ", " + device.issued);
+}
+
 void add_equipments(XmlElement parent, const CertificateContents& contents) {
   XmlElement list = parent.add("dcc:measuringEquipments");
-  const ReferenceStandard& reference = *contents.laboratory.reference;
-  add_equipment(list, reference.equipment,
-                fmt::format("Reference. {} Certificate {} of {}.", reference.traceability,
-                            reference.certificate, reference.issued_by))
-      .attribute("refType", "basic_referenceStandard");
-  for (const Equipment& equipment : contents.laboratory.equipment) {
-    add_equipment(list, equipment, "");
+  std::string traceability = contents.reference.traceability + " ";
+  for (const CalibratedDevice& device : contents.reference.devices) {
+    add_equipment(list, device,
+                  fmt::format("Reference. {}{}", traceability, certificate_of(device)))
+        .attribute("refType", "basic_referenceStandard");
+    traceability.clear();
   }
-  const std::string sensor = contents.channels.front().channel;
-  for (const RunSource& source : contents.result.sources) {
-    const std::string& device = source.description.device;
-    if (sensor.starts_with(source.source + "/") || device.empty()) {
-      continue; // the item itself
-    }
-    add_equipment(list, {device, "", "", source.description.serial},
-                  fmt::format("Source '{}' of the run", source.source));
+  for (const CalibratedDevice& equipment : contents.laboratory.equipment) {
+    add_equipment(list, equipment, certificate_of(equipment));
+  }
+  for (const CalibratedDevice& device :
+       run_equipment(contents.result, contents.channels.front().channel)) {
+    add_equipment(list, device,
+                  device.certificate.empty() ? "" : "Calibrated by " + device.certificate);
   }
 }
 
@@ -141,6 +147,10 @@ void add_conditions(XmlElement parent, const CertificateContents& contents) {
       add_text(add_condition(list, name), "dcc:text", text);
     }
   };
+  for (const auto& [name, value] : contents.sensor.settings) {
+    add_said("Setting of the sensor: " + name, value);
+  }
+  add_said("Positive direction of the axis", contents.sensor.positive_direction);
   add_said("Mounting", contents.conditions.mounting);
   add_said("Orientation", contents.conditions.orientation);
   std::vector<std::string> channels;

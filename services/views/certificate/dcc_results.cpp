@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "services/base/rounding.hpp"
 #include "services/views/certificate/dcc.hpp"
 #include "services/views/report/stated_value.hpp"
 
@@ -53,6 +54,15 @@ void add_measured_list(XmlElement parent, const Values& values, Statement stated
                joined(values, [](const StoredValue&) { return std::string("normal"); }));
 }
 
+// U in per cent of the magnitude.
+void add_relative_uncertainty(XmlElement quantity, const Values& values) {
+  XmlElement list = quantity.add("dcc:relativeUncertainty").add("dcc:relativeUncertaintyXmlList");
+  list.add("si:valueXMLList", joined(values, [](const StoredValue& value) {
+             return rounded_uncertainty(100.0 * value.of_magnitude.expanded / value.magnitude);
+           }));
+  list.add("si:unitXMLList", "\\percent");
+}
+
 void add_channel(XmlElement results, const CertifiedChannel& channel, bool forced) {
   XmlElement result = results.add("dcc:result").attribute("refType", "dyncal_transferFunction");
   add_text(result, "dcc:name", result_name(channel.channel));
@@ -78,8 +88,9 @@ void add_channel(XmlElement results, const CertifiedChannel& channel, bool force
       joined(channel.values,
              [](const StoredValue& value) { return fmt::format("{:g}", value.level_m_s2); }),
       "\\metre\\second\\tothe{-2}");
-  add_measured_list(add_quantity(list, "vibration_magnitude", "Magnitude"), channel.values,
-                    stated_magnitude, channel.unit);
+  XmlElement magnitude = add_quantity(list, "vibration_magnitude", "Magnitude");
+  add_measured_list(magnitude, channel.values, stated_magnitude, channel.unit);
+  add_relative_uncertainty(magnitude, channel.values);
   XmlElement phase = add_quantity(list, "vibration_phase", "Phase").add("si:hybrid");
   add_measured_list(phase, channel.values, stated_phase_rad, "\\radian");
   add_measured_list(phase, channel.values, stated_phase_deg, "\\degree");

@@ -93,7 +93,7 @@ Expected<void> check_issue(const ReportRequest& request, ReportContents& content
                 "a report that is issued needs --lab, --sensor, and a number (--number, or in the "
                 "sensor file)");
   }
-  DYNCAL_TRY(check_for_documents(*contents.laboratory));
+  DYNCAL_TRY(const auto reference, documented_reference(contents.result, *contents.laboratory));
   const StoredResult& result = contents.result;
   if (result.began_utc.empty() || result.ended_utc.empty()) {
     return fail(ErrorCode::bad_argument,
@@ -107,7 +107,8 @@ Expected<void> check_issue(const ReportRequest& request, ReportContents& content
   std::ranges::move(objections_to_subject({.result = result,
                                            .channels = contents.channels,
                                            .sensor = *contents.sensor,
-                                           .reference = *contents.laboratory->reference,
+                                           .laboratory = *contents.laboratory,
+                                           .reference = reference,
                                            .began = result.began_utc.substr(0, date_length),
                                            .ended = result.ended_utc.substr(0, date_length)}),
                     std::back_inserter(contents.objections));
@@ -140,8 +141,8 @@ std::string body_of(const ReportContents& contents) {
     html += channel_section(contents, contents.channels[i], i + 1);
   }
   html += flag_section(contents) + closures_section(contents) + conditions_section(contents) +
-          losses_section(contents) + clock_section(contents) + remarks(contents) +
-          signatures(contents);
+          equipment_section(contents) + losses_section(contents) + clock_section(contents) +
+          remarks(contents) + signatures(contents);
   html += other_channels(contents) + devices_section(contents) + software_section(contents) +
           single_results(contents) + recipe_section(contents);
   return html +

@@ -75,16 +75,55 @@ std::string customer_text(const ReportContents& contents) {
   return joined_texts(lines);
 }
 
+std::string certificate_text(const CalibratedDevice& device) {
+  return joined_texts({device.name, device.manufacturer, device.model,
+                       device.serial.empty() ? "" : "serial " + device.serial}) +
+         (device.certificate.empty()
+              ? ""
+              : fmt::format("; certificate {} of {}{}", device.certificate, device.issued_by,
+                            device.issued.empty() ? "" : ", " + device.issued));
+}
+
 std::string reference_text(const ReportContents& contents) {
-  if (!contents.laboratory || !contents.laboratory->reference) {
+  const ReferenceStandard* reference = reference_of(contents);
+  if (reference == nullptr) {
     return "";
   }
-  const ReferenceStandard& reference = *contents.laboratory->reference;
-  return joined_texts({reference.equipment.name, reference.equipment.manufacturer,
-                       reference.equipment.model, "serial " + reference.equipment.serial}) +
-         fmt::format("; certificate {} of {}{}. {}", reference.certificate, reference.issued_by,
-                     reference.issued.empty() ? "" : ", " + reference.issued,
-                     reference.traceability);
+  std::string text;
+  for (const CalibratedDevice& device : reference->devices) {
+    text += certificate_text(device) + ". ";
+  }
+  return text + reference->traceability;
+}
+
+// How it came, and how it was set.
+void add_state(const SensorFile& sensor, DefinitionTable& table) {
+  table.add("Received", joined_texts({sensor.received, sensor.condition}));
+  std::vector<std::string> settings;
+  for (const auto& [name, value] : sensor.settings) {
+    settings.push_back(fmt::format("{}: {}", name, value));
+  }
+  table.add("Settings", joined_texts(settings));
+  table.add("Positive direction", sensor.positive_direction);
+}
+
+std::string place_text(const ReportContents& contents) {
+  if (!contents.laboratory) {
+    return "";
+  }
+  const LaboratoryFile& file = *contents.laboratory;
+  return file.place.empty() ? joined_texts({file.laboratory.name, file.laboratory.city})
+                            : file.place;
+}
+
+std::string method_text(const ReportContents& contents) {
+  const std::string& method = contents.result.method;
+  std::string standard = reference_of(contents) ? reference_of(contents)->standard : "";
+  if (!standard.empty()) {
+    standard += standard == "ISO 16063-11" ? ":1999 (by laser interferometry); "
+                                           : ":2003 (by comparison to a reference transducer); ";
+  }
+  return standard + fmt::format("{}: {}", method, method_description(method));
 }
 
 // "2026-03-01 12:00:05 UTC"
@@ -99,6 +138,14 @@ std::string period(const StoredResult& result) {
 }
 
 } // namespace
+
+const ReferenceStandard* reference_of(const ReportContents& contents) {
+  if (contents.result.corrections && contents.result.corrections->reference_standard) {
+    return &*contents.result.corrections->reference_standard;
+  }
+  return contents.laboratory && contents.laboratory->reference ? &*contents.laboratory->reference
+                                                               : nullptr;
+}
 
 std::string title_of(const ReportContents& contents) {
   return contents.laboratory && !contents.laboratory->letterhead.title.empty()
@@ -187,18 +234,25 @@ std::string summary(const ReportContents& contents) {
   const StoredResult& result = contents.result;
   DefinitionTable table;
   table.add("Object", sensor_text(contents));
+  if (contents.sensor) {
+    add_state(*contents.sensor, table);
+  }
   table.add("Channels", fmt::format("{}", fmt::join(contents.channels, ", ")));
   table.add("Customer", customer_text(contents));
   table.add("Measured", period(result));
+  table.add("Place", place_text(contents));
   table.add("Bench, run", fmt::format("{}, {}", result.bench, result.run));
   table.add("Excitation", fmt::format("sinusoidal, {}; {} steps planned",
                                       frequency_range(result.values_of(contents.channels.front())),
                                       result.planned_steps));
-  table.add("Method", fmt::format("{}: {}", result.method, method_description(result.method)));
+  table.add("Method", method_text(contents));
   table.add("Reference", reference_text(contents));
   table.add("Phase", sign_convention());
   table.add("Uncertainty", "JCGM 100:2008 (GUM). " + rounding_rule());
-  return "<h2>Summary</h2>\n" + table.finish();
+  return "<h2>Summary</h2>\n" + table.finish() +
+         element("p", "The results relate only to the items calibrated, as they were received and "
+                      "in the conditions stated. What departs from the method, or is to be known "
+                      "with single values, stands under Flags.");
 }
 
 std::string remarks(const ReportContents& contents) {

@@ -48,19 +48,41 @@ std::string flag_marks(const StoredResult& result, const std::vector<std::string
   return fmt::format("{}", fmt::join(marks, " "));
 }
 
+// The mean of what the reference measured; in brackets what was planned where it measured nothing.
+std::string level_cell(const StoredResult& result, const StoredValue& value) {
+  double sum = 0.0;
+  int count = 0;
+  for (const StoredPoint& point : result.points_of(value.channel)) {
+    if (point.valid && point.frequency_text_hz == value.frequency_text_hz &&
+        point.level_m_s2 == value.level_m_s2 && std::isfinite(point.measured_level_m_s2)) {
+      sum += point.measured_level_m_s2;
+      ++count;
+    }
+  }
+  return count > 0 ? fmt::format("{:.4g}", sum / count) : fmt::format("({:g})", value.level_m_s2);
+}
+
+// U in per cent of the value.
+std::string per_cent_cell(const StoredValue& value) {
+  return value.magnitude > 0.0
+             ? rounded_uncertainty(100.0 * value.of_magnitude.expanded / value.magnitude)
+             : "";
+}
+
 std::string value_table(const ReportContents& contents, const std::vector<StoredValue>& values) {
   HtmlTable table("values",
                   {"<i>f</i> / Hz", "<i>a</i> / (m/s²)", in_unit("|<i>H</i>|", values.front().unit),
-                   "<i>U</i>(|<i>H</i>|)", "<i>k</i>", "<i>φ</i> / °", "<i>U</i>(<i>φ</i>) / °",
-                   "<i>φ</i> / rad", "<i>U</i>(<i>φ</i>) / rad", "<i>k</i>", "<i>n</i>", "flags"});
+                   "<i>U</i>(|<i>H</i>|)", "<i>U</i> / %", "<i>k</i>", "<i>φ</i> / °",
+                   "<i>U</i>(<i>φ</i>) / °", "<i>φ</i> / rad", "<i>U</i>(<i>φ</i>) / rad",
+                   "<i>k</i>", "<i>n</i>", "flags"});
   for (const StoredValue& value : values) {
     const StatedValue magnitude = stated_magnitude(value);
     const StatedValue degrees = stated_phase_deg(value);
     const StatedValue radians = stated_phase_rad(value);
-    table.row({value.frequency_text_hz, fmt::format("{:g}", value.level_m_s2), magnitude.value,
-               magnitude.expanded, magnitude.k, degrees.value, degrees.expanded, radians.value,
-               radians.expanded, radians.k, std::to_string(value.repetitions),
-               flag_marks(contents.result, value.flag_names)});
+    table.row({value.frequency_text_hz, level_cell(contents.result, value), magnitude.value,
+               magnitude.expanded, per_cent_cell(value), magnitude.k, degrees.value,
+               degrees.expanded, radians.value, radians.expanded, radians.k,
+               std::to_string(value.repetitions), flag_marks(contents.result, value.flag_names)});
   }
   return table.finish();
 }
@@ -261,7 +283,8 @@ std::string channel_section(const ReportContents& contents, const std::string& c
   std::string html = fmt::format("<section>\n<h2>Transfer function of {}</h2>\n", escaped(channel));
   html += element(
       "p", fmt::format("Means over n repetitions. U is the expanded uncertainty, U = k u, for a "
-                       "coverage probability of {}; a is the planned amplitude of the excitation.",
+                       "coverage probability of {}; a is the amplitude of the excitation that the "
+                       "reference measured, in brackets where it is only planned.",
                        coverage_percent(values.front().coverage_probability)));
   html += element("p", "U holds what the records show and what the bench file states. Errors that "
                        "leave no trace in the records are listed, each with the experiment that "

@@ -30,6 +30,9 @@ struct ReportContents {
   std::string software;                  // that makes the report
 };
 
+// What the values are traceable to: as the run states it, else the laboratory file; null: neither.
+[[nodiscard]] const ReferenceStandard* reference_of(const ReportContents& contents);
+
 // Whose it is and what it is about (report_front.cpp).
 [[nodiscard]] std::string letterhead(const ReportContents& contents);
 // What a reader must know before any number: a run that was broken off, values that are missing.
@@ -58,6 +61,7 @@ struct ReportContents {
 [[nodiscard]] std::string losses_section(const ReportContents& contents);
 [[nodiscard]] std::string closures_section(const ReportContents& contents);
 [[nodiscard]] std::string clock_section(const ReportContents& contents);
+[[nodiscard]] std::string equipment_section(const ReportContents& contents);
 [[nodiscard]] std::string devices_section(const ReportContents& contents);
 [[nodiscard]] std::string software_section(const ReportContents& contents);
 [[nodiscard]] std::string recipe_section(const ReportContents& contents);

@@ -11,6 +11,7 @@
 #include "services/contract/unit.hpp"
 #include "services/evaluation/result/members.hpp"
 #include "services/views/document/html.hpp"
+#include "services/views/report/run_equipment.hpp"
 #include "services/views/report/stated_value.hpp"
 
 namespace dyncal::inline views {
@@ -221,6 +222,28 @@ std::string clock_section(const ReportContents& contents) {
     html += element("p", "A figure of the run folder is left out: " + reason, "warning");
   }
   return html;
+}
+
+std::string equipment_section(const ReportContents& contents) {
+  HtmlTable table("legend", {"equipment", "serial", "certificate", "calibrated by", "from, until"});
+  const auto add = [&](const CalibratedDevice& device) {
+    std::string name = device.name;
+    for (const std::string& text : {device.manufacturer, device.model}) {
+      name += text.empty() ? "" : ", " + text;
+    }
+    table.row({name, device.serial, device.certificate, device.issued_by,
+               device.issued + (device.valid_until.empty() ? "" : ", " + device.valid_until)});
+  };
+  if (const ReferenceStandard* reference = reference_of(contents)) {
+    std::ranges::for_each(reference->devices, add);
+  }
+  if (contents.laboratory) {
+    std::ranges::for_each(contents.laboratory->equipment, add);
+  }
+  for (const CalibratedDevice& device : run_equipment(contents.result, contents.channels.front())) {
+    add(device);
+  }
+  return table.empty() ? "" : "<h2>Equipment</h2>\n" + table.finish();
 }
 
 std::string devices_section(const ReportContents& contents) {

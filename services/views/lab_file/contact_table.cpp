@@ -1,35 +1,11 @@
 #include "services/views/lab_file/contact_table.hpp"
 
 #include <algorithm>
-#include <chrono>
-#include <cstdlib>
 
 #include <fmt/core.h>
-#include <toml++/toml.h>
 
 namespace dyncal::inline views {
 namespace {
-
-bool is_control(char c) {
-  const auto byte = static_cast<unsigned char>(c);
-  return (byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7f;
-}
-
-// Text that would vanish or break a document.
-bool is_printable(const std::string& text) {
-  return std::none_of(text.begin(), text.end(), is_control);
-}
-
-bool is_blank(const std::string& text) {
-  return text.find_first_not_of(" \t\n") == std::string::npos;
-}
-
-std::string trimmed(const std::string& text) {
-  const std::size_t first = text.find_first_not_of(" \t\n");
-  return first == std::string::npos
-             ? std::string()
-             : text.substr(first, text.find_last_not_of(" \t\n") - first + 1);
-}
 
 bool is_country(const std::string& text) {
   return text.size() == 2 &&
@@ -69,69 +45,6 @@ bool Conditions::empty() const {
          orientation.empty();
 }
 
-bool is_date(const std::string& text) {
-  const std::string pattern = "0000-00-00";
-  if (text.size() != pattern.size() ||
-      !std::equal(text.begin(), text.end(), pattern.begin(),
-                  [](char c, char p) { return p == '-' ? c == '-' : c >= '0' && c <= '9'; })) {
-    return false;
-  }
-  const auto number = [&](std::size_t from, std::size_t digits) {
-    return std::atoi(text.substr(from, digits).c_str());
-  };
-  return std::chrono::year_month_day{std::chrono::year{number(0, 4)},
-                                     std::chrono::month{static_cast<unsigned>(number(5, 2))},
-                                     std::chrono::day{static_cast<unsigned>(number(8, 2))}}
-      .ok();
-}
-
-std::string required_line(TomlTable& table, const std::string& key) {
-  const std::string text = table.required_text(key);
-  if (!text.empty() && is_blank(text)) {
-    table.refuse(key, "must not be empty");
-  }
-  if (!is_printable(text)) {
-    table.refuse(key, "holds a control character");
-  }
-  return trimmed(text);
-}
-
-std::string line_of(TomlTable& table, const std::string& key) {
-  const std::string text = table.text(key);
-  if (!is_printable(text)) {
-    table.refuse(key, "holds a control character");
-  }
-  return trimmed(text);
-}
-
-std::vector<std::string> lines_of(TomlTable& table, const std::string& key) {
-  std::vector<std::string> lines;
-  for (const std::string& text : table.texts(key)) {
-    if (!is_printable(text)) {
-      table.refuse(key, "holds a control character");
-    }
-    if (!is_blank(text)) {
-      lines.push_back(trimmed(text));
-    }
-  }
-  return lines;
-}
-
-std::string date_of(TomlTable& table, const std::string& key) {
-  const toml::node* node = table.node(key);
-  if (node == nullptr) {
-    return {};
-  }
-  if (const auto date = node->value_exact<toml::date>()) {
-    return fmt::format("{:04}-{:02}-{:02}", date->year, int{date->month}, int{date->day});
-  }
-  const std::string text = line_of(table, key);
-  if (!is_date(text)) {
-    table.refuse(key, "must be a date, for example 2026-03-01");
-  }
-  return text;
-}
-
 Contact read_contact(TomlTable& table) {
   Contact contact{.name = required_line(table, "name"),
                   .street = line_of(table, "street"),
@@ -163,13 +76,6 @@ Conditions read_conditions(TomlTable& table) {
   conditions.mounting = line_of(table, "mounting");
   conditions.orientation = line_of(table, "orientation");
   return conditions;
-}
-
-Equipment read_equipment(TomlTable& table) {
-  return {.name = required_line(table, "name"),
-          .manufacturer = line_of(table, "manufacturer"),
-          .model = line_of(table, "model"),
-          .serial = line_of(table, "serial")};
 }
 
 } // namespace dyncal::inline views

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "services/bench/file/toml_table.hpp"
+#include "services/bench/file/toml_lines.hpp"
 
 namespace dyncal::inline views {
 
@@ -40,27 +40,8 @@ struct Conditions {
   [[nodiscard]] bool empty() const;
 };
 
-struct Equipment {
-  std::string name;
-  std::string manufacturer;
-  std::string model;
-  std::string serial;
-};
-
-// Like TomlTable::required_text() and text(), and refuses control characters.
-[[nodiscard]] std::string required_line(TomlTable& table, const std::string& key);
-[[nodiscard]] std::string line_of(TomlTable& table, const std::string& key);
-[[nodiscard]] std::vector<std::string> lines_of(TomlTable& table, const std::string& key);
-
-// YYYY-MM-DD, and a day that there is.
-[[nodiscard]] bool is_date(const std::string& text);
-
-// YYYY-MM-DD, from a text or a date of TOML; empty if it is not there.
-[[nodiscard]] std::string date_of(TomlTable& table, const std::string& key);
-
 // Keys of a contact; name, city and country are needed.
 [[nodiscard]] Contact read_contact(TomlTable& table);
 [[nodiscard]] Conditions read_conditions(TomlTable& table);
-[[nodiscard]] Equipment read_equipment(TomlTable& table);
 
 } // namespace dyncal::inline views

@@ -1,11 +1,9 @@
 #include "services/views/lab_file/laboratory_file.hpp"
 
-#include <chrono>
-#include <sstream>
-
 #include <fmt/core.h>
 
 #include "services/base/whole_file.hpp"
+#include "services/bench/file/calibrated_device.hpp"
 #include "services/views/lab_file/table_file.hpp"
 
 namespace dyncal::inline views {
@@ -41,56 +39,18 @@ Person read_person(TomlTable& table) {
           .main_signer = table.yes_no("main_signer", false)};
 }
 
-std::string standard_of(TomlTable& table) {
-  return table.one_of("standard", {"ISO 16063-11", "ISO 16063-21"}, "");
-}
-
-// The day that many months after another one; the last of a month that is too short.
-std::string day_after(const std::string& day, int months) {
-  std::istringstream stream(day);
-  int year = 0;
-  unsigned month = 0;
-  unsigned number = 0;
-  char dash = 0;
-  stream >> year >> dash >> month >> dash >> number;
-  using namespace std::chrono; // NOLINT(google-build-using-namespace): of calendars
-  year_month_day later =
-      year_month_day{std::chrono::year(year), std::chrono::month(month), std::chrono::day(number)} +
-      std::chrono::months(months);
-  if (!later.ok()) {
-    later = later.year() / later.month() / last;
-  }
-  return fmt::format("{:04}-{:02}-{:02}", static_cast<int>(later.year()),
-                     static_cast<unsigned>(later.month()), static_cast<unsigned>(later.day()));
-}
-
-// The day itself, or an interval after `issued`.
-std::string validity_of(TomlTable& table, const std::string& issued) {
-  std::string stated = date_of(table, "valid_until");
-  if (!table.has("interval_months")) {
-    return stated;
-  }
-  const int months = table.whole_number("interval_months", 0, 1);
-  if (!stated.empty()) {
-    table.refuse("interval_months", "stands in place of 'valid_until'");
-  }
-  return issued.empty() ? "" : day_after(issued, months);
-}
-
 ReferenceStandard read_reference(TomlTable& table) {
-  ReferenceStandard reference{.equipment = read_equipment(table),
-                              .standard = table.has("standard") ? standard_of(table) : "",
-                              .certificate = required_line(table, "certificate"),
-                              .issued_by = required_line(table, "issued_by"),
-                              .issued = date_of(table, "issued"),
-                              .valid_until = {},
-                              .traceability = required_line(table, "traceability")};
-  reference.valid_until = validity_of(table, reference.issued);
-  if (!reference.valid_until.empty() && reference.valid_until < reference.issued) {
-    table.refuse("valid_until", "is before 'issued'");
-  }
-  if (reference.equipment.serial.empty()) {
-    table.refuse("serial", "is missing");
+  ReferenceStandard reference = read_reference_standard(table);
+  const CalibratedDevice& device = reference.devices.front();
+  const std::pair<const char*, const std::string&> needed[] = {
+      {"serial", device.serial},
+      {"certificate", device.certificate},
+      {"issued_by", device.issued_by},
+      {"traceability", reference.traceability}};
+  for (const auto& [key, value] : needed) {
+    if (value.empty()) {
+      table.refuse(key, "is missing");
+    }
   }
   return reference;
 }
@@ -115,6 +75,7 @@ void read_laboratory(TomlTable& root, ReadTables& read) {
   }
   read.file.laboratory = read_contact(*laboratory);
   read.file.accreditation = line_of(*laboratory, "accreditation");
+  read.file.place = line_of(*laboratory, "place");
   read.logo = line_of(*laboratory, "logo");
   laboratory->finish();
 }
@@ -130,7 +91,8 @@ ReadTables read_tables(const toml::table& parsed, const std::filesystem::path& p
   read_table(root, "reference", read_reference, read.file.reference);
   read_table(root, "conditions", read_conditions, read.file.conditions);
   read.file.persons = read_tables_of(root, "person", path.string(), problems, read_person);
-  read.file.equipment = read_tables_of(root, "equipment", path.string(), problems, read_equipment);
+  read.file.equipment =
+      read_tables_of(root, "equipment", path.string(), problems, read_calibrated_device);
   read.file.statements = lines_of(root, "statements");
   root.finish();
   return read;

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "services/base/error.hpp"
+#include "services/contract/reference_standard.hpp"
 #include "services/views/lab_file/contact_table.hpp"
 #include "services/views/lab_file/embedded_picture.hpp"
 
@@ -24,17 +25,6 @@ struct Person {
   std::string name;
   std::string role;
   bool main_signer = false;
-};
-
-// The reference transducer or interferometer, and by which certificate it is traceable to the SI.
-struct ReferenceStandard {
-  Equipment equipment;
-  std::string standard;    // ISO 16063-11 or ISO 16063-21; may be empty
-  std::string certificate; // number of its calibration certificate
-  std::string issued_by;
-  std::string issued;       // YYYY-MM-DD; may be empty
-  std::string valid_until;  // the last day, stated or by the interval; may be empty
-  std::string traceability; // one sentence
 };
 
 struct Letterhead {
@@ -48,12 +38,13 @@ struct LaboratoryFile {
   std::filesystem::path path;
   Contact laboratory;
   std::string accreditation; // code of the laboratory; may be empty
+  std::string place;         // of calibrations; empty: its address
   std::optional<EmbeddedPicture> logo;
   Letterhead letterhead;
   std::vector<Person> persons;
   std::optional<Contact> customer;
-  std::optional<ReferenceStandard> reference;
-  std::vector<Equipment> equipment;
+  std::optional<ReferenceStandard> reference; // where the run does not state its own
+  std::vector<CalibratedDevice> equipment;
   Conditions conditions;
   std::vector<std::string> statements; // of the certificate
 };

@@ -24,6 +24,9 @@ void read_sensor(TomlTable& root, SensorFile& file) {
   file.firmware = line_of(*sensor, "firmware");
   file.owner_identification = line_of(*sensor, "owner_identification");
   file.received = date_of(*sensor, "received");
+  file.condition = line_of(*sensor, "condition");
+  file.positive_direction = line_of(*sensor, "positive_direction");
+  file.settings = sensor->text_map("settings");
   sensor->finish();
 }
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -26,6 +27,9 @@ struct SensorFile {
   std::string owner_identification; // the customer's own number; may be empty
   std::string certificate_number;   // may be empty
   std::string received;             // YYYY-MM-DD; may be empty
+  std::string condition;            // as it came: "no visible damage"; may be empty
+  std::string positive_direction;   // of its axis; may be empty
+  std::map<std::string, std::string> settings; // by name: "range" is "+-4 g"
   std::optional<Contact> customer;
   Conditions conditions;
 };

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "services/views/objections/axis_objections.hpp"
 #include "services/views/objections/refusing_flags.hpp"
 #include "services/views/report/result_file.hpp"
 #include "services/views/report/stated_value.hpp"
@@ -140,6 +141,7 @@ std::vector<std::string> objections_to(const StoredResult& result,
   for (std::string& open : result.open_closures(channels)) {
     objections.push_back("closure open: " + std::move(open));
   }
+  std::ranges::move(objections_to_axes(result, channels), std::back_inserter(objections));
   for (const std::string& channel : channels) {
     add_missing_values(result, channel, objections);
     add_losses(result, channel, objections);

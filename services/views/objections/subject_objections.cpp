@@ -76,31 +76,83 @@ std::string local_day(const std::string& utc) {
   return utc_ns == 0 ? "" : fmt::format("{:%Y-%m-%d}", fmt::localtime(utc_ns / second_ns));
 }
 
+// For sentences.
+std::string file_of(const ReferenceStandard& reference) {
+  return reference.file.empty() ? "the laboratory file" : reference.file;
+}
+
+void hold_days_of(const CalibratedDevice& device, const std::string& began,
+                  const std::string& ended, std::vector<std::string>& objections) {
+  if (device.issued > began) {
+    objections.push_back(fmt::format("the certificate of the {} is of {}, after the measurement of "
+                                     "{}",
+                                     device.name, device.issued, began));
+  }
+  if (!device.valid_until.empty() && device.valid_until < ended) {
+    objections.push_back(fmt::format("the {} was to be calibrated again by {}, before the "
+                                     "measurement of {}",
+                                     device.name, device.valid_until, ended));
+  }
+}
+
+// Of a device whose certificate must be known.
+void hold_days_of_reference(const CalibratedDevice& device, const std::string& file,
+                            const std::string& began, const std::string& ended,
+                            std::vector<std::string>& objections) {
+  if (device.issued.empty()) {
+    objections.push_back(fmt::format("{} does not say when the certificate of the {} was issued "
+                                     "(issued)",
+                                     file, device.name));
+  }
+  if (device.valid_until.empty()) {
+    objections.push_back(fmt::format("{} does not say until when the {} may be used (valid_until, "
+                                     "or interval_months)",
+                                     file, device.name));
+  }
+  hold_days_of(device, began, ended, objections);
+}
+
 void hold_days(const DocumentSubject& subject, std::vector<std::string>& objections) {
   const std::string first = std::min(subject.began, subject.ended);
   const std::string began = std::max(first, local_day(subject.result.began_utc));
   const std::string local_end = local_day(subject.result.ended_utc);
   const std::string ended = local_end.empty() ? subject.ended : std::min(subject.ended, local_end);
-  const ReferenceStandard& reference = subject.reference;
   if (subject.sensor.received > began) {
     objections.push_back(fmt::format("the sensor was received on {}, after the measurement of {}",
                                      subject.sensor.received, began));
   }
-  if (reference.issued.empty()) {
-    objections.emplace_back("the laboratory file does not say when the certificate of the "
-                            "reference was issued (reference.issued)");
-  } else if (reference.issued > began) {
-    objections.push_back(fmt::format("the certificate of the reference is of {}, after the "
-                                     "measurement of {}",
-                                     reference.issued, began));
+  for (const CalibratedDevice& device : subject.reference.devices) {
+    hold_days_of_reference(device, file_of(subject.reference), began, ended, objections);
   }
-  if (reference.valid_until.empty()) {
-    objections.emplace_back("the laboratory file does not say until when the reference may be "
-                            "used (reference.valid_until, or reference.interval_months)");
-  } else if (reference.valid_until < ended) {
-    objections.push_back(fmt::format("the reference was to be calibrated again by {}, before the "
-                                     "measurement of {}",
-                                     reference.valid_until, ended));
+  for (const CalibratedDevice& device : subject.laboratory.equipment) {
+    hold_days_of(device, began, ended, objections);
+  }
+}
+
+// Both may state a reference; the one of the run is in the documents.
+void hold_references(const DocumentSubject& subject, std::vector<std::string>& objections) {
+  const ReferenceStandard& reference = subject.reference;
+  const std::pair<const char*, const std::string&> needed[] = {
+      {"serial", reference.devices.front().serial},
+      {"certificate", reference.devices.front().certificate},
+      {"issued_by", reference.devices.front().issued_by},
+      {"traceability", reference.traceability}};
+  for (const auto& [key, value] : needed) {
+    if (value.empty()) {
+      objections.push_back(fmt::format("{} does not state reference.{}", file_of(reference), key));
+    }
+  }
+  if (reference.file.empty() || !subject.laboratory.reference) {
+    return;
+  }
+  const CalibratedDevice& measured = reference.devices.front();
+  const CalibratedDevice& stated = subject.laboratory.reference->devices.front();
+  if (!is_same_serial(measured.serial, stated.serial) ||
+      measured.certificate != stated.certificate) {
+    objections.push_back(fmt::format(
+        "the run was measured against reference '{}' with certificate '{}' ({}), the laboratory "
+        "file names '{}' with '{}': leave its table [reference] out",
+        measured.serial, measured.certificate, reference.file, stated.serial, stated.certificate));
   }
 }
 
@@ -112,25 +164,36 @@ tl::unexpected<Error> missing(const LaboratoryFile& file, const std::string& wha
 
 } // namespace
 
-Expected<void> check_for_documents(const LaboratoryFile& laboratory) {
+Expected<ReferenceStandard> documented_reference(const StoredResult& result,
+                                                 const LaboratoryFile& laboratory) {
   if (laboratory.persons.empty()) {
     return missing(laboratory, "table [[person]]", "a certificate names who is responsible for it");
   }
-  if (!laboratory.reference) {
+  const bool is_of_run = result.corrections && result.corrections->reference_standard;
+  if (!is_of_run && !laboratory.reference) {
     return missing(laboratory, "table [reference]",
-                   "a certificate states what its values are traceable to");
+                   "a certificate states what its values are traceable to; better, the bench names "
+                   "a reference file (corrections.reference)");
   }
-  if (laboratory.reference->standard.empty()) {
-    return missing(laboratory, "key 'reference.standard'",
-                   "ISO 16063-11 for a laser interferometer, ISO 16063-21 for a reference "
-                   "transducer");
+  ReferenceStandard reference =
+      is_of_run ? *result.corrections->reference_standard : *laboratory.reference;
+  if (reference.standard.empty()) {
+    const char* const meaning = "ISO 16063-11 for a laser interferometer, ISO 16063-21 for a "
+                                "reference transducer";
+    return is_of_run ? fail(ErrorCode::bad_file,
+                            fmt::format("{}: key 'reference.standard' is missing: {}; state it and "
+                                        "evaluate the run anew",
+                                        reference.file, meaning))
+                     : Expected<ReferenceStandard>(
+                           missing(laboratory, "key 'reference.standard'", meaning));
   }
-  return {};
+  return reference;
 }
 
 std::vector<std::string> objections_to_subject(const DocumentSubject& subject) {
   std::vector<std::string> objections;
   hold_sensor(subject, objections);
+  hold_references(subject, objections);
   hold_days(subject, objections);
   return objections;
 }

@@ -38,24 +38,10 @@ StoredValue stored_value(const RunOutcome& outcome, const TransferFunction& func
   std::vector<Flag> flags = flags_of(outcome, function.channel, point);
   flags.insert(flags.end(), function.flags.begin(), function.flags.end());
   flags = flags_once(flags);
-  return {.channel = function.channel,
-          .unit = function.unit,
-          .frequency_text_hz = point.frequency_text_hz,
-          .frequency_hz = point.frequency_hz,
-          .level_m_s2 = point.level_m_s2,
-          .excited_axis = function.excited_axis,
-          .magnitude = point.mean.magnitude,
-          .of_magnitude = magnitude_uncertainty(point.mean),
-          .phase_rad = point.mean.phase_rad,
-          .of_phase = phase_uncertainty(point.mean),
-          .unwrapped_phase_rad = point.unwrapped_phase_rad,
-          .scatter_magnitude = point.mean.scatter_magnitude,
-          .scatter_phase_rad = point.mean.scatter_phase_rad,
-          .repetitions = static_cast<unsigned>(point.mean.repetitions),
-          .coverage_probability = analysis::two_sigma_probability,
-          .u_independent_phase_rad = point.mean.u_independent_phase_rad,
-          .flags = sentences_of(flags),
-          .flag_names = names_of(flags)};
+  StoredValue value = value_of(function, point);
+  value.flags = sentences_of(flags);
+  value.flag_names = names_of(flags);
+  return value;
 }
 
 void add_function(const RunOutcome& outcome, const TransferFunction& function,
@@ -83,6 +69,27 @@ void add_plan(const RunOutcome& outcome, StoredResult& result) {
 }
 
 } // namespace
+
+StoredValue value_of(const TransferFunction& function, const FrequencyPoint& point) {
+  return {.channel = function.channel,
+          .unit = function.unit,
+          .frequency_text_hz = point.frequency_text_hz,
+          .frequency_hz = point.frequency_hz,
+          .level_m_s2 = point.level_m_s2,
+          .excited_axis = function.excited_axis,
+          .magnitude = point.mean.magnitude,
+          .of_magnitude = magnitude_uncertainty(point.mean),
+          .phase_rad = point.mean.phase_rad,
+          .of_phase = phase_uncertainty(point.mean),
+          .unwrapped_phase_rad = point.unwrapped_phase_rad,
+          .scatter_magnitude = point.mean.scatter_magnitude,
+          .scatter_phase_rad = point.mean.scatter_phase_rad,
+          .repetitions = static_cast<unsigned>(point.mean.repetitions),
+          .coverage_probability = analysis::two_sigma_probability,
+          .u_independent_phase_rad = point.mean.u_independent_phase_rad,
+          .flags = {},
+          .flag_names = {}};
+}
 
 StoredResult stored_result_of(const RunOutcome& outcome) {
   StoredResult result;

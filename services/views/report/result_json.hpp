@@ -16,6 +16,9 @@
 
 namespace dyncal::inline views {
 
+// A mean as its file has it, without flags.
+[[nodiscard]] StoredValue value_of(const TransferFunction& function, const FrequencyPoint& point);
+
 // As its file has it.
 [[nodiscard]] StoredResult stored_result_of(const RunOutcome& outcome);
 

@@ -188,6 +188,9 @@ void members(auto& visit, Either<StoredStep> auto& one) {
 
 void members(auto& visit, Either<StoredCorrections> auto& one) {
   visit("reference_delay_s", one.reference_delay_s);
+  visit("reference_standard", one.reference_standard);
+  visit.unless_empty("channel_axes", one.channel_axes);
+  visit("transverse_motion", one.transverse_motion);
   if (visit("adc_calibration", one.adc_calibration); one.adc_calibration) {
     visit.derived("adc_file", one.adc_file);
   }
@@ -195,6 +198,12 @@ void members(auto& visit, Either<StoredCorrections> auto& one) {
     visit("u_dso_delay_s", one.u_dso_delay_s);
     visit("trigger_phase_correction", one.trigger_phase_correction);
   }
+}
+
+void members(auto& visit, Either<CombinedRun> auto& one) {
+  visit("bench", one.bench);
+  visit("run", one.run);
+  visit("sha256", one.sha256);
 }
 
 // Without the schema, which comes before all else.
@@ -227,6 +236,7 @@ void members(auto& visit, Either<StoredResult> auto& one) {
   visit("sample_clock", one.clocks);
   visit("points", one.points);
   visit.unless_empty("recipe", one.recipe);
+  visit.unless_empty("combined", one.combined);
 }
 
 } // namespace dyncal::inline views

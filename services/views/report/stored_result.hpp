@@ -120,11 +120,20 @@ struct StoredStep { // as planned, and what reference and sync show of it
 
 struct StoredCorrections { // as the recipe has them for all steps
   double reference_delay_s = 0.0;
+  std::optional<ReferenceStandard> reference_standard; // not stated with the run: nothing
+  std::vector<ChannelAxis> channel_axes;
+  std::optional<TransverseMotion> transverse_motion; // likewise
   std::optional<std::vector<analysis::AdcCalibrationPoint>> adc_calibration;
   std::optional<AdcFile> adc_file; // of adc_calibration
   std::optional<double> dso_delay_s;
   double u_dso_delay_s = 0.0;
   bool trigger_phase_correction = false;
+};
+
+struct CombinedRun { // of a result that combines several
+  std::string bench;
+  std::string run;
+  std::string sha256; // of its result file
 };
 
 struct StoredResult {
@@ -154,7 +163,8 @@ struct StoredResult {
   std::vector<StoredDelay> group_delays;
   std::vector<ClockReport> clocks;
   std::vector<StoredPoint> points;
-  std::string recipe;         // text of the bench file
+  std::string recipe;                // text of the bench file
+  std::vector<CombinedRun> combined; // the mountings that it combines; empty: it is of one run
   std::string content_sha256; // without what another evaluation of the same samples may change
 
   [[nodiscard]] std::vector<StoredValue> values_of(const std::string& channel) const;

@@ -77,6 +77,13 @@ StoredRoles stored_roles(const Recipe& recipe) {
 StoredCorrections stored_corrections(const Recipe& recipe, const std::optional<AdcFile>& adc_file) {
   StoredCorrections corrections;
   corrections.reference_delay_s = recipe.reference_delay_s;
+  if (!recipe.reference_standard.devices.empty()) {
+    corrections.reference_standard = recipe.reference_standard;
+  }
+  corrections.channel_axes = recipe.channel_axes;
+  if (!recipe.transverse_motion.points.empty()) {
+    corrections.transverse_motion = recipe.transverse_motion;
+  }
   if (recipe.method() == EvaluationMethod::sample_timestamping) {
     corrections.adc_calibration = recipe.adc_calibration;
     corrections.adc_file = adc_file;

@@ -36,9 +36,9 @@ TEST(DraftQuestions, EmptyLinesMeanWhatIsOffered) {
 
 TEST(DraftQuestions, WrongAnswersAreAskedForAgain) {
   std::string questions;
-  const auto draft = ask(
-      "acc-9\nsmartap\nanalogue\nsocket\nnone\nch2\nhost:5026\n\n10 zwanzig\n10 12.5\n-3\n2.5\n4\n",
-      questions);
+  const auto draft = ask("acc-9\nsmartap\nanalogue\nsocket\nnone\nch2\nhost:5026\n\n\n10 "
+                         "zwanzig\n10 12.5\n-3\n2.5\n4\n",
+                         questions);
   ASSERT_TRUE(draft.has_value()) << draft.error().message << questions;
   EXPECT_EQ(draft->sensor, SensorKind::analogue);
   EXPECT_EQ(draft->generator, GeneratorKind::none);
@@ -57,12 +57,13 @@ TEST(DraftQuestions, NameAndPlacesAreCheckedAtOnce) {
   const std::string record = folder.write("acs.csv", "t_ns,reference\n");
   std::string questions;
   const auto draft = ask("taken\nacc-9\nsmartup\nfile\nnone\n0.0.0.0\n0.0.0.0:7000\n\ngone.csv\n" +
-                             record + "\n\n\n0.5 10\n\n\n",
+                             record + "\n\n" + record + "\n\n0.5 10\n\n\n",
                          questions);
   ASSERT_TRUE(draft.has_value()) << draft.error().message << questions;
   EXPECT_EQ(draft->name, "acc-9");
   EXPECT_EQ(draft->listen, "0.0.0.0:7000");
   EXPECT_EQ(draft->acs_file, record);
+  EXPECT_EQ(draft->reference_file, record);
   EXPECT_EQ(draft->duration_s, 6.0); // three periods of the lowest frequency
   EXPECT_THAT(questions, testing::HasSubstr("there is taken.toml"));
   EXPECT_THAT(questions, testing::HasSubstr("there is no file 'gone.csv'"));

@@ -1,106 +1,163 @@
 #include "services/bench/file/reference_file.hpp"
 
-#include <cmath>
-#include <string>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "services/base/output_file.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace dyncal::inline bench {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
 
-std::string problem_of(const std::string& text) {
-  const auto points = parse_reference_file(text, "ref.csv");
-  EXPECT_FALSE(points) << text;
-  return points ? "" : points.error().message;
+// A reference file as a laboratory writes it, each part by itself.
+struct FileText {
+  std::string reference = R"toml([reference]
+name = "Reference standard accelerometer"
+manufacturer = "Brüel & Kjær"
+model = "8305"
+serial = "1842876"
+certificate = "PTB-17042-2022"
+issued_by = "PTB"
+issued = 2022-09-06
+interval_months = 24
+standard = "ISO 16063-21"
+traceability = "National standard of Germany."
+)toml";
+  std::string response = R"toml([response]
+unit = "pC/(m/s^2)"
+k = 2
+notes = ["at 8000 Hz: a resonance"]
+rows = """
+frequency_hz, level_m_s2, magnitude, phase_deg, U_magnitude_percent, U_phase_deg
+10, 5, 0.13017, -0.02, 0.2, 0.2
+80, 50, 0.13013, 0.01, 0.2, 0.2
+"""
+)toml";
+  std::string amplifier = R"toml([amplifier]
+name = "Charge amplifier"
+serial = "1502245"
+certificate = "A-17"
+[amplifier.response]
+unit = "mV/pC"
+k = 2
+file = "amplifier.csv"
+)toml";
+  std::string channel = R"toml([channel]
+unit = "mV/(m/s^2)"
+sensitivity = 0.13
+)toml";
+
+  [[nodiscard]] std::string text() const { return reference + response + amplifier + channel; }
+};
+
+class ReferenceFileTest : public testing::Test {
+protected:
+  Expected<ReferenceFile> read(const std::string& text, const std::string& name = "ref.toml") {
+    std::filesystem::create_directories((folder_.path() / name).parent_path());
+    EXPECT_TRUE(write_output_file(folder_.path() / name, text));
+    NamedFiles files(folder_.path(), NamedFiles::Place::as_named);
+    auto file = read_reference_file(name, files);
+    named_.clear();
+    for (const NamedFile& one : files.all()) {
+      named_.push_back(one.name);
+    }
+    return file;
+  }
+  std::string problem_of(const std::string& text) {
+    const auto file = read(text);
+    EXPECT_FALSE(file) << text;
+    return file ? "" : file.error().message;
+  }
+  void write_amplifier(const std::string& name = "amplifier.csv") {
+    ASSERT_TRUE(write_output_file(folder_.path() / name,
+                                  "frequency_hz,magnitude,phase_deg,U_magnitude_percent\n"
+                                  "1,1,0,0.4\n20000,1,0,0.4\n"));
+  }
+
+  tests::TemporaryFolder folder_;
+  std::vector<std::string> named_;
+};
+
+TEST_F(ReferenceFileTest, GivesTheChainAndItsCertificates) {
+  write_amplifier();
+  const auto file = read(FileText().text());
+  ASSERT_TRUE(file) << file.error().message;
+  ASSERT_EQ(file->response.size(), 2U);
+  EXPECT_NEAR(file->response[0].magnitude, 0.13017 / 0.13, 1e-12);
+  EXPECT_NEAR(file->response[0].contributions.at(0).u_magnitude_rel, 1e-3, 1e-12);
+  EXPECT_NEAR(file->response[0].contributions.at(1).u_magnitude_rel, 2e-3, 1e-12);
+  EXPECT_THAT(file->notes, ElementsAre("at 8000 Hz: a resonance"));
+  EXPECT_FALSE(file->phase_in_rad);
+  ASSERT_EQ(file->standard.devices.size(), 2U);
+  EXPECT_EQ(file->standard.devices[0].valid_until, "2024-09-06");
+  EXPECT_EQ(file->standard.devices[1].certificate, "A-17");
+  EXPECT_EQ(file->standard.file, "ref.toml");
+  EXPECT_EQ(file->standard.file_sha256.size(), 64U);
+  EXPECT_THAT(named_, ElementsAre("ref.toml", "amplifier.csv")); // what a run keeps copies of
 }
 
-TEST(ReferenceFile, GivesWhatTheFileSays) {
-  const auto points = parse_reference_file(
-      "# certificate 4711\n"
-      "frequency_hz, level_m_s2, magnitude, phase_rad, u_magnitude_rel, u_phase_rad, "
-      "transverse motion.u_magnitude_rel, transverse motion.u_phase_rad, "
-      "transverse motion.degrees_of_freedom\r\n"
-      "10, 50, 1.002, -0.01, 5e-4, 1e-3, 3e-4, 0, 7\r\n"
-      "\n"
-      "20, 50, 1.004, -0.02, 5e-4, 1e-3, 4e-4, 0, infinite\n",
-      "ref.csv");
-  ASSERT_TRUE(points) << points.error().message;
-  ASSERT_EQ(points->size(), 2U);
-  const analysis::ReferenceCalibrationPoint& first = points->front();
-  EXPECT_EQ(first.frequency_hz, 10.0);
-  EXPECT_EQ(first.level_m_s2, 50.0);
-  EXPECT_EQ(first.magnitude, 1.002);
-  EXPECT_EQ(first.phase_rad, -0.01);
-  ASSERT_EQ(first.contributions.size(), 2U);
-  EXPECT_EQ(first.contributions[0].name, "transverse motion");
-  EXPECT_EQ(first.contributions[0].u_magnitude_rel, 3e-4);
-  EXPECT_EQ(first.contributions[0].degrees_of_freedom, 7.0);
-  EXPECT_EQ(first.contributions[1].name, ""); // what is left of 5e-4
-  EXPECT_NEAR(first.contributions[1].u_magnitude_rel, 4e-4, 1e-12);
-  EXPECT_EQ(first.contributions[1].u_phase_rad, 1e-3);
-  EXPECT_TRUE(std::isinf(points->back().contributions[0].degrees_of_freedom));
+TEST_F(ReferenceFileTest, LooksForItsTablesInItsOwnFolder) {
+  std::filesystem::create_directories(folder_.path() / "calibration");
+  write_amplifier("calibration/amplifier.csv");
+  ASSERT_TRUE(read(FileText().text(), "calibration/ref.toml"));
+  EXPECT_THAT(named_, ElementsAre("calibration/ref.toml", "calibration/amplifier.csv"));
 }
 
-TEST(ReferenceFile, WithoutTheWholeItIsMadeOfItsContributions) {
-  const auto points = parse_reference_file(
-      "frequency_hz,magnitude,phase_rad,drift.u_magnitude_rel\n10,1,0,1e-3\n", "ref.csv");
-  ASSERT_TRUE(points) << points.error().message;
-  ASSERT_EQ(points->front().contributions.size(), 1U);
-  EXPECT_EQ(points->front().contributions.front().name, "drift");
+// An interferometer reads right; its certificate is for documents.
+TEST_F(ReferenceFileTest, NeedsNoResponse) {
+  const auto file = read(FileText().reference);
+  ASSERT_TRUE(file) << file.error().message;
+  EXPECT_TRUE(file->response.empty());
+  EXPECT_EQ(file->standard.devices.at(0).serial, "1842876");
 }
 
-TEST(ReferenceFile, TakesWhatExcelSaves) {
-  const auto plain = parse_reference_file("frequency_hz,magnitude,phase_rad,u_magnitude_rel\n"
-                                          "10,1.001,-0.002,0.001\n80,0.999,-0.01,0.002\n",
-                                          "reference.csv");
-  const auto excel = parse_reference_file("\xEF\xBB\xBF"
-                                          "frequency_hz;magnitude;phase_rad;u_magnitude_rel\r\n"
-                                          "10;1,001;-0,002;0,001\r\n80;0,999;-0,01;0,002\r\n",
-                                          "reference.csv");
-  ASSERT_TRUE(plain);
-  ASSERT_TRUE(excel) << excel.error().message;
-  ASSERT_EQ(excel->size(), 2U);
-  EXPECT_EQ((*excel)[1].magnitude, (*plain)[1].magnitude);
-  EXPECT_EQ((*excel)[1].phase_rad, -0.01);
-  EXPECT_EQ((*excel)[0].contributions.at(0).u_magnitude_rel, 0.001);
+TEST_F(ReferenceFileTest, TakesATableAlone) {
+  const auto file = read("frequency_hz,magnitude,phase_rad\n10,1.002,-0.001\n", "ref.csv");
+  ASSERT_TRUE(file) << file.error().message;
+  EXPECT_EQ(file->response.at(0).magnitude, 1.002);
+  EXPECT_TRUE(file->standard.devices.empty());
+  EXPECT_TRUE(file->phase_in_rad);
 }
 
-TEST(ReferenceFile, SaysFileLineAndColumnOfWhatIsNotValid) {
-  const std::string head = "frequency_hz,magnitude,phase_rad,u_magnitude_rel\n";
-  EXPECT_THAT(problem_of("frequency_hz,magnitud,phase_rad\n"),
-              HasSubstr("ref.csv:1:14: column 'magnitud' is not known"));
-  EXPECT_THAT(problem_of("frequency_hz,magnitude\n10,1\n"),
-              HasSubstr("ref.csv:1:1: column 'phase_rad' is missing"));
-  EXPECT_THAT(problem_of("frequency_hz,magnitude,magnitude\n"),
-              HasSubstr("ref.csv:1:24: column 'magnitude' is there twice"));
-  EXPECT_THAT(problem_of("frequency_hz,magnitude,phase_rad,drift.phase_rad\n"),
-              HasSubstr("ref.csv:1:34: column 'drift.phase_rad' is not known"));
-  EXPECT_THAT(problem_of(head + "10, 1, x, 1e-3\n"), HasSubstr("ref.csv:2:8: 'x' is not a number"));
-  EXPECT_THAT(problem_of(head + "10,1,0\n"), HasSubstr("3 fields, but the header names 4"));
-  EXPECT_THAT(problem_of(head + "10,1,0,1e-3\n10,1,0,1e-3\n"), HasSubstr("10 Hz twice"));
-  EXPECT_THAT(problem_of(head), HasSubstr("no points"));
+TEST_F(ReferenceFileTest, SaysWhatIsWrong) {
+  write_amplifier();
+  FileText text;
+  EXPECT_THAT(problem_of(text.response), HasSubstr("'reference' is missing"));
+  EXPECT_THAT(problem_of(text.reference + text.response + text.amplifier),
+              HasSubstr("'channel' is missing: sensitivity and unit"));
+  EXPECT_THAT(problem_of(text.reference + text.response + text.channel),
+              HasSubstr("a charge needs the table [amplifier]"));
+  EXPECT_THAT(problem_of(text.text() + "[chanel]\n"), HasSubstr("'chanel'"));
+  text.response = "[response]\nrows = \"frequency_hz, magnitude\"\n";
+  EXPECT_THAT(
+      problem_of(text.reference + text.response),
+      HasSubstr("'response.rows' has a table that cannot be read: rows:1:1: the file has no "
+                "points"));
+  text.response = "[response]\nrows = \"frequency_hz, magnitude\\n10, 1\"\n";
+  EXPECT_THAT(problem_of(text.reference + text.response + text.channel),
+              HasSubstr("it is that of the whole chain"));
+  text.response = "[response]\nunit = \"bananas\"\nrows = \"frequency_hz, magnitude\\n10, 1\"\n";
+  EXPECT_THAT(problem_of(text.reference + text.response),
+              HasSubstr("'response.unit' is \"bananas\""));
+  EXPECT_THAT(problem_of(text.reference + "[response]\n"), HasSubstr("one of them"));
+  text.reference += "valid_until = 2025-01-01\n";
+  EXPECT_THAT(problem_of(text.reference), HasSubstr("stands in place of 'valid_until'"));
 }
 
-TEST(ReferenceFile, RefusesWhatIsNotPlausible) {
-  const std::string head =
-      "frequency_hz,magnitude,phase_rad,u_magnitude_rel,u_phase_rad,drift.u_magnitude_rel\n";
-  EXPECT_THAT(problem_of(head + "10,12.5,0,1e-3,1e-3,0\n"), HasSubstr("not a sensitivity"));
-  EXPECT_THAT(problem_of(head + "10,1,-45,1e-3,1e-3,0\n"), HasSubstr("degrees"));
-  EXPECT_THAT(problem_of(head + "10,1,0,50,1e-3,0\n"),
-              HasSubstr("ref.csv:2:8: u_magnitude_rel = 50 is not plausible"));
-  EXPECT_THAT(problem_of(head + "10,1,0,1e-3,2,0\n"), HasSubstr("degrees"));
-  EXPECT_THAT(problem_of(head + "10,1,0,1e-3,nan,0\n"), HasSubstr("not a number"));
-  EXPECT_THAT(problem_of(head + "10,1,0,1e-3,1e-3,2e-3\n"),
-              HasSubstr("larger than the whole uncertainty"));
+TEST_F(ReferenceFileTest, SendsADigitalCertificateToItsImport) {
+  const auto file = read("<dcc/>", "8305.xml");
+  ASSERT_FALSE(file);
+  EXPECT_THAT(file.error().message, HasSubstr("dyncal import-reference"));
 }
 
-TEST(ReferenceFile, SaysThatItCannotBeRead) {
-  const auto points = read_reference_file("/nowhere/reference.csv");
-  ASSERT_FALSE(points);
-  EXPECT_THAT(points.error().message, HasSubstr("/nowhere/reference.csv: cannot be read"));
+TEST_F(ReferenceFileTest, SaysThatItCannotBeRead) {
+  NamedFiles files(folder_.path(), NamedFiles::Place::as_named);
+  const auto file = read_reference_file("reference.csv", files);
+  ASSERT_FALSE(file);
+  EXPECT_THAT(file.error().message, HasSubstr("reference.csv: cannot be read"));
 }
 
 } // namespace

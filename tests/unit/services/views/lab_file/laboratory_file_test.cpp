@@ -42,8 +42,8 @@ TEST(LaboratoryFile, ReadsTheExample) {
   EXPECT_FALSE(file->persons[1].main_signer);
   ASSERT_TRUE(file->reference);
   EXPECT_EQ(file->reference->standard, "ISO 16063-11");
-  EXPECT_EQ(file->reference->issued, "2026-02-03");
-  EXPECT_EQ(file->reference->valid_until, "2031-02-03");
+  EXPECT_EQ(file->reference->devices.front().issued, "2026-02-03");
+  EXPECT_EQ(file->reference->devices.front().valid_until, "2031-02-03");
   ASSERT_TRUE(file->conditions.temperature_degc);
   EXPECT_EQ(file->conditions.temperature_degc->value, 23.0);
   EXPECT_EQ(file->conditions.temperature_degc->expanded, 1.0);
@@ -57,7 +57,7 @@ TEST(LaboratoryFile, CountsTheIntervalOfTheReferenceInMonths) {
     const std::string text =
         with("issued = 2026-02-03\ninterval_months = 60", "issued = " + issued + "\n" + validity);
     const auto file = parse_laboratory_file(text, example);
-    return file ? file->reference->valid_until : file.error().message;
+    return file ? file->reference->devices.front().valid_until : file.error().message;
   };
   EXPECT_EQ(until("2026-02-03", "interval_months = 24"), "2028-02-03");
   EXPECT_EQ(until("2027-08-31", "interval_months = 6"), "2028-02-29"); // a leap year

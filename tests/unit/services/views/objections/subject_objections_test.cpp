@@ -14,7 +14,10 @@ using testing::IsEmpty;
 struct Subject {
   StoredResult result;
   SensorFile sensor;
+  LaboratoryFile laboratory;
   ReferenceStandard reference;
+
+  CalibratedDevice& device() { return reference.devices.front(); }
 };
 
 Subject whole_subject() {
@@ -29,8 +32,18 @@ Subject whole_subject() {
   subject.sensor.model = "MPU-9250";
   subject.sensor.serial = "0xBCCB0100";
   subject.sensor.received = "2026-02-20";
-  subject.reference.issued = "2026-02-03";
-  subject.reference.valid_until = "2028-02-03";
+  subject.reference = {.devices = {{.name = "reference",
+                                    .manufacturer = {},
+                                    .model = {},
+                                    .serial = "1842876",
+                                    .certificate = "PTB-17042",
+                                    .issued_by = "PTB",
+                                    .issued = "2026-02-03",
+                                    .valid_until = "2028-02-03"}},
+                       .standard = "ISO 16063-21",
+                       .traceability = "SI",
+                       .file = "ref.toml",
+                       .file_sha256 = {}};
   return subject;
 }
 
@@ -40,6 +53,7 @@ std::vector<std::string> objections(const std::function<void(Subject&)>& change)
   return objections_to_subject({.result = subject.result,
                                 .channels = {"dau/z"},
                                 .sensor = subject.sensor,
+                                .laboratory = subject.laboratory,
                                 .reference = subject.reference,
                                 .began = "2026-03-01",
                                 .ended = "2026-03-01"});
@@ -50,9 +64,8 @@ TEST(SubjectObjections, HasNoneOfWhatFits) {
   EXPECT_THAT(objections([](Subject& one) { one.sensor.model = "InvenSense MPU 9250"; }),
               IsEmpty());
   EXPECT_THAT(objections([](Subject& one) { one.sensor.received = "2026-03-01"; }), IsEmpty());
-  EXPECT_THAT(objections([](Subject& one) { one.reference.issued = "2026-03-01"; }), IsEmpty());
-  EXPECT_THAT(objections([](Subject& one) { one.reference.valid_until = "2026-03-01"; }),
-              IsEmpty());
+  EXPECT_THAT(objections([](Subject& one) { one.device().issued = "2026-03-01"; }), IsEmpty());
+  EXPECT_THAT(objections([](Subject& one) { one.device().valid_until = "2026-03-01"; }), IsEmpty());
   EXPECT_THAT(objections([](Subject& one) { one.sensor.received.clear(); }), IsEmpty());
 }
 
@@ -87,15 +100,60 @@ TEST(SubjectObjections, SaysNothingOfWhatASourceDoesNotState) {
 TEST(SubjectObjections, NamesDaysThatContradictTheMeasurement) {
   EXPECT_THAT(objections([](Subject& one) { one.sensor.received = "2026-03-03"; }),
               ElementsAre(HasSubstr("was received on 2026-03-03")));
-  EXPECT_THAT(objections([](Subject& one) { one.reference.issued = "2031-02-03"; }),
+  EXPECT_THAT(objections([](Subject& one) { one.device().issued = "2031-02-03"; }),
               ElementsAre(HasSubstr("2031-02-03, after the measurement")));
-  EXPECT_THAT(objections([](Subject& one) { one.reference.valid_until = "2026-02-27"; }),
+  EXPECT_THAT(objections([](Subject& one) { one.device().valid_until = "2026-02-27"; }),
               ElementsAre(HasSubstr("calibrated again by 2026-02-27")));
   EXPECT_THAT(objections([](Subject& one) {
-                one.reference.issued.clear();
-                one.reference.valid_until.clear();
+                one.device().issued.clear();
+                one.device().valid_until.clear();
               }),
-              ElementsAre(HasSubstr("reference.issued"), HasSubstr("reference.interval_months")));
+              ElementsAre(HasSubstr("ref.toml does not say when"), HasSubstr("interval_months")));
+}
+
+TEST(SubjectObjections, NamesWhatTheReferenceDoesNotState) {
+  EXPECT_THAT(objections([](Subject& one) {
+                one.device().certificate.clear();
+                one.reference.traceability.clear();
+              }),
+              ElementsAre("ref.toml does not state reference.certificate",
+                          "ref.toml does not state reference.traceability"));
+}
+
+// The amplifier has a certificate as well, and so may other equipment.
+TEST(SubjectObjections, HoldsTheDaysOfAllThatIsCalibrated) {
+  EXPECT_THAT(objections([](Subject& one) {
+                one.reference.devices.push_back(one.device());
+                one.reference.devices.back().name = "amplifier";
+                one.reference.devices.back().valid_until = "2026-01-01";
+              }),
+              ElementsAre(HasSubstr("the amplifier was to be calibrated again by 2026-01-01")));
+  EXPECT_THAT(objections([](Subject& one) {
+                one.laboratory.equipment = {one.device()};
+                one.laboratory.equipment.back().name = "thermometer";
+                one.laboratory.equipment.back().valid_until = "2026-01-01";
+              }),
+              ElementsAre(HasSubstr("the thermometer was to be calibrated again")));
+  EXPECT_THAT(objections([](Subject& one) {
+                one.laboratory.equipment = {one.device()};
+                one.laboratory.equipment.back().issued.clear();
+                one.laboratory.equipment.back().valid_until.clear();
+              }),
+              IsEmpty()); // a table needs no certificate
+}
+
+TEST(SubjectObjections, NamesTwoReferences) {
+  const auto with_laboratory = [](const std::string& serial, const std::string& file) {
+    return objections([&](Subject& one) {
+      one.laboratory.reference = one.reference;
+      one.laboratory.reference->devices.front().serial = serial;
+      one.reference.file = file;
+    });
+  };
+  EXPECT_THAT(with_laboratory("1842876", "ref.toml"), IsEmpty());
+  EXPECT_THAT(with_laboratory("77", "ref.toml"),
+              ElementsAre(HasSubstr("leave its table [reference] out")));
+  EXPECT_THAT(with_laboratory("77", ""), IsEmpty()); // it is the one of the laboratory file
 }
 
 } // namespace
