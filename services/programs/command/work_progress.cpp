@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <condition_variable>
 #include <string_view>
@@ -15,14 +16,14 @@ namespace {
 constexpr std::chrono::milliseconds pace{250};
 constexpr std::string_view clear_line = "\r\x1b[K";
 
-// What a signal handler may look at: the terminal with a line, -1: none.
-volatile std::sig_atomic_t terminal_of_line = -1;
-volatile std::sig_atomic_t program_ends = 0; // nothing is drawn any more
-static_assert(sizeof(std::sig_atomic_t) >= sizeof(int));
+// What a signal handler, in whatever thread, may look at: the terminal with a line, -1: none.
+std::atomic<int> terminal_of_line = -1;
+std::atomic<bool> program_ends = false; // nothing is drawn any more
+static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 
 // The signal then does what it would have done (SA_RESETHAND).
 void take_line_away(int signal) {
-  program_ends = 1;
+  program_ends = true;
   const int terminal = terminal_of_line;
   if (terminal >= 0) {
     static_cast<void>(!write(terminal, clear_line.data(), clear_line.size()));
@@ -107,7 +108,7 @@ void WorkProgress::draw() {
   const WorkCount::State state = count_->state();
   const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - state.began;
   const std::scoped_lock lock(mutex_);
-  if (program_ends != 0) {
+  if (program_ends) {
     return;
   }
   fmt::print(stream_, "{}{}\r", clear_line, progress_text(state, passed.count()));

@@ -91,6 +91,7 @@ Expected<void> ResultKeeper::finish(const RunOutcome& outcome) {
   stop();
   auto written = write_results(outcome, path_);
   if (written) {
+    const std::lock_guard lock(mutex_);
     results_kept_ = outcome.results.size();
   }
   return written;
