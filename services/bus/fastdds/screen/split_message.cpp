@@ -14,6 +14,8 @@ using Datagram = std::vector<unsigned char>;
 constexpr unsigned char encrypted_prefix = 0x31;
 constexpr unsigned char encrypted_postfix = 0x32;
 constexpr unsigned char encrypted_message = 0x33;
+constexpr unsigned char statistics = 0x80; // of Fast DDS alone
+constexpr std::size_t statistics_bytes = 60;
 
 void append(Datagram& datagram, Bytes bytes) {
   datagram.insert(datagram.end(), bytes.begin(), bytes.end());
@@ -24,13 +26,17 @@ public:
   Splitting(Bytes header, std::size_t wanted) : header_(header), wanted_(wanted) {}
 
   void add(unsigned char id, Bytes submessage) {
+    if (id == statistics) {
+      end_.assign(submessage.begin(), submessage.end());
+      return;
+    }
     append(together_, submessage);
     is_encrypted_ = is_encrypted_ || id == encrypted_prefix;
     if (is_encrypted_ && id != encrypted_postfix) {
       return;
     }
     is_encrypted_ = false;
-    if (parts_.empty() || parts_.back().size() + together_.size() > wanted_) {
+    if (parts_.empty() || parts_.back().size() + together_.size() + statistics_bytes > wanted_) {
       begin_part();
     }
     append(parts_.back(), together_);
@@ -42,6 +48,9 @@ public:
   }
   // None where what is encrypted as one has no end.
   [[nodiscard]] std::vector<Datagram> parts() && {
+    for (Datagram& part : parts_) {
+      append(part, end_);
+    }
     return together_.empty() ? std::move(parts_) : std::vector<Datagram>();
   }
 
@@ -58,6 +67,7 @@ private:
   std::vector<Datagram> parts_;
   std::map<unsigned char, Datagram> counts_; // for what comes behind
   Datagram together_;
+  Datagram end_; // of each part
   bool is_encrypted_ = false;
 };
 

@@ -7,6 +7,11 @@
 // SEC_POSTFIX), and a submessage that is longer than a packet is a part of its own; a message that
 // is encrypted as a whole comes back as it is.
 //
+// Fast DDS 2.9 ends each of its messages with a submessage for statistics, which its transport
+// fills in as it sends: where the last one has to be, it writes 56 bytes if its first byte is that
+// submessage's. So each part ends with it, too; without it the transport wrote into what was sent,
+// once in 256 parts, and a handshake with such a reply never ended.
+//
 // DDSI-RTPS 2.2, chapter 8.3; DDS Security 1.1, chapter 7.3.6. Plain function, any thread.
 #pragma once
 

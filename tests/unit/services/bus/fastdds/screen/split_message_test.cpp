@@ -43,9 +43,22 @@ TEST(SplitMessage, GivesEachPartWhatCountsForIt) {
   const Datagram second = submessage(data, 400, 2);
   const Datagram third = submessage(data, 40, 3);
   EXPECT_THAT(
-      split_message(joined({header(), to, first_stamp, first, second_stamp, second, third}), 600),
+      split_message(joined({header(), to, first_stamp, first, second_stamp, second, third}), 660),
       ElementsAre(joined({header(), to, first_stamp, first, second_stamp}),
                   joined({header(), second_stamp, to, second, third})));
+}
+
+TEST(SplitMessage, EndsEachPartAsFastDdsEndsItsMessages) {
+  const Datagram end = submessage(0x80, 56);
+  const Datagram first = submessage(data, 400, 1);
+  const Datagram longer = submessage(data, 2000, 0x80);
+  const auto parts = split_message(joined({header(), first, first, longer, end}), 600);
+  EXPECT_THAT(parts, ElementsAre(joined({header(), first, end}), joined({header(), first, end}),
+                                 joined({header(), longer, end})));
+  for (const Datagram& part : parts) { // where the transport looks for it
+    EXPECT_EQ(part.at(part.size() - 60), 0x80);
+    EXPECT_EQ(part.at(part.size() - 58), 56);
+  }
 }
 
 TEST(SplitMessage, KeepsTogetherWhatIsEncryptedAsOne) {
@@ -53,7 +66,7 @@ TEST(SplitMessage, KeepsTogetherWhatIsEncryptedAsOne) {
     return joined({submessage(encrypted_prefix, 20, fill), submessage(encrypted, 300, fill),
                    submessage(encrypted_postfix, 20, fill)});
   };
-  EXPECT_THAT(split_message(joined({header(), sample(1), sample(2), sample(3)}), 800),
+  EXPECT_THAT(split_message(joined({header(), sample(1), sample(2), sample(3)}), 860),
               ElementsAre(joined({header(), sample(1), sample(2)}), joined({header(), sample(3)})));
 }
 
