@@ -10,7 +10,7 @@ namespace dyncal::bus {
 
 struct DiscoveredParticipant {
   std::string id;     // the prefix of its GUID in hexadecimal, as in the header of its packets
-  std::string name;   // as it calls itself; may be empty
+  std::string name;   // with process and host (participant_name.hpp); may be empty
   std::string vendor; // its name, or its number
 };
 

@@ -89,7 +89,7 @@ std::string RunCommands::obey(const wire::Command& command, const bus::WriterId&
       return fmt::format("the run's plan has no step {}", command.step());
     }
     if (command.id() == 0) {
-      ask_for(command.step(), command.sender());
+      ask_for(command.step(), writer.participant());
     } else {
       repeats_.insert(command.step());
     }
@@ -99,10 +99,10 @@ std::string RunCommands::obey(const wire::Command& command, const bus::WriterId&
   }
 }
 
-void RunCommands::ask_for(std::uint32_t step, const std::string& sender) {
+void RunCommands::ask_for(std::uint32_t step, const std::string& participant) {
   const auto now = clock_->now();
   std::erase_if(asked_, [&](const auto& asked) { return now - asked.second > repetition_limit; });
-  if (asked_.insert_or_assign({sender, step}, now).second) {
+  if (asked_.insert_or_assign({participant, step}, now).second) {
     repeats_.insert(step);
   }
 }

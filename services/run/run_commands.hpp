@@ -4,7 +4,7 @@
 // Commands of other runs and to other targets are left out. Who commands repeats it until it is
 // answered, so each may come more than once, even late: a command is obeyed once by its id, and
 // answered as often as it comes. Those without an id are of programs of the first contract: REPEAT
-// of one sender for one step is one command while it comes within `repetition_limit` of the last
+// of one program for one step is one command while it comes within `repetition_limit` of the last
 // time. Who commanded is told by DDS discovery; what the message says of it is a comment, for
 // anybody writes anything there. The ids of the last `remembered` commands are known. Belongs to
 // one thread.
@@ -67,7 +67,7 @@ private:
   [[nodiscard]] std::string obey(const wire::Command& command, const bus::WriterId& writer,
                                  bool excites);
   [[nodiscard]] Sender sender_of(const wire::Command& command, const bus::WriterId& writer) const;
-  void ask_for(std::uint32_t step, const std::string& sender);
+  void ask_for(std::uint32_t step, const std::string& participant);
 
   bus::Participant* participant_;
   bus::Clock* clock_;
@@ -79,7 +79,8 @@ private:
   std::optional<Sender> paused_by_;
   std::optional<Sender> aborted_by_;
   std::set<std::uint32_t> repeats_;
-  std::map<std::pair<std::string, std::uint32_t>, bus::Clock::Instant> asked_; // last, by sender
+  std::map<std::pair<std::string, std::uint32_t>, bus::Clock::Instant>
+      asked_; // last, by participant
 };
 
 } // namespace dyncal::inline run

@@ -20,12 +20,13 @@ protected:
     command.target("conductor");
     command.kind(kind);
     command.run("r1");
-    command.sender("ada@desk");
+    command.sender(comment_);
     command.step(step);
     command.id(id);
     writer_.write(command);
     commands_.take(excites);
   }
+  std::string comment_ = "ada@desk";
   // The answer to this command, which is the only one that is to be given.
   std::string answer_to(std::uint64_t id) {
     const auto answer = commands_.take_answer();
@@ -122,6 +123,20 @@ TEST_F(RunCommandsTest, ACommandThatIsStillRepeatedAsksForNoSecondRepeat) {
   clock_.advance(RunCommands::repetition_limit + 1ns);
   command(wire::COMMAND_REPEAT, 0, 4);
   EXPECT_EQ(commands_.take_repeats().size(), 1U) << "a wish of its own";
+}
+
+TEST_F(RunCommandsTest, WhoAsksForARepeatIsAProgramWhateverItCallsItself) {
+  command(wire::COMMAND_REPEAT, 0, 4);
+  comment_ = "mallory";
+  command(wire::COMMAND_REPEAT, 0, 4);
+  EXPECT_EQ(commands_.take_repeats().size(), 1U);
+  clock_.advance(RunCommands::repetition_limit);
+  comment_ = "carol";
+  command(wire::COMMAND_REPEAT, 0, 4);
+  EXPECT_TRUE(commands_.take_repeats().empty()) << "it is the same command of the same program";
+  writer_ = network_.join("third").writer(bus::topics::command, "b").value();
+  command(wire::COMMAND_REPEAT, 0, 4);
+  EXPECT_EQ(commands_.take_repeats().size(), 1U) << "of another program, by the same words";
 }
 
 } // namespace
