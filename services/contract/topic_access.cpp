@@ -44,7 +44,7 @@ std::vector<TopicAccess> make_topic_access() {
       {topics::calibration_result, bench, {analysis}, lookers},
       {topics::transfer_function, bench, {analysis}, lookers},
       {topics::sample_clock_report, bench, {analysis}, lookers},
-      {topics::service_status, bench, {analysis, guard}, lookers + Roles{guard}},
+      {topics::service_status, bench, {analysis, guard}, lookers},
       // Of a run that keeps a recording, the conductor is its recorder.
       {topics::recorder_status, bench, {conductor, recorder}, lookers},
       {topics::command, bench, {analysis, web}, lookers + instruments},
