@@ -35,10 +35,10 @@ private:
 };
 
 // Says why the vendor may have refused a writer or reader, which it does not say itself.
-class SecuredParticipant : public UntypedParticipant {
+class ScreenedParticipant : public UntypedParticipant {
 public:
-  SecuredParticipant(std::unique_ptr<UntypedParticipant> participant,
-                     const std::filesystem::path& permissions, IsRevoked is_revoked)
+  ScreenedParticipant(std::shared_ptr<UntypedParticipant> participant,
+                      const std::filesystem::path& permissions, IsRevoked is_revoked)
       : participant_(std::move(participant)), permissions_(permissions.string()),
         is_revoked_(std::make_shared<const IsRevoked>(std::move(is_revoked))) {}
 
@@ -83,24 +83,37 @@ private:
                             "'? It is made for a role and its benches by 'dyncal security issue'"};
   }
 
-  std::unique_ptr<UntypedParticipant> participant_;
+  std::shared_ptr<UntypedParticipant> participant_;
   std::string permissions_;
   std::shared_ptr<const IsRevoked> is_revoked_;
 };
 
 } // namespace
 
-base::Expected<Participant> create_secured_participant(const ParticipantOptions& options,
-                                                       const SecurityFiles& files,
-                                                       IsRevoked is_revoked) {
-  return create_untyped_participant(options, &files).map([&](auto participant) {
-    return Participant(std::make_unique<SecuredParticipant>(
-        std::move(participant), files.permissions, std::move(is_revoked)));
-  });
+base::Expected<SecuredParticipant> create_secured_participant(const ParticipantOptions& options,
+                                                              const SecurityFiles& files,
+                                                              IsRevoked is_revoked) {
+  DYNCAL_TRY(auto untyped, create_untyped_participant(options, &files));
+  const std::shared_ptr<UntypedParticipant> shared = std::move(untyped);
+  return SecuredParticipant{Participant(std::make_unique<ScreenedParticipant>(
+                                shared, files.permissions, std::move(is_revoked))),
+                            [weak = std::weak_ptr(shared)] {
+                              const auto participant = weak.lock();
+                              return participant ? participant->discovered() : Discovery();
+                            }};
 }
 
 bool needs_high_subject(Vendor vendor) {
   return vendor == Vendor::fast_dds;
+}
+
+bool speaks_alone_when_secured(Vendor vendor) {
+#if defined(DYNCAL_HAVE_FAST_DDS) && __has_include(<fastdds/LibrarySettings.hpp>)
+  return vendor == Vendor::fast_dds; // version 3, as in fastdds/fast_dds_names.hpp
+#else
+  static_cast<void>(vendor);
+  return false;
+#endif
 }
 
 std::optional<std::string> what_security_lacks(Vendor vendor) {

@@ -29,9 +29,15 @@ struct SecurityFiles {
 // Whether nothing more is taken from this writer, which may be unknown. Called from any thread.
 using IsRevoked = std::function<bool(const WriterId& writer)>;
 
+struct SecuredParticipant {
+  Participant participant;
+  // As Participant::discovered(), wherever the participant is moved to; nobody once it is gone.
+  std::function<Discovery()> discovered;
+};
+
 // Fails (network) as Participant::create() does, and when the vendor refuses the files; they are
 // checked before by services/security, whose sentences are better.
-[[nodiscard]] base::Expected<Participant>
+[[nodiscard]] base::Expected<SecuredParticipant>
 create_secured_participant(const ParticipantOptions& options, const SecurityFiles& files,
                            IsRevoked is_revoked);
 
@@ -39,6 +45,10 @@ create_secured_participant(const ParticipantOptions& options, const SecurityFile
 // participant with the lower GUID, which follows from the subject, begins the handshake, and
 // Cyclone DDS does not understand how Fast DDS begins it.
 [[nodiscard]] bool needs_high_subject(Vendor vendor);
+
+// Whether the vendor in this build finds no other vendor, and no other version of itself, once both
+// are secured: Fast DDS 3 does not send them its keys.
+[[nodiscard]] bool speaks_alone_when_secured(Vendor vendor);
 
 // What the vendor lacks on this host to be secured, as a sentence; nothing if it has all.
 [[nodiscard]] std::optional<std::string> what_security_lacks(Vendor vendor);

@@ -27,10 +27,28 @@ GuidStart guid_start_by(const unsigned char* digest) {
   return start;
 }
 
+std::set<GuidStart> guid_starts_in(X509_CRL& revoked) {
+  std::set<GuidStart> starts;
+  STACK_OF(X509_REVOKED)* all = X509_CRL_get_REVOKED(&revoked);
+  for (int i = 0; i < sk_X509_REVOKED_num(all); ++i) {
+    if (const auto digest =
+            digest_in(*X509_REVOKED_get0_serialNumber(sk_X509_REVOKED_value(all, i)))) {
+      starts.insert(guid_start_by(digest->data()));
+    }
+  }
+  return starts;
+}
+
 } // namespace
 
 GuidStart guid_start_of(const X509_NAME& subject) {
   return guid_start_by(digest_of(subject).data());
+}
+
+std::set<GuidStart> revoked_guid_starts(const std::filesystem::path& list) {
+  const auto revoked = read_revoked(list);
+  ERR_clear_error();
+  return revoked ? guid_starts_in(**revoked) : std::set<GuidStart>();
 }
 
 std::optional<GuidStart> own_guid_start(const std::filesystem::path& folder, bus::Vendor vendor) {
@@ -67,7 +85,7 @@ void RevokedParticipants::look_again() {
       X509_CRL_verify(revoked->get(), X509_get0_pubkey(authorities->front().get())) == 1;
   ERR_clear_error();
   if (is_signed) {
-    take(**revoked);
+    revoked_.merge(guid_starts_in(**revoked));
     if (is_news) {
       tell(**revoked);
     }
@@ -75,16 +93,6 @@ void RevokedParticipants::look_again() {
     warn_(fmt::format("{}: is not a list that the authority of ca.pem has signed; the one before "
                       "it goes on",
                       files_.revoked.string()));
-  }
-}
-
-void RevokedParticipants::take(X509_CRL& revoked) {
-  STACK_OF(X509_REVOKED)* all = X509_CRL_get_REVOKED(&revoked);
-  for (int i = 0; i < sk_X509_REVOKED_num(all); ++i) {
-    if (const auto digest =
-            digest_in(*X509_REVOKED_get0_serialNumber(sk_X509_REVOKED_value(all, i)))) {
-      revoked_.insert(guid_start_by(digest->data()));
-    }
   }
 }
 

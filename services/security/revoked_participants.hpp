@@ -32,6 +32,9 @@ using GuidStart = std::array<unsigned char, 6>;
 // Of who has this subject.
 [[nodiscard]] GuidStart guid_start_of(const X509_NAME& subject);
 
+// Of whom this list of revoked certificates names; nothing where it cannot be read.
+[[nodiscard]] std::set<GuidStart> revoked_guid_starts(const std::filesystem::path& list);
+
 // Of who has this folder (identity_folder.hpp); nothing where it has no certificate.
 [[nodiscard]] std::optional<GuidStart> own_guid_start(const std::filesystem::path& folder,
                                                       bus::Vendor vendor);
@@ -52,7 +55,6 @@ public:
 
 private:
   void look_again();
-  void take(X509_CRL& revoked);
   void tell(X509_CRL& revoked) const;
 
   const bus::SecurityFiles files_;

@@ -18,7 +18,7 @@ bool is_said_often(std::string_view message) {
   static LineLimit others;
   LineLimit& limit =
       message.find("ddsi_udp_conn_write") == std::string_view::npos ? others : unsent;
-  return !limit.passes(std::chrono::steady_clock::now());
+  return !limit.passes(message, std::chrono::steady_clock::now());
 }
 
 void write_or_count(void* refused, const dds_log_data_t* data) {

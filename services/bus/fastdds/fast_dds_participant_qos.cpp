@@ -51,7 +51,7 @@ rtps::Locator_t locator(const std::string& address, std::uint32_t port) {
 class LimitedConsumer : public dds::StdoutErrConsumer {
 public:
   void Consume(const dds::Log::Entry& entry) override {
-    if (limit_.passes(std::chrono::steady_clock::now())) {
+    if (limit_.passes(entry.message, std::chrono::steady_clock::now())) {
       dds::StdoutErrConsumer::Consume(entry);
     }
   }

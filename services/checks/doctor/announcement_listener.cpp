@@ -132,7 +132,9 @@ void AnnouncementListener::take(int domain, std::string_view packet, const msghd
   std::array<char, INET_ADDRSTRLEN> address{};
   inet_ntop(AF_INET, &from.sin_addr, address.data(), address.size());
   const std::string program = program_of_packet(packet);
-  heard = {domain, sender, program.empty() ? heard.program : program, address.data(), interface};
+  AnnouncedIdentity identity = identity_of_packet(packet);
+  heard = {domain,         sender,    program.empty() ? heard.program : program,
+           address.data(), interface, identity.protection ? std::move(identity) : heard.identity};
 }
 
 std::vector<Announcement> AnnouncementListener::heard() const {

@@ -17,6 +17,7 @@
 
 #include "drivers/link/file_descriptor.hpp"
 #include "services/base/error.hpp"
+#include "services/checks/doctor/announced_identity.hpp"
 
 namespace dyncal::inline checks::doctor {
 
@@ -26,6 +27,7 @@ struct Announcement {
   std::string program{};     // "dyncal-analysis"; empty: none of dyncal's
   std::string address{};     // that it came from
   std::string interface {};  // of this host, that it came by
+  AnnouncedIdentity identity{};
 };
 
 class AnnouncementListener {

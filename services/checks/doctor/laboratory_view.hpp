@@ -37,7 +37,8 @@ struct LaboratoryView {
   std::set<std::string> announced_from; // addresses that those came from
   // Of other domains, and of this one by interfaces that this program does not use.
   std::vector<Announcement> announced_elsewhere;
-  std::map<std::string, std::string> addresses; // of participants that announced themselves
+  std::map<std::string, std::string> addresses;        // of participants that announced themselves
+  std::map<std::string, AnnouncedIdentity> identities; // of those
   std::uint64_t malformed_messages = 0;
 };
 

@@ -66,6 +66,10 @@ bool Daemon::is_open_to_others() const {
   return network.security.empty() && reaches_other_hosts(network.interface_name);
 }
 
+std::string Daemon::strangers() const {
+  return joined_->strangers();
+}
+
 void Daemon::turned() {
   supervisor_->report_refused_packets(refused_->count());
   supervisor_->report_malformed_messages(joined_->participant.malformed_messages());

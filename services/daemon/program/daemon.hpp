@@ -61,6 +61,8 @@ public:
   // Whoever is on its network can read and send everything: it is not secured, and more than
   // loopback.
   [[nodiscard]] bool is_open_to_others() const;
+  // As WatchedNetwork::strangers(). REQUIRES: joined.
+  [[nodiscard]] std::string strangers() const;
   // One turn of the main loop: what the network refused is reported with it. REQUIRES:
   // participant() was not moved from; who does that reports to supervisor().
   void turned();

@@ -3,11 +3,8 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <chrono>
 #include <condition_variable>
 #include <csignal>
-#include <ctime>
-#include <memory>
 #include <mutex>
 #include <thread>
 
@@ -16,9 +13,7 @@
 #include <spdlog/spdlog.h>
 
 #include "services/base/printable_text.hpp"
-#include "services/security/identity_check.hpp"
-#include "services/security/identity_folder.hpp"
-#include "services/security/revoked_participants.hpp"
+#include "services/daemon/program/secured_network.hpp"
 
 namespace dyncal::inline daemon {
 namespace {
@@ -75,26 +70,12 @@ void add_metrics_option(CLI::App& app, std::string& address) {
 
 Expected<bus::Participant> join_network(const NetworkOptions& options, const std::string& program,
                                         const NetworkUse& use) {
-  DYNCAL_TRY(const auto vendor, bus::parse_vendor(options.dds));
-  bus::ParticipantOptions participant;
-  participant.vendor = vendor;
-  participant.domain = options.domain;
-  participant.name = program;
-  participant.peers = options.peers;
-  participant.multicast = !options.no_multicast;
-  participant.interface_name = options.interface_name;
-  participant.watch_discovery = use.watch_discovery;
-  participant.warn = [](const std::string& sentence) { spdlog::warn("{}", sentence); };
-  if (options.security.empty()) {
-    return bus::Participant::create(participant);
+  if (!options.security.empty()) {
+    DYNCAL_TRY(auto joined, join_secured_network(options, program, use));
+    return std::move(joined.participant);
   }
-  DYNCAL_TRY(require_identity(options.security, vendor, program, std::time(nullptr)));
-  const auto files = security_files(options.security, vendor);
-  const auto revoked = std::make_shared<RevokedParticipants>(files, participant.warn,
-                                                             [] { kill(getpid(), SIGTERM); });
-  return bus::create_secured_participant(participant, files, [=](const bus::WriterId& writer) {
-    return revoked->hold(writer, std::chrono::steady_clock::now());
-  });
+  DYNCAL_TRY(const auto participant, participant_options(options, program, use));
+  return bus::Participant::create(participant);
 }
 
 namespace {

@@ -7,6 +7,9 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "services/daemon/program/secured_network.hpp"
+#include "services/security/identity_folder.hpp"
+
 namespace dyncal::inline daemon {
 namespace {
 
@@ -16,6 +19,13 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds look_interval{500};
 // For what a program does at its end, such as closing its files.
 constexpr std::chrono::seconds ending_time{2};
+
+// Each look reads all that was discovered; for commands, which end soon, at first more often.
+constexpr std::chrono::seconds strangers_interval{5};
+constexpr std::size_t first_looks = 10;
+constexpr std::chrono::milliseconds strange_for{900};
+constexpr std::chrono::seconds said_when_strange_for{10};
+constexpr std::size_t max_said = 1000;
 
 // Of the interface that was named, which counts whatever it is; of all where none was.
 Addresses addresses_of(const std::string& interface_name) {
@@ -47,17 +57,25 @@ WatchedNetwork::join(const NetworkOptions& options, const std::string& program,
   std::string interface_name = interface_called(options.interface_name);
   NetworkChanges changes;
   AddressesAtStart start{addresses_of(interface_name), {}};
-  DYNCAL_TRY(auto joined, join_network(options, program, {.watch_discovery = true}));
+  const NetworkUse use{.watch_discovery = true};
+  DYNCAL_TRY(auto joined, options.security.empty()
+                              ? join_network(options, program, use).map([](auto participant) {
+                                  return bus::SecuredParticipant{std::move(participant), {}};
+                                })
+                              : join_secured_network(options, program, use));
+  DYNCAL_TRY(const auto vendor, bus::parse_vendor(options.dds));
   return std::unique_ptr<WatchedNetwork>(
-      new WatchedNetwork(std::move(joined), std::move(interface_name), std::move(changes),
-                         std::move(start), asked, std::move(when_deaf)));
+      new WatchedNetwork(std::move(joined), security_files(options.security, vendor).revoked,
+                         std::move(interface_name), std::move(changes), std::move(start), asked,
+                         std::move(when_deaf)));
 }
 
-WatchedNetwork::WatchedNetwork(bus::Participant joined, std::string interface_name,
-                               NetworkChanges changes, AddressesAtStart start,
-                               const std::stop_token& asked,
+WatchedNetwork::WatchedNetwork(bus::SecuredParticipant joined, std::filesystem::path revoked,
+                               std::string interface_name, NetworkChanges changes,
+                               AddressesAtStart start, const std::stop_token& asked,
                                std::function<void(const std::string&)> when_deaf)
-    : participant(std::move(joined)), announced_(participant.own_addresses()),
+    : participant(std::move(joined.participant)), discovered_(std::move(joined.discovered)),
+      revoked_(std::move(revoked)), announced_(participant.own_addresses()),
       interface_(std::move(interface_name)), changes_(std::move(changes)), start_(std::move(start)),
       when_deaf_(std::move(when_deaf)), asked_(asked, [this] { stop_.request_stop(); }),
       thread_([this](const std::stop_token& ended) { look(ended); }) {}
@@ -77,6 +95,9 @@ void WatchedNetwork::look(const std::stop_token& ended) {
                    change, fmt::join(start_.announced, ", "));
     }
     before = now;
+    if (discovered_) {
+      look_for_strangers();
+    }
     const std::string why = what_deafens(start_, now);
     if (why != std::exchange(why_before, why)) {
       since = Clock::now();
@@ -86,6 +107,32 @@ void WatchedNetwork::look(const std::stop_token& ended) {
       return;
     }
   }
+}
+
+void WatchedNetwork::look_for_strangers() {
+  const auto now = Clock::now();
+  if (now < next_look_for_strangers_) {
+    return;
+  }
+  next_look_for_strangers_ = ++looks_for_strangers_ > first_looks ? now + strangers_interval : now;
+  strangers_.look(discovered_(), now);
+  {
+    const std::lock_guard lock(mutex_);
+    strangers_sentence_ = strangers_sentence(strangers_.strangers(now, strange_for), revoked_);
+  }
+  const auto all = strangers_.strangers(now, said_when_strange_for);
+  bool is_news = false;
+  for (const Stranger& one : all) {
+    is_news = (said_.size() < max_said && said_.insert(one.id).second) || is_news;
+  }
+  if (is_news) {
+    spdlog::warn("{}", strangers_sentence(all, revoked_));
+  }
+}
+
+std::string WatchedNetwork::strangers() const {
+  const std::lock_guard lock(mutex_);
+  return strangers_sentence_;
 }
 
 void WatchedNetwork::end(const std::string& why, const std::stop_token& ended) {

@@ -7,11 +7,14 @@
 #include <cstdio>
 #include <cstdlib>
 #include <set>
+#include <string>
+#include <vector>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "services/base/json_text.hpp"
+#include "services/base/printable_text.hpp"
 #include "services/checks/doctor/checks.hpp"
 #include "services/checks/doctor/dds_variables.hpp"
 #include "services/checks/doctor/laboratory_view.hpp"
@@ -20,7 +23,9 @@
 #include "services/daemon/program/bench_program.hpp"
 #include "services/programs/command/command.hpp"
 #include "services/programs/command/laboratory_look.hpp"
+#include "services/security/identity_folder.hpp"
 #include "services/security/revoked_participants.hpp"
+#include "services/security/strangers.hpp"
 
 namespace dyncal::inline programs {
 namespace {
@@ -51,39 +56,55 @@ Expected<std::optional<BenchFile>> read_bench(DoctorOptions& command) {
   return std::optional<BenchFile>(std::move(bench));
 }
 
-// Takes those out of the view that announce themselves and show nothing else, and returns how many:
-// a secured program has not authenticated them. Others would be looked for in the network.
-std::size_t take_out_strangers(const NetworkOptions& network, doctor::LaboratoryView& view) {
+// Why an announcement keeps its program from talking to one with `own` and the governance of
+// 'dyncal security init'.
+std::string reason_of(const doctor::AnnouncedIdentity& identity, const std::string& own) {
+  constexpr std::uint64_t usual_protection = 0x8000'0006'8000'0006U; // discovery and liveliness
+  if (!identity.authority.empty() && identity.authority != own) {
+    return "of the authority " + one_line(identity.authority);
+  }
+  return identity.protection && *identity.protection != usual_protection ? "of another governance"
+                                                                         : "";
+}
+
+// Takes those out of the view that announce themselves and show nothing else: a secured program has
+// not authenticated them. Others would be looked for in the network.
+std::vector<Stranger> take_out_strangers(const NetworkOptions& network,
+                                         doctor::LaboratoryView& view) {
   const auto start = own_guid_start(network.security, *bus::parse_vendor(network.dds));
   const std::string own = start ? bus::hexadecimal(start->data(), start->size()) : "";
-  std::set<std::string> strangers = view.announced_by_multicast.value_or(std::set<std::string>());
+  const std::string authority = authority_of(network.security);
+  std::vector<Stranger> strangers = without_endpoints(view.discovery);
+  std::set<std::string> known;
   for (const auto& participant : view.discovery.participants) {
-    strangers.insert(participant.id);
+    known.insert(participant.id);
   }
-  std::erase_if(strangers, [&](const std::string& id) { return id.starts_with(own); });
-  for (const auto& endpoint : view.discovery.endpoints) {
-    strangers.erase(endpoint.participant);
+  for (const std::string& id : view.announced_by_multicast.value_or(std::set<std::string>())) {
+    if (!known.contains(id) && !id.starts_with(own)) {
+      strangers.push_back({id, view.addresses[id]});
+    }
   }
-  const auto is_strange = [&](const std::string& id) { return strangers.contains(id); };
-  std::erase_if(view.discovery.participants, [&](const auto& one) { return is_strange(one.id); });
-  if (view.announced_by_multicast) {
-    std::erase_if(*view.announced_by_multicast, is_strange);
+  for (Stranger& one : strangers) {
+    one.reason = reason_of(view.identities[one.id], authority);
+    std::erase_if(view.discovery.participants,
+                  [&](const auto& other) { return other.id == one.id; });
+    if (view.announced_by_multicast) {
+      view.announced_by_multicast->erase(one.id);
+    }
   }
-  return strangers.size();
+  return strangers;
 }
 
 // Nothing to say on a computer alone.
-Findings about_security(const NetworkOptions& network, std::size_t strangers,
+Findings about_security(const NetworkOptions& network, const std::vector<Stranger>& strangers,
                         const doctor::HostView& host) {
   if (!network.security.empty()) {
     Findings findings{
         {Severity::ok, "security", "encrypted, among programs of this laboratory alone"}};
-    if (strangers > 0) {
+    if (!strangers.empty()) {
+      const auto files = security_files(network.security, *bus::parse_vendor(network.dds));
       findings.push_back(
-          {Severity::warning, "security",
-           fmt::format("{} {} here that this program may not talk to: without --security, of "
-                       "another authority or governance, expired or revoked",
-                       strangers, strangers == 1 ? "program is" : "programs are")});
+          {Severity::warning, "security", strangers_sentence(strangers, files.revoked)});
     }
     return findings;
   }
@@ -98,7 +119,8 @@ Findings about_security(const NetworkOptions& network, std::size_t strangers,
 Findings judge(const LaboratoryLook& look, const NetworkOptions& network,
                const std::optional<BenchFile>& bench) {
   doctor::LaboratoryView view = look.view;
-  const std::size_t strangers = network.security.empty() ? 0 : take_out_strangers(network, view);
+  const auto strangers =
+      network.security.empty() ? std::vector<Stranger>() : take_out_strangers(network, view);
   Findings findings = doctor::check_programs(view);
   if (!doctor::analysis_is_heard(view)) {
     findings.push_back(

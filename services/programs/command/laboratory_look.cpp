@@ -43,6 +43,7 @@ void add_announcements(const std::vector<doctor::Announcement>& heard, const std
       view.announced_by_multicast->insert(one.participant);
       view.announced_from.insert(one.address);
       view.addresses[one.participant] = one.address;
+      view.identities[one.participant] = one.identity;
     }
   }
   std::ranges::copy_if(

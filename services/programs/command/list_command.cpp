@@ -97,10 +97,14 @@ Expected<void> run_list(const ListOptions& command, const std::stop_token& stop)
       quiet_at = Clock::now() + quiet_time;
     }
   }
+  const std::string strangers = watched->strangers();
   if (command.json) {
-    fmt::print("{}\n", json_text(live::laboratory_json(laboratory), 2));
+    auto json = live::laboratory_json(laboratory);
+    json["strangers"] = strangers;
+    fmt::print("{}\n", json_text(json, 2));
   } else {
     print_text(laboratory);
+    fmt::print("{}", strangers.empty() ? "" : harmless(strangers) + "\n");
   }
   return watched->outcome();
 }

@@ -17,6 +17,10 @@ bool WatchedLaboratory::is_over() const {
   return network_->stop().stop_requested();
 }
 
+std::string WatchedLaboratory::strangers() const {
+  return network_->strangers();
+}
+
 Expected<void> WatchedLaboratory::outcome() const {
   return network_->outcome({});
 }

@@ -32,6 +32,8 @@ public:
   void work(std::chrono::steady_clock::time_point until);
 
   [[nodiscard]] const network::BusState& laboratory() const { return laboratory_; }
+  // As WatchedNetwork::strangers().
+  [[nodiscard]] std::string strangers() const;
   // Nothing more is heard of the laboratory, or the end was asked for.
   [[nodiscard]] bool is_over() const;
   // Fails (network) where nothing more is heard.

@@ -45,6 +45,7 @@ struct WebService::Parts {
                       {"vendor", identity.dds},
                       {"samples_missed", std::to_string(tap.missed())},
                       {"is_open_to_others", is_open_to_others},
+                      {"strangers", daemon.strangers()},
                       {"visitors", events.listeners()}};
     json["may_act"] = permission.may_act();
     json["has_guide"] = !options.door.guide_folder.empty();

@@ -7,6 +7,7 @@ import { Actions } from "./actions.js";
 import { BenchView } from "./bench_view.js";
 import { Connection } from "./connection.js";
 import { element, set_attribute, set_shown, set_text } from "./element.js";
+import { visible } from "./foreign_text.js";
 import { HistoryView } from "./history_view.js";
 import { LaboratoryView } from "./laboratory_view.js";
 import { duration_text, utc_text } from "./number_text.js";
@@ -131,6 +132,7 @@ class Page {
              `${software ?? "dyncal"} on ${daemon.host ?? "this machine"}; all times UTC; ` +
              `${daemon.visitors ?? "?"} visitors; ` +
              (Number(daemon.samples_missed ?? 0) > 0 ? `${daemon.samples_missed} samples not seen by this page; ` : "") +
+             (daemon.strangers ? `${visible(daemon.strangers)}; ` : "") +
              (daemon.is_open_to_others === true ? "the bench network is not secured; " : "") +
              `state of ${utc_text(now_utc_ms)}`);
   }

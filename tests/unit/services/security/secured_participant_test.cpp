@@ -73,7 +73,7 @@ protected:
     auto joined = bus::create_secured_participant(
         options, files, [this](const bus::WriterId& writer) { return is_revoked(writer); });
     EXPECT_TRUE(joined) << joined.error().message;
-    return std::move(*joined);
+    return std::move(joined->participant);
   }
 
   bool is_revoked(const bus::WriterId& writer) {
