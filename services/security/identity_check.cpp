@@ -214,8 +214,27 @@ std::vector<bus::Vendor> vendors_of(const fs::path& folder) {
   return vendors;
 }
 
+Expected<void> require_no_other_vendor(const fs::path& folder, bus::Vendor vendor) {
+  const std::string own = bus::to_string(vendor);
+  for (const std::string other : {"cyclonedds", "fastdds"}) { // of any build
+    std::error_code unreadable;
+    if (other != own && fs::exists(folder / (other + ".pem"), unreadable)) {
+      return fail(ErrorCode::bad_file,
+                  fmt::format("{}: is for {} as well, and Fast DDS 3 talks to no other DDS once it "
+                              "is secured, nor to Fast DDS 2: use --dds cyclonedds everywhere; or, "
+                              "where all programs are over Fast DDS 3, folders for it alone "
+                              "('dyncal security issue --vendor {}')",
+                              folder.string(), other, own));
+    }
+  }
+  return {};
+}
+
 Expected<void> require_identity(const fs::path& folder, bus::Vendor vendor,
                                 const std::string& program, std::time_t now) {
+  if (bus::speaks_alone_when_secured(vendor)) {
+    DYNCAL_TRY(require_no_other_vendor(folder, vendor));
+  }
   const IdentityCheck check = check_identity(folder, vendor, now);
   const auto wrong = std::ranges::find(check.findings, Severity::error, &Finding::severity);
   if (wrong != check.findings.end()) {

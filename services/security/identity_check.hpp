@@ -36,6 +36,11 @@ struct IdentityCheck {
                                               bus::Vendor vendor, const std::string& program,
                                               std::time_t now);
 
+// Fails (bad_file) where the folder has a certificate for another DDS vendor too: of a vendor that
+// talks to no other once it is secured, since such a laboratory may be mixed.
+[[nodiscard]] Expected<void> require_no_other_vendor(const std::filesystem::path& folder,
+                                                     bus::Vendor vendor);
+
 // Fails (bad_file) where certificate or permissions end within this time.
 [[nodiscard]] Expected<void> require_validity(const std::filesystem::path& folder,
                                               bus::Vendor vendor, std::chrono::seconds needed,

@@ -7,9 +7,10 @@
 //   VENDOR.pem, VENDOR_key.pem, VENDOR_permissions.p7s
 //                            its certificate, private key and permissions in this DDS vendor
 //
-// Flat, since service managers hand on files (LoadCredential=). Those are copies of the time when a
-// service begins; DYNCAL_REVOKED names a list of revoked certificates that can be renewed. Plain
-// functions; any thread.
+// Flat, since service managers hand on files (LoadCredential=). For a second one beside it FOLDER
+// may be what the names of its files begin with before a "_", as systemd hands on a whole folder.
+// Those are copies of the time when a service begins; DYNCAL_REVOKED names a list of revoked
+// certificates that can be renewed. Plain functions; any thread.
 #pragma once
 
 #include <cstdlib>
@@ -30,12 +31,17 @@ inline constexpr const char* revoked_file = "revoked.pem";
                                                        bus::Vendor vendor) {
   const std::string name = bus::to_string(vendor);
   const char* revoked = std::getenv("DYNCAL_REVOKED");
-  return {.authority = folder / authority_file,
-          .certificate = folder / (name + ".pem"),
-          .private_key = folder / (name + "_key.pem"),
-          .governance = folder / governance_file,
-          .permissions = folder / (name + "_permissions.p7s"),
-          .revoked = revoked != nullptr ? revoked : folder / revoked_file};
+  const auto file = [&](const std::string& called) {
+    std::filesystem::path handed_on = folder.string() + "_" + called;
+    std::error_code unreadable;
+    return std::filesystem::exists(handed_on, unreadable) ? handed_on : folder / called;
+  };
+  return {.authority = file(authority_file),
+          .certificate = file(name + ".pem"),
+          .private_key = file(name + "_key.pem"),
+          .governance = file(governance_file),
+          .permissions = file(name + "_permissions.p7s"),
+          .revoked = revoked != nullptr ? revoked : file(revoked_file)};
 }
 
 // The common name of a certificate is its role, "-", and what tells it from others.

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Renews a certificate and revokes another one while runs of a secured bench last.
 
-    rotation_campaign.py PROGRAMS [--vendors cyclonedds,fastdds,mixed]
+    rotation_campaign.py PROGRAMS [--vendors cyclonedds,fastdds,mixed] [--steps 16]
 
 PROGRAMS is the folder of the built programs. Two analyses are there, each with a certificate of its
 own. In the first run the sources get a new folder in the place of the old one, and the certificate
@@ -16,62 +16,33 @@ Exit status 1 if something did not hold.
 import argparse
 import pathlib
 import shutil
-import subprocess
 import sys
 import tempfile
 import time
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "faults"))
-from bench_laboratory import SERVICES, VENDORS, BenchLaboratory, Failure, wait_until  # noqa: E402
+from bench_laboratory import SERVICES, VENDORS, Failure, wait_until  # noqa: E402
+from secured_bench import SecuredBench  # noqa: E402
 
 HEARD_S = 10.0
-FREQUENCIES = [str(20 + 5 * number) for number in range(16)]
-ROLES = {
-    "dyncal-acs": "source",
-    "dyncal-dau": "source",
-    "dyncal-analysis": "analysis",
-    "dyncal-guard": "guard",
-    "dyncal": "operator",
-}
-OF_A_BENCH = ("source", "guard", "operator")
 NEW_LIST = "revoked.pem: a new list"
 STANDS_BY = "this service stands by"
 TAKES_OVER = ": taken over"
 
 
-class SecuredLaboratory(BenchLaboratory):
-    """A live bench, each program by the folder of its role."""
+class RotatedLaboratory(SecuredBench):
+    """Without an analysis at first."""
 
-    def __init__(self, programs, folder, vendors):
-        self.security = pathlib.Path(folder) / "security"
-        self.security.mkdir(parents=True)
-        self.call(programs, "init", self.security / "authority")
-        for role in sorted({*ROLES.values()}):
-            self.issue(programs, role, role)
-        self.issue(programs, "analysis", "other-analysis")
-        environments = {
-            program: {"DYNCAL_SECURITY": str(self.security / role)}
-            for program, role in ROLES.items()
-        }
+    def __init__(self, programs, folder, vendors, steps):
         super().__init__(
             programs,
             folder,
             vendors,
-            frequencies=FREQUENCIES,
+            frequencies=[f"{20 + 80 * number / steps:.6g}" for number in range(steps)],
             services=[one for one in SERVICES if one != "dyncal-analysis"],
-            environments=environments,
         )
-
-    def call(self, programs, *arguments):
-        command = [str(pathlib.Path(programs) / "dyncal"), "security", *map(str, arguments)]
-        subprocess.run(command, check=True, capture_output=True)
-
-    def issue(self, programs, role, folder):
-        bench = ["--bench", "live"] if role in OF_A_BENCH else []
-        place = self.security / folder
-        self.call(
-            programs, "issue", self.security / "authority", role, *bench, "--output", place
-        )
+        self.issue(programs, "analysis", "other-analysis")
+        self.patience_s = 300.0 + 5.0 * steps  # with a run
 
     def start_analysis(self, folder):
         self.environments["dyncal-analysis"] = {"DYNCAL_SECURITY": str(self.security / folder)}
@@ -110,7 +81,8 @@ def rotate(laboratory):
     renewed_s = laboratory.revoke(analyses[revoked])
     other.wait_for_text(TAKES_OVER)
     heard_s = time.monotonic() - renewed_s
-    hold(run.wait() == 0, f"the run ended with {run.process.returncode}: {run.errors()}")
+    status = run.wait(laboratory.patience_s)
+    hold(status == 0, f"the run ended with {status}: {run.errors()}")
     laboratory.expect_whole_result()
     hold(heard_s <= HEARD_S, f"the other analysis took over after {heard_s:.1f} s")
     for one in [run, other, revoked, *laboratory.services.values()]:
@@ -124,7 +96,8 @@ def rotate(laboratory):
         laboratory.restart(service)
     laboratory.revoke("source-live")
     run = laboratory.run("--run", "second")
-    hold(run.wait() == 0, f"the second run ended with {run.process.returncode}: {run.errors()}")
+    status = run.wait(laboratory.patience_s)
+    hold(status == 0, f"the second run ended with {status}: {run.errors()}")
     laboratory.expect_whole_result()
     hold(other.errors().count(": armed") == 1, f"the second run was not the other's: {other.log}")
     return heard_s
@@ -134,12 +107,15 @@ def main():
     options = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     options.add_argument("programs")
     options.add_argument("--vendors", default=",".join(VENDORS))
+    options.add_argument("--steps", type=int, default=16, help="of a run; 240 are ten minutes")
     arguments = options.parse_args()
     failed = 0
     for vendors in arguments.vendors.split(","):
         folder = pathlib.Path(tempfile.mkdtemp(prefix="dyncal-rotation-"))
         try:
-            with SecuredLaboratory(arguments.programs, folder, vendors) as laboratory:
+            with RotatedLaboratory(
+                arguments.programs, folder, vendors, arguments.steps
+            ) as laboratory:
                 heard_s = rotate(laboratory)
             print(f"{vendors}: held; the other analysis took over after {heard_s:.1f} s")
             shutil.rmtree(folder)
