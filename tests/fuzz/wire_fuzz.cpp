@@ -28,11 +28,13 @@ void require(bool holds) {
 // A participant hears more than one datagram: the second one meets what the first one left.
 void try_datagram(Bytes bytes) {
   SampleStamps stamps;
-  RtpsScreen screen(stamps);
+  ReaderProgress progress;
+  RtpsScreen screen(stamps, progress);
   MessageCheck check;
   for (int i = 0; i < 2; ++i) {
     (void)check.accepts(bytes);
     (void)screen.pass(bytes);
+    progress.sent(bytes);
   }
 }
 

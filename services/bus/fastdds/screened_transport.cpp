@@ -99,6 +99,7 @@ public:
             std::uint32_t count, vendor::LocatorsIterator* destinations_begin,
             vendor::LocatorsIterator* destinations_end,
             const std::chrono::steady_clock::time_point& timeout) override {
+    note_acknacks(buffers, count);
     return below->send(buffers, count, destinations_begin, destinations_end, timeout);
   }
 #else
@@ -109,6 +110,7 @@ public:
     if (!state_->listens || *destinations_begin == *destinations_end) {
       return true;
     }
+    progress_.sent({bytes, count});
     if (count > max_udp_payload_bytes) {
       return send_split({bytes, count}, *below, *destinations_begin, *destinations_end, timeout);
     }
@@ -151,7 +153,7 @@ public:
       heartbeats_.received({bytes, count});
     }
 #endif
-    thread_local RtpsScreen screen(stamps_);
+    thread_local RtpsScreen screen(stamps_, progress_);
     if (const auto passed = screen.pass({bytes, count}); !passed.empty()) {
       above->OnDataReceived(passed.data(), static_cast<std::uint32_t>(passed.size()), local,
                             remote);
@@ -164,8 +166,22 @@ private:
   std::shared_ptr<TransportState> state_;
   MessageCheck check_;
   SampleStamps stamps_;
+  ReaderProgress progress_;
 
-#ifndef DYNCAL_FAST_DDS_3
+#ifdef DYNCAL_FAST_DDS_3
+  // In pieces; those of ACKNACKs are short.
+  void note_acknacks(const std::vector<vendor::NetworkBuffer>& pieces, std::uint32_t bytes) {
+    if (bytes > max_udp_payload_bytes) {
+      return;
+    }
+    std::vector<unsigned char> message;
+    for (const vendor::NetworkBuffer& piece : pieces) {
+      const auto* begin = static_cast<const unsigned char*>(piece.buffer);
+      message.insert(message.end(), begin, begin + piece.size);
+    }
+    progress_.sent(message);
+  }
+#else
   struct Way {
     rtps::SenderResource* below;
     rtps::Locator_t destination;

@@ -121,8 +121,9 @@ bool PlausibleNumbers::accepts_gap(const Way& way, unsigned char flags, Bytes bo
     return false;
   }
   const std::int64_t newest = *base - 1 + number_at<std::uint32_t>(body, bits_at, flags);
-  return judge(of_writer(way, body.subspan(entity_bytes), Numbered::samples), newest,
-               max_samples_ahead) != Kind::implausible;
+  const Key samples = of_writer(way, body.subspan(entity_bytes), Numbered::samples);
+  return is_plausible(samples, newest, max_samples_ahead) &&
+         judge(samples, newest, max_samples_ahead) != Kind::implausible;
 }
 
 bool PlausibleNumbers::accepts_heartbeat(const Way& way, unsigned char flags, Bytes body) {

@@ -8,7 +8,7 @@
 // is enough.
 //
 //   DATA, DATA_FRAG  number      at most max_samples_ahead of the newest
-//   GAP              its end     the same
+//   GAP              its end     the same, however often: heartbeats tell how far a writer is
 //   HEARTBEAT        its end     at most max_announced_ahead; its beginning not behind its end
 //   ACKNACK          its base    at most max_acknowledged_ahead of the one before
 //   count of HEARTBEAT, HEARTBEAT_FRAG, ACKNACK, NACK_FRAG  at most max_counts_ahead

@@ -20,8 +20,6 @@ constexpr unsigned char last_of_security = 0x34;
 // Below this Fast DDS has no room for its list of missing fragments; both vendors send 1 kB and
 // more.
 constexpr std::uint32_t min_fragment_bytes = 64;
-// Fast DDS visits each sample of a GAP. Longer than any source runs between two of its heartbeats.
-constexpr std::int64_t max_gap = 1 << 24;
 constexpr std::size_t max_message_bytes = 1U << 20;
 
 void put_number(unsigned char* at, std::uint32_t value, unsigned char flags) {
@@ -112,8 +110,7 @@ bool RtpsScreen::pass_submessage(unsigned char id, unsigned char flags, Bytes bo
     whole = nack_frag_is_whole(flags, body);
     break;
   case heartbeat:
-    whole = heartbeat_is_whole(flags, body);
-    break;
+    return pass_heartbeat(flags, body);
   case heartbeat_frag:
     whole = body.size() >= entities_bytes + sequence_bytes + 8;
     break;
@@ -134,6 +131,20 @@ bool RtpsScreen::pass_submessage(unsigned char id, unsigned char flags, Bytes bo
   return whole;
 }
 
+bool RtpsScreen::pass_heartbeat(unsigned char flags, Bytes body) {
+  if (!heartbeat_is_whole(flags, body)) {
+    return false;
+  }
+  const std::int64_t first = sequence_at(body, entities_bytes, flags).value();
+  const std::int64_t begin = progress_->heartbeat_begin(source(), body, first);
+  unsigned char* passed = append_submessage(heartbeat, flags, body) + entities_bytes;
+  if (begin != first) {
+    put_number(passed, static_cast<std::uint32_t>(begin >> 32), flags);
+    put_number(passed + 4, static_cast<std::uint32_t>(begin), flags);
+  }
+  return true;
+}
+
 bool RtpsScreen::pass_acknack(unsigned char flags, Bytes body) {
   constexpr std::size_t bits_at = entities_bytes + sequence_bytes;
   const auto words = bitmap_words(body, bits_at, flags);
@@ -144,8 +155,7 @@ bool RtpsScreen::pass_acknack(unsigned char flags, Bytes body) {
   const std::size_t count_at = bits_at + 4 + 4 * *words;
   const auto count = number_at<std::uint32_t>(body, count_at, flags);
   const bool begins_count = *base == 1 && count == 0 && (flags & final_flag) == 0;
-  const Bytes source = Bytes(buffer_).subspan(header_bytes - prefix_bytes, prefix_bytes);
-  const AcknackCounts::Pair pair = AcknackCounts::pair(source, body.first(entities_bytes));
+  const AcknackCounts::Pair pair = AcknackCounts::pair(source(), body.first(entities_bytes));
   const auto now = std::chrono::steady_clock::now();
   if (const auto anew = begins_count ? acknack_counts_.begin_anew(pair, now) : std::nullopt) {
     append_beginning(flags, body.first(entities_bytes), *anew);
@@ -227,10 +237,14 @@ bool RtpsScreen::pass_fragments(unsigned char flags, Bytes body) {
   return true;
 }
 
+// The participant that sends the message.
+Bytes RtpsScreen::source() const {
+  return Bytes(buffer_).subspan(header_bytes - prefix_bytes, prefix_bytes);
+}
+
 SampleStamps::Sample RtpsScreen::sample_of(unsigned char flags, Bytes body) const {
   SampleStamps::Sample sample;
-  const Bytes source = Bytes(buffer_).subspan(header_bytes - prefix_bytes, prefix_bytes);
-  std::ranges::copy(source, sample.participant.begin());
+  std::ranges::copy(source(), sample.participant.begin());
   std::ranges::copy(body.subspan(8, sample.writer.size()), sample.writer.begin());
   sample.sequence = sequence_at(body, 4 + entities_bytes, flags).value_or(0);
   return sample;
@@ -255,8 +269,12 @@ void RtpsScreen::append_stamp(const RtpsStamp& stamp) {
   append_submessage(info_timestamp, little_endian_flag, body);
 }
 
-// From `first` to before `end`.
+// From `first` to before `end`, as far as readers are to be told.
 void RtpsScreen::append_gap(Bytes entities, std::int64_t first, std::int64_t end) {
+  const ReaderProgress::Range told = progress_->of_gap(source(), entities, {first, end});
+  if (told.end <= told.first) {
+    return;
+  }
   unsigned char body[entities_bytes + 2 * sequence_bytes + 4] = {};
   std::copy(entities.begin(), entities.end(), body);
   const auto put = [&](std::size_t at, std::int64_t sequence) {
@@ -265,8 +283,8 @@ void RtpsScreen::append_gap(Bytes entities, std::int64_t first, std::int64_t end
     std::memcpy(body + at, &high, sizeof high);
     std::memcpy(body + at + 4, &low, sizeof low);
   };
-  put(entities_bytes, first);
-  put(entities_bytes + sequence_bytes, end);
+  put(entities_bytes, told.first);
+  put(entities_bytes + sequence_bytes, told.end);
   append_submessage(gap, little_endian_flag, body);
 }
 
@@ -276,7 +294,7 @@ bool RtpsScreen::pass_gap(unsigned char flags, Bytes body) {
   const auto words = bitmap_words(body, bits_at, flags);
   const auto first = words ? sequence_at(body, entities_bytes, flags) : std::nullopt;
   const auto base = words ? sequence_at(body, base_at, flags) : std::nullopt;
-  if (!first || !base || *first == 0 || *base - *first > max_gap) {
+  if (!first || !base || *first == 0) {
     return false;
   }
   const Bytes entities = body.first(entities_bytes);

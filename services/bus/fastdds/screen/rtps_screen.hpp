@@ -15,6 +15,9 @@
 // Where a reader starts over, it may take no notice (acknack_counts.hpp). So
 //   ACKNACK    of that kind becomes one for sample 0 with a new count
 //
+// It visits each number of a range, however long that is (reader_progress.hpp). So
+//   GAP, HEARTBEAT  move a reader on in pieces
+//
 // What would crash it, make it allocate what a packet asks for or keep it busy is dropped: a
 // message whose lengths do not agree, statistics of Fast DDS itself (submessage 0x80, not used
 // here), fragments outside of their sample, samples of more than max_sample_bytes.
@@ -29,14 +32,16 @@
 #include <vector>
 
 #include "services/bus/fastdds/screen/acknack_counts.hpp"
+#include "services/bus/fastdds/screen/reader_progress.hpp"
 #include "services/bus/fastdds/screen/sample_stamps.hpp"
 
 namespace dyncal::bus {
 
 class RtpsScreen {
 public:
-  // `stamps` is that of the participant, and outlives the object.
-  explicit RtpsScreen(SampleStamps& stamps) : stamps_(&stamps) {}
+  // Those of the participant, which outlive the object.
+  RtpsScreen(SampleStamps& stamps, ReaderProgress& progress)
+      : stamps_(&stamps), progress_(&progress) {}
 
   // The message to hand on, valid until the next call; empty if there is none. Up to
   // readable_bytes_behind bytes behind it may be read: Fast DDS copies the last fragment of a
@@ -56,6 +61,7 @@ private:
                                    std::span<const unsigned char> body);
   void append_gap(std::span<const unsigned char> entities, std::int64_t first, std::int64_t end);
   bool pass_submessage(unsigned char id, unsigned char flags, std::span<const unsigned char> body);
+  bool pass_heartbeat(unsigned char flags, std::span<const unsigned char> body);
   bool pass_acknack(unsigned char flags, std::span<const unsigned char> body);
   void append_beginning(unsigned char flags, std::span<const unsigned char> entities,
                         std::uint32_t count);
@@ -64,10 +70,12 @@ private:
   bool pass_gap(unsigned char flags, std::span<const unsigned char> body);
   bool pass_timestamp(unsigned char flags, std::span<const unsigned char> body);
   void append_stamp(const RtpsStamp& stamp);
+  [[nodiscard]] std::span<const unsigned char> source() const;
   [[nodiscard]] SampleStamps::Sample sample_of(unsigned char flags,
                                                std::span<const unsigned char> body) const;
 
   SampleStamps* stamps_;
+  ReaderProgress* progress_;
   std::optional<RtpsStamp> stamp_; // of what follows in the message
   std::vector<unsigned char> buffer_;
   std::size_t used_ = 0;
