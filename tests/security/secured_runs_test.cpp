@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "services/base/version.hpp"
+#include "tests/security/secured_laboratory.hpp"
 #include "tests/system/laboratory.hpp"
 
 namespace dyncal::tests {
@@ -16,33 +17,6 @@ using testing::HasSubstr;
 using testing::Not;
 
 constexpr const char* bench_name = "files";
-
-// An authority, and folders of its programs.
-class SecuredLaboratory {
-public:
-  explicit SecuredLaboratory(fs::path folder) : folder_(std::move(folder)) {
-    call({"init", authority()});
-    issue("source", {"--bench", bench_name});
-    issue("analysis", {});
-    issue("operator", {"--bench", bench_name});
-  }
-  void issue(const std::string& role, std::vector<std::string> options,
-             const std::string& name = "") const {
-    options.insert(options.begin(),
-                   {"issue", authority(), role, "--output", folder_of(name.empty() ? role : name)});
-    call(options);
-  }
-  void call(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), "security");
-    ProgramRun run("dyncal", arguments, folder_);
-    EXPECT_EQ(run.wait(patience), 0) << run.errors();
-  }
-  [[nodiscard]] std::string authority() const { return folder_ / "authority"; }
-  [[nodiscard]] std::string folder_of(const std::string& name) const { return folder_ / name; }
-
-private:
-  fs::path folder_;
-};
 
 struct Vendors {
   std::string acs;
@@ -55,14 +29,6 @@ struct Folders {
   std::string analysis;
   std::string conductor;
 };
-
-std::vector<std::string> with_security(std::vector<std::string> arguments,
-                                       const std::string& folder) {
-  if (!folder.empty()) {
-    arguments.insert(arguments.end(), {"--security", folder});
-  }
-  return arguments;
-}
 
 nlohmann::json result_over(const fs::path& folder, const fs::path& bench, const Vendors& vendors,
                            const Folders& secured) {
@@ -80,7 +46,7 @@ nlohmann::json result_over(const fs::path& folder, const fs::path& bench, const 
 TEST(SecuredRuns, AreThoseOfAPlainLaboratoryToTheBit) {
   const auto folder = fresh_folder("secured-runs");
   const auto bench = recorded_bench(folder, bench_name, "3");
-  const SecuredLaboratory lab(folder);
+  const SecuredLaboratory lab(folder, bench_name);
   const Folders secured{lab.folder_of("source"), lab.folder_of("analysis"),
                         lab.folder_of("operator")};
   const auto plain = result_over(folder, bench, {"cyclonedds", "cyclonedds"}, {});
@@ -115,7 +81,7 @@ protected:
 
   fs::path folder_ = fresh_folder("wrong-identity-" + GetParam());
   fs::path bench_ = recorded_bench(folder_, bench_name, "3");
-  SecuredLaboratory lab_{folder_};
+  SecuredLaboratory lab_{folder_, bench_name};
 };
 
 TEST_P(WrongIdentity, IsRefusedByTheProgramThatHasIt) {
