@@ -182,6 +182,58 @@ class Certificate(unittest.TestCase):
         self.assertIn(base64.b64encode(self.result["recipe"].encode()).decode()[:40], text)
         self.assertNotIn("FORCED", text)
 
+    def test_conformity_is_stated(self):
+        tolerances = self.folder / "tolerances.toml"
+        tolerances.write_text(
+            """[conformity]
+specification = "data sheet <4711>"
+rule = "guard-band"
+[[tolerance]]
+channel = "dau/acceleration_z"
+from_hz = 10
+to_hz = 100
+limits_percent = 5
+nominal = 0.98
+[[tolerance]]
+channel = "dau/acceleration_x"
+from_hz = 10
+to_hz = 20
+limits_db = 0.001
+relative_to_hz = 16
+[[tolerance]]
+from_hz = 300
+to_hz = 400
+limits_deg = 5
+"""
+        )
+
+        def flag(result):
+            value = next(v for v in result["transfer_function"] if v["magnitude"] > 0.5)
+            value["flag_names"], value["flags"] = ["over_range"], ["dau: over range"]
+
+        folder = self.new_run("conformity", flag)
+        file = self.folder / "conformity.xml"
+        made = self.certify(folder, file, "lab", "--tolerances", tolerances, "--force")
+        self.assertEqual(made.returncode, 0, made.stderr)
+        self.assert_valid_by_xmllint(file)
+        self.assertEqual(self.verify(file, "--run", folder).returncode, 0)
+        tree = ElementTree.parse(file)
+        lists = [e.text.split() for e in tree.iter(f"{DCC}conformityXMLList")]
+        self.assertEqual(lists, [["noPass"] + ["pass"] * 10, ["fail"] * 3][::-1])
+        self.assertEqual([e.text for e in tree.iter(f"{DCC}conformity")], ["fail"])
+        text = file.read_text()
+        for part in ("ILAC-G8:09/2019", "data sheet &lt;4711&gt;", "flag over_range",
+                     "limit 3 (phase, 300 Hz to 400 Hz): no value was measured within it",
+                     "no limit of the magnitude applies at 199.87 Hz"):  # fmt: skip
+            self.assertIn(part, text)
+        report = dyncal("report", folder, "--no-pdf", "--tolerances", tolerances)
+        self.assertEqual(report.returncode, 0, report.stderr)
+        html = (folder / "report.html").read_text()
+        for part in ("<h2>Conformity</h2>", "data sheet &lt;4711&gt;: fail", "undecided",
+                     "flag over_range"):  # fmt: skip
+            self.assertIn(part, html)
+        self.assertNotIn("Conformity", self.signed.read_text())
+
     def test_a_recording_is_hashed(self):
         folder = self.new_run("recorded", lambda result: None)
         (folder / "recording.mcap").write_bytes(b"\x89MCAP0\r\n" * 1000)

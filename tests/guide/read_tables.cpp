@@ -1,8 +1,7 @@
 // What the readers of dyncal's TOML files say to a text, for the tests of the guide: one JSON
-// object a line in, {"reader": "bench"|"laboratory"|"sensor"|"reference",
-// "text": ..., "path": ...}, one a line
-// out, {"problem": ..., "asked": [...]}; "problem" is empty for a text that is accepted. "path" is
-// in the folder of the files that the text names.
+// object a line in, {"reader": "bench"|"laboratory"|"sensor"|"reference"|"tolerance", "text": ...,
+// "path": ...}, one a line out, {"problem": ..., "asked": [...]}; "problem" is empty for a text that
+// is accepted. "path" is in the folder of the files that the text names.
 //
 //   read_tables --flags    prints the flags of results instead, as JSON
 
@@ -19,6 +18,7 @@
 #include "services/evaluation/result/result_flag.hpp"
 #include "services/views/lab_file/laboratory_file.hpp"
 #include "services/views/lab_file/sensor_file.hpp"
+#include "services/views/lab_file/tolerance_table.hpp"
 #include "services/views/objections/refusing_flags.hpp"
 
 namespace dyncal {
@@ -40,8 +40,11 @@ std::string read(const std::string& reader, const std::string& text, const std::
     NamedFiles files(file.parent_path(), NamedFiles::Place::as_named);
     return problem_of(parse_reference_file(text, file.filename().string(), files));
   }
-  return reader == "laboratory" ? problem_of(parse_laboratory_file(text, path))
-                                : problem_of(parse_sensor_file(text, path));
+  if (reader == "laboratory") {
+    return problem_of(parse_laboratory_file(text, path));
+  }
+  return reader == "sensor" ? problem_of(parse_sensor_file(text, path))
+                            : problem_of(parse_tolerance_file(text, path));
 }
 
 Json answer(const Json& question) {

@@ -29,9 +29,11 @@ def reader_of(tables):
     """Which of dyncal's files this is."""
     if "laboratory" in tables:
         return "laboratory"
-    if "reference" in tables and "bench" not in tables:
-        return "reference"
-    return "sensor" if "sensor" in tables else "bench"
+    if "sensor" in tables:
+        return "sensor"
+    if "bench" in tables:
+        return "bench"
+    return "reference" if "reference" in tables else "tolerance"
 
 
 def flags(program):

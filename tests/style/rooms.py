@@ -77,6 +77,7 @@ WINGS = {
         ["report"],
         ["lab_file", "live", "model"],
         ["objections", "spreadsheet"],
+        ["conformity"],
         ["certificate", "document"],
     ],
 }

@@ -34,6 +34,8 @@ void add_certify(CLI::App& command, CertifyOptions& options) {
       ->required();
   command.add_option("--sensor", certify.sensor,
                      "sensor file (default: as the run's source describes itself)");
+  command.add_option("--tolerances", certify.tolerances,
+                     "tolerance file (default: what the sensor file has of it)");
   command.add_option("--channel", certify.channels,
                      "channel to certify (repeatable; default: all that respond)");
   add_number_options(command, options.number);

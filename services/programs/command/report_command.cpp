@@ -34,6 +34,8 @@ void add_report(CLI::App& command, ReportOptions& report) {
       ->required();
   command.add_option("--lab", request.laboratory, "laboratory file: letterhead, persons, texts");
   command.add_option("--sensor", request.sensor, "sensor file: what was calibrated, and for whom");
+  command.add_option("--tolerances", request.tolerances,
+                     "tolerance file (default: what the sensor file has of it)");
   command.add_option("--channel", request.channels,
                      "channel to report (repeatable; default: all that respond)");
   command.add_option("--output", report.output,

@@ -13,6 +13,7 @@
 #include "services/base/version.hpp"
 #include "services/contract/digest.hpp"
 #include "services/views/certificate/ratio_unit.hpp"
+#include "services/views/conformity/asked_conformity.hpp"
 #include "services/views/objections/objections.hpp"
 #include "services/views/objections/subject_objections.hpp"
 #include "services/views/report/stated_value.hpp"
@@ -109,13 +110,23 @@ Expected<void> gather_dates(const CertificateRequest& request, CertificateConten
   return {};
 }
 
-void object_to_subject(CertificateContents& contents) {
+std::vector<std::string> channel_names(const CertificateContents& contents) {
   std::vector<std::string> names;
   for (const CertifiedChannel& channel : contents.channels) {
     names.push_back(channel.channel);
   }
+  return names;
+}
+
+Expected<void> gather_conformity(const CertificateRequest& request, CertificateContents& contents) {
+  DYNCAL_TRY(contents.conformity, asked_conformity(contents.result, channel_names(contents),
+                                                   request.tolerances, contents.sensor.tolerances));
+  return {};
+}
+
+void object_to_subject(CertificateContents& contents) {
   std::ranges::move(objections_to_subject({.result = contents.result,
-                                           .channels = std::move(names),
+                                           .channels = channel_names(contents),
                                            .sensor = contents.sensor,
                                            .laboratory = contents.laboratory,
                                            .reference = contents.reference,
@@ -217,8 +228,8 @@ Expected<CertificateContents> gather_certificate(const CertificateRequest& reque
   contents.result = request.held.result;
   contents.provenance = request.held.statements;
   using Step = Expected<void> (*)(const CertificateRequest&, CertificateContents&);
-  for (const Step step :
-       {Step{gather_values}, Step{gather_laboratory}, Step{gather_sensor}, Step{gather_dates}}) {
+  for (const Step step : {Step{gather_values}, Step{gather_laboratory}, Step{gather_sensor},
+                          Step{gather_conformity}, Step{gather_dates}}) {
     DYNCAL_TRY(step(request, contents));
   }
   object_to_subject(contents);

@@ -7,10 +7,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "services/base/error.hpp"
+#include "services/views/conformity/conformity.hpp"
 #include "services/views/lab_file/laboratory_file.hpp"
 #include "services/views/lab_file/sensor_file.hpp"
 #include "services/views/objections/held_result.hpp"
@@ -22,6 +24,7 @@ struct CertificateRequest {
   std::filesystem::path run; // its folder or file
   std::filesystem::path laboratory;
   std::filesystem::path sensor;      // empty: as the run's source describes itself
+  std::filesystem::path tolerances;  // empty: those of the sensor file, if any
   std::vector<std::string> channels; // empty: all that respond
   std::string number;                // empty: that of the sensor file, if any
   std::string performed;             // YYYY-MM-DD, of a run that does not know it
@@ -45,8 +48,9 @@ struct CertificateContents {
   Contact customer;
   Conditions conditions;
   std::vector<CertifiedChannel> channels;
-  std::string number;   // may be empty
-  std::string replaces; // likewise
+  std::optional<ConformityReport> conformity; // nothing: no tolerances
+  std::string number;                         // may be empty
+  std::string replaces;                       // likewise
   std::string replaced_identifier;
   std::string replaced_sha256;
   std::vector<std::string> provenance; // what the result was held against

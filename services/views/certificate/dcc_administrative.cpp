@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include "services/views/certificate/dcc.hpp"
+#include "services/views/certificate/dcc_conformity.hpp"
 #include "services/views/report/stated_value.hpp"
 
 namespace dyncal::inline views {
@@ -128,6 +129,7 @@ void add_statements(XmlElement parent, const CertificateContents& contents) {
   add_text(list.add("dcc:statement").attribute("refType", "dyncal_relatesOnly"), "dcc:declaration",
            "The results relate only to the items calibrated, as they were received and in the "
            "conditions stated.");
+  add_conformity_statements(list, contents.conformity);
   for (const std::string& text : contents.provenance) {
     add_text(list.add("dcc:statement").attribute("refType", "dyncal_provenance"), "dcc:declaration",
              text);

@@ -7,6 +7,7 @@
 
 #include "services/base/rounding.hpp"
 #include "services/views/certificate/dcc.hpp"
+#include "services/views/certificate/dcc_conformity.hpp"
 #include "services/views/lab_file/embedded_picture.hpp"
 #include "services/views/report/run_equipment.hpp"
 #include "services/views/report/stated_value.hpp"
@@ -219,6 +220,7 @@ void add_all_meta_data(XmlElement parent, const CertificateContents& contents) {
   add_said(list, "dyncal_resultSha256", "SHA-256 of the result file", contents.result.sha256);
   add_said(list, "dyncal_recipeSha256", "SHA-256 of the recipe", contents.result.recipe_sha256);
   add_said(list, "dyncal_recordingSha256", "SHA-256 of the recording", contents.recording_sha256);
+  add_conformity(list, contents.conformity);
   add_clock(list, contents.result);
   for (const std::string& flag : contents.flags) {
     add_said(list, "dyncal_flag", "To be known with the values", flag);

@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "services/base/version.hpp"
+#include "services/views/conformity/asked_conformity.hpp"
 #include "services/views/document/html.hpp"
 #include "services/views/objections/objections.hpp"
 #include "services/views/objections/subject_objections.hpp"
@@ -140,9 +141,10 @@ std::string body_of(const ReportContents& contents) {
   for (std::size_t i = 0; i < contents.channels.size(); ++i) {
     html += channel_section(contents, contents.channels[i], i + 1);
   }
-  html += flag_section(contents) + closures_section(contents) + conditions_section(contents) +
-          equipment_section(contents) + losses_section(contents) + clock_section(contents) +
-          remarks(contents) + signatures(contents);
+  html += conformity_section(contents.conformity) + flag_section(contents) +
+          closures_section(contents) + conditions_section(contents) + equipment_section(contents) +
+          losses_section(contents) + clock_section(contents) + remarks(contents) +
+          signatures(contents);
   html += other_channels(contents) + devices_section(contents) + software_section(contents) +
           single_results(contents) + recipe_section(contents);
   return html +
@@ -173,6 +175,9 @@ Expected<ReportContents> gather_report(const ReportRequest& request) {
   contents.number = request.number.empty() && contents.sensor ? contents.sensor->certificate_number
                                                               : request.number;
   contents.replaces = request.replaces;
+  DYNCAL_TRY(contents.conformity,
+             asked_conformity(contents.result, contents.channels, request.tolerances,
+                              contents.sensor ? contents.sensor->tolerances : std::nullopt));
   if (request.held) {
     DYNCAL_TRY(check_issue(request, contents));
   }

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "services/views/conformity/stated_conformity.hpp"
 #include "services/views/document/html.hpp"
 #include "services/views/report/stated_value.hpp"
 
@@ -247,6 +248,7 @@ std::string summary(const ReportContents& contents) {
                                       result.planned_steps));
   table.add("Method", method_text(contents));
   table.add("Reference", reference_text(contents));
+  table.add("Conformity", contents.conformity ? verdict_text(*contents.conformity) : "");
   table.add("Phase", sign_convention());
   table.add("Uncertainty", "JCGM 100:2008 (GUM). " + rounding_rule());
   return "<h2>Summary</h2>\n" + table.finish() +

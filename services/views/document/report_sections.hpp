@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "services/views/conformity/conformity.hpp"
 #include "services/views/lab_file/embedded_picture.hpp"
 #include "services/views/lab_file/laboratory_file.hpp"
 #include "services/views/lab_file/sensor_file.hpp"
@@ -18,16 +19,17 @@ struct ReportContents {
   StoredResult result;
   std::optional<LaboratoryFile> laboratory;
   std::optional<SensorFile> sensor;
-  std::vector<std::string> channels;     // those whose values are shown in full
-  std::vector<EmbeddedPicture> pictures; // further figures of the run folder
-  std::vector<std::string> left_out;     // pictures that could not be taken in, and why
-  std::string number;                    // empty: none
-  std::string replaces;                  // number of the report whose place it takes
-  bool is_draft = true;                  // not issued: every page says so
-  std::vector<std::string> provenance;   // what the result was held against
-  std::vector<std::string> objections;   // in spite of which it is issued
-  std::string issued;                    // YYYY-MM-DD
-  std::string software;                  // that makes the report
+  std::vector<std::string> channels;          // those whose values are shown in full
+  std::optional<ConformityReport> conformity; // nothing: no tolerances
+  std::vector<EmbeddedPicture> pictures;      // further figures of the run folder
+  std::vector<std::string> left_out;          // pictures that could not be taken in, and why
+  std::string number;                         // empty: none
+  std::string replaces;                       // number of the report whose place it takes
+  bool is_draft = true;                       // not issued: every page says so
+  std::vector<std::string> provenance;        // what the result was held against
+  std::vector<std::string> objections;        // in spite of which it is issued
+  std::string issued;                         // YYYY-MM-DD
+  std::string software;                       // that makes the report
 };
 
 // What the values are traceable to: as the run states it, else the laboratory file; null: neither.
@@ -55,6 +57,9 @@ struct ReportContents {
 [[nodiscard]] std::string other_channels(const ReportContents& contents);
 [[nodiscard]] std::string flag_section(const ReportContents& contents);
 [[nodiscard]] std::string single_results(const ReportContents& contents);
+
+// What was decided of tolerances (report_conformity.cpp); empty without any.
+[[nodiscard]] std::string conformity_section(const std::optional<ConformityReport>& conformity);
 
 // What they were measured with (report_setup.cpp).
 [[nodiscard]] std::string conditions_section(const ReportContents& contents);

@@ -11,28 +11,6 @@ namespace {
 
 constexpr std::uintmax_t max_file_bytes = 1U << 20U;
 
-// The tables [[key]], each read by `read` and finished.
-template <class Item>
-std::vector<Item> read_tables_of(TomlTable& table, const std::string& key, const std::string& file,
-                                 BenchProblems& problems, Item (*read)(TomlTable&)) {
-  std::vector<Item> items;
-  const toml::node* node = table.node(key);
-  if (node == nullptr) {
-    return items;
-  }
-  const toml::array* list = node->as_array();
-  if (list == nullptr || !list->is_homogeneous(toml::node_type::table)) {
-    table.refuse(key, "must be a list of tables, each begun by [[" + key + "]]");
-    return items;
-  }
-  for (const toml::node& one : *list) {
-    TomlTable inner(*one.as_table(), key, file, problems);
-    items.push_back(read(inner));
-    inner.finish();
-  }
-  return items;
-}
-
 Person read_person(TomlTable& table) {
   return {.name = required_line(table, "name"),
           .role = line_of(table, "role"),

@@ -42,6 +42,7 @@ SensorFile read_tables(const toml::table& parsed, const std::filesystem::path& p
   }
   read_table(root, "customer", read_contact, file.customer);
   read_table(root, "conditions", read_conditions, file.conditions);
+  file.tolerances = read_tolerances(root, path.string(), problems);
   root.finish();
   return file;
 }

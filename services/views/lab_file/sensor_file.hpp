@@ -1,5 +1,6 @@
 // SENSOR.toml: the sensor under calibration, and what only this calibration has: the number of its
-// certificate, its customer and its conditions, in place of those of the laboratory file.
+// certificate, its customer and its conditions, in place of those of the laboratory file, and the
+// tolerances that it is held against.
 //
 // Fails (bad_file) with file, line and key, as the laboratory file does. Any thread.
 #pragma once
@@ -12,6 +13,7 @@
 
 #include "services/base/error.hpp"
 #include "services/views/lab_file/contact_table.hpp"
+#include "services/views/lab_file/tolerance_table.hpp"
 
 namespace dyncal::inline views {
 
@@ -32,6 +34,7 @@ struct SensorFile {
   std::map<std::string, std::string> settings; // by name: "range" is "+-4 g"
   std::optional<Contact> customer;
   Conditions conditions;
+  std::optional<Tolerances> tolerances;
 };
 
 [[nodiscard]] Expected<SensorFile> read_sensor_file(const std::filesystem::path& path);

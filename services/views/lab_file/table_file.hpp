@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <toml++/toml.h>
 
@@ -22,6 +23,29 @@ void read_table(TomlTable& root, const std::string& key, Item (*read)(TomlTable&
     target = read(*table);
     table->finish();
   }
+}
+
+// The tables [[key]], each read by `read` and finished.
+template <class Item>
+[[nodiscard]] std::vector<Item> read_tables_of(TomlTable& table, const std::string& key,
+                                               const std::string& file, BenchProblems& problems,
+                                               Item (*read)(TomlTable&)) {
+  std::vector<Item> items;
+  const toml::node* node = table.node(key);
+  if (node == nullptr) {
+    return items;
+  }
+  const toml::array* list = node->as_array();
+  if (list == nullptr || !list->is_homogeneous(toml::node_type::table)) {
+    table.refuse(key, "must be a list of tables, each begun by [[" + key + "]]");
+    return items;
+  }
+  for (const toml::node& one : *list) {
+    TomlTable inner(*one.as_table(), key, file, problems);
+    items.push_back(read(inner));
+    inner.finish();
+  }
+  return items;
 }
 
 // Of a whole file: what `read` makes of its tables, or the first of the problems that it finds.

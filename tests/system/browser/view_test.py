@@ -154,6 +154,32 @@ class Views(PageCase):
         self.assertIn("when it is over", page.value(text_of("[data-field=closures]")))
         self.assertEqual(page.value("document.querySelectorAll('[data-closure]').length"), 0)
 
+    def test_run_shows_what_was_decided_of_tolerances(self):
+        def value(frequency, statement, reason=""):
+            return {"channel": "dau/x", "frequency_text_hz": frequency, "level_m_s2": 10,
+                    "unit": "%", "deviation": 1.234, "U_deviation": 0.21, "lower_limit": -5,
+                    "upper_limit": 5, "statement": statement, "reason": reason,
+                    "text": {"deviation": "1.23", "U_deviation": "0.21",
+                             "probability": "97.7 %"}}
+
+        self.laboratory.files["conformity.json"] = json.dumps({
+            "verdict": "data sheet: undecided", "statement": "undecided", "rule_text": "Guard band",
+            "notes": ["limit 2: nothing"],
+            "values": [value("10", "pass"), value("20", "undecided", "flag over_range")]})
+        self.addCleanup(self.laboratory.files.pop, "conformity.json")
+        page = self.open("run/acc-2")
+        page.wait_for("document.querySelectorAll('[data-statement]').length === 2")
+        self.assertEqual(page.value(text_of("[data-field=conformity]")), "▲ data sheet: undecided")
+        self.assertEqual(page.value("[...document.querySelectorAll('[data-statement]')].map(r => "
+                                    "[...r.cells].map(c => c.textContent))"),
+                         [["dau/x", "20", "10", "-5 % to 5 %", "1.23 %", "0.21 %", "97.7 %",
+                           "▲ undecided: flag over_range"],
+                          ["dau/x", "10", "10", "-5 % to 5 %", "1.23 %", "0.21 %", "97.7 %",
+                           "✓ pass"]])
+        self.laboratory.files.pop("conformity.json")
+        self.laboratory.changed()
+        page.wait_for("document.querySelector('[data-panel=conformity]').hidden")
+
     def test_levels_at_a_frequency_are_rows_of_their_own(self):
         points = self.laboratory.points["acc-2"]
         for point in points:

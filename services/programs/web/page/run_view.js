@@ -6,6 +6,7 @@ import { bench_path, get } from "./api.js";
 import { BudgetPanel } from "./budget_panel.js";
 import { ClockPanel } from "./clock_panel.js";
 import { ClosurePanel } from "./closure_panel.js";
+import { ConformityPanel } from "./conformity_panel.js";
 import { DownloadPanel } from "./download_panel.js";
 import { Choice, element, name_element, set_attribute, set_name, set_text } from "./element.js";
 import { FlagPanel } from "./flag_panel.js";
@@ -41,6 +42,7 @@ export class RunView {
     this.budget = new BudgetPanel();
     this.flags = new FlagPanel();
     this.closures = new ClosurePanel();
+    this.conformity = new ConformityPanel();
     this.clock_panel = new ClockPanel(this.figures.clock.root);
     this.table = new ResultTable((point) => this.show_budget(point));
     this.files = new DownloadPanel();
@@ -61,8 +63,8 @@ export class RunView {
       element("div", { class: "tools no-print" }, this.benches.root, this.runs.root,
               this.channel.root, this.bars.root),
       this.note, this.progress, this.delay,
-      this.figures.root, this.budget.root, this.flags.root, this.closures.root, this.table.root,
-      this.clock_panel.root, this.files.root,
+      this.figures.root, this.budget.root, this.flags.root, this.closures.root,
+      this.conformity.root, this.table.root, this.clock_panel.root, this.files.root,
     );
   }
 
@@ -171,6 +173,7 @@ export class RunView {
     this.closures.update(transfer?.closures ?? []);
     this.flags.update(flags_of(run, channel), points);
     this.clock_panel.update(clock_of(run, channel));
+    this.conformity.update(run.files);
     this.files.update(run.files, this.csv);
   }
 

@@ -1,0 +1,41 @@
+// What people read of decisions, in the same words everywhere: digits, ranges, rule, verdict. Any
+// thread.
+#pragma once
+
+#include <string>
+
+#include "services/views/conformity/conformity.hpp"
+
+namespace dyncal::inline views {
+
+struct StatedDeviation { // U with two digits, the value to the same place; empty: not known
+  std::string value;
+  std::string expanded;
+};
+[[nodiscard]] StatedDeviation stated_deviation(const JudgedValue& value);
+
+// "98.7 %", "> 99.9 %"; empty: not known
+[[nodiscard]] std::string probability_text(const JudgedValue& value);
+
+// "magnitude, 10 Hz to 63 Hz, 2 m/s^2 to 15 m/s^2"
+[[nodiscard]] std::string range_text(const ToleranceRow& row);
+
+// "-5 % to 3 %"
+[[nodiscard]] std::string limits_text(const ToleranceRow& row);
+
+// "of 1", "of the value at 80 Hz", "of 0 deg - 360 deg f x 0.0081 s"
+[[nodiscard]] std::string nominal_text(const ToleranceRow& row);
+
+// "magnitude, 10 Hz to 63 Hz: -5 % to 5 % of 1"
+[[nodiscard]] std::string row_text(const ToleranceRow& row);
+
+// The decision rule as a sentence for documents.
+[[nodiscard]] std::string rule_text(const Tolerances& tolerances);
+
+// "Data sheet 4711: pass: 24 pass."
+[[nodiscard]] std::string verdict_text(const ConformityReport& report);
+
+// What else a reader must know of how it was decided.
+[[nodiscard]] std::string digits_text();
+
+} // namespace dyncal::inline views
