@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Certificates of ten kinds held against the rules that PTB publishes beside the schema: the
+"""Certificates of eleven kinds held against the rules that PTB publishes beside the schema: the
 Schematron of dcclib, and the schema by the same library. dcclib comes from PyPI into an environment
 of the test's own, which is kept in the build folder; without a network it is skipped.
 
@@ -139,11 +139,12 @@ class Rules(unittest.TestCase):
         yield self.certificate(
             "forced", lambda result: result["points"][0].update(flag), options=["--force"]
         )
+        yield self.certificate("conformity", sensor=text + stored_run.TOLERANCES)
         yield self.certificate("number", options=["--number", "2026-0099/A"])
 
-    def test_rules_and_schema_have_nothing_against_ten_kinds(self):
+    def test_rules_and_schema_have_nothing_against_eleven_kinds(self):
         files = [*self.certificates()]
-        self.assertEqual(len(files), 10)
+        self.assertEqual(len(files), 11)
         judged = run(self.python, "-c", JUDGE, SCHEMA, input="\n".join(map(str, files)))
         self.assertEqual(judged.returncode, 0, judged.stderr)
         answers = [json.loads(line) for line in judged.stdout.splitlines()]

@@ -16,6 +16,19 @@ SENSOR = LAB_FOLDER / "sensor.toml"
 FREQUENCIES = ["10", "12.5", "16", "20", "25", "31.5", "40", "50", "63", "80", "100", "199.87"]
 CHANNELS = {"dau/acceleration_x": 0.02, "dau/acceleration_z": 0.98}
 AXIS = "z"
+# Of a sensor file.
+TOLERANCES = """
+[conformity]
+specification = "data sheet"
+rule = "guard-band"
+
+[[tolerance]]
+channel = "dau/acceleration_z"
+from_hz = 10.0
+to_hz = 100.0
+limits_percent = 10.0
+nominal = 0.98
+"""
 REPETITIONS = 3
 
 

@@ -1,7 +1,7 @@
 // What the readers of dyncal's TOML files say to a text, for the tests of the guide: one JSON
 // object a line in, {"reader": "bench"|"laboratory"|"sensor"|"reference"|"tolerance", "text": ...,
-// "path": ...}, one a line out, {"problem": ..., "asked": [...]}; "problem" is empty for a text that
-// is accepted. "path" is in the folder of the files that the text names.
+// "path": ...}, one a line out, {"problem": ..., "asked": [...]}; "problem" is empty for a text
+// that is accepted. "path" is in the folder of the files that the text names.
 //
 //   read_tables --flags    prints the flags of results instead, as JSON
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <regex>
 
 #include <fmt/core.h>
 #include <toml++/toml.h>
@@ -49,6 +50,19 @@ bool is_date(const std::string& text) {
       .ok();
 }
 
+std::string date_rule(const std::string& text) {
+  static const std::regex day_first(R"(\s*(\d{1,2})\.\s?(\d{1,2})\.\s?(\d{4})\s*)");
+  std::smatch found;
+  if (std::regex_match(text, found, day_first)) {
+    const std::string date =
+        fmt::format("{}-{:0>2}-{:0>2}", found[3].str(), found[2].str(), found[1].str());
+    if (is_date(date)) {
+      return fmt::format("must be written as {}", date);
+    }
+  }
+  return "must be a date, year, month, day: for example 2026-03-01";
+}
+
 std::string required_line(TomlTable& table, const std::string& key) {
   const std::string text = table.required_text(key);
   if (!text.empty() && is_blank(text)) {
@@ -91,7 +105,7 @@ std::string date_of(TomlTable& table, const std::string& key) {
   }
   const std::string text = line_of(table, key);
   if (!is_date(text)) {
-    table.refuse(key, "must be a date, for example 2026-03-01");
+    table.refuse(key, fmt::format("is \"{}\" but {}", text, date_rule(text)));
   }
   return text;
 }

@@ -17,6 +17,9 @@ namespace dyncal::inline bench {
 // YYYY-MM-DD, and a day that there is.
 [[nodiscard]] bool is_date(const std::string& text);
 
+// What a text that is no date must be: a day as people write it is turned into that form.
+[[nodiscard]] std::string date_rule(const std::string& text);
+
 // YYYY-MM-DD, from a text or a date of TOML; empty if it is not there.
 [[nodiscard]] std::string date_of(TomlTable& table, const std::string& key);
 

@@ -43,9 +43,7 @@ void add_certify(CLI::App& command, CertifyOptions& options) {
       .add_option("--performed", certify.performed,
                   "day of the measurement, YYYY-MM-DD, of a run that does not know it")
       ->check(CLI::Validator(
-          [](const std::string& text) {
-            return is_date(text) ? std::string() : "must be a date, for example 2026-03-01";
-          },
+          [](const std::string& text) { return is_date(text) ? std::string() : date_rule(text); },
           "DATE"));
   CLI::Option* key =
       command.add_option("--key", options.key.key,

@@ -75,7 +75,7 @@ Expected<int> run_combine(const CombineOptions& options, const std::stop_token& 
 }
 
 const Command combine_command{
-    185, "combine", "combine the runs of one sensor, mounted anew for each, into one result",
+    184, "combine", "combine the runs of one sensor, mounted anew for each, into one result",
     add_combine, run_combine};
 
 } // namespace
