@@ -1,11 +1,12 @@
 """Packets as public reports about DDS implementations describe them, made anew from the RTPS
 specification: each a name, with the number of the report, and the bytes.
 
-Reports since 2024 about Fast DDS: CVE-2024-26369, CVE-2024-28231, CVE-2024-30258, CVE-2025-62599 to
-62603, CVE-2025-62799, CVE-2025-64438, issue 6345; earlier ones that a version of Debian may have:
-CVE-2023-39534, CVE-2023-39945 to 39949, issue 3207. About Cyclone DDS: issues 1555, 1751, 1758,
-1771, 1772. What is about the samples of a living writer (Known) carries its GUID, as only a program
-that makes its own packets can send it.
+Reports since 2024 about Fast DDS: CVE-2024-26369, CVE-2024-28231, CVE-2024-30258 and 30259,
+CVE-2025-62599 to 62603, CVE-2025-62799, CVE-2025-63829, CVE-2025-64438, issue 6345, and 1690 of
+ros2/ros2 (samples); earlier ones that a version of Debian may have: CVE-2023-39534, CVE-2023-39945
+to 39949, issues 3207 and 3931. About Cyclone DDS: issues 1555, 1751, 1758, 1771, 1772, 1854. What
+is about the samples of a living writer (Known) carries its GUID, as only a program that makes its
+own packets can send it.
 """
 
 import dataclasses
@@ -24,6 +25,7 @@ HANDSHAKE = (0x000201C3, 0x000201C4)  # ParticipantStatelessMessage
 KEY_EXCHANGE = (0xFF0202C3, 0xFF0202C4)  # ParticipantVolatileMessageSecure
 SENTINEL = struct.pack("<HH", 1, 0)
 COUNTS = (0xFFFFFFFF, 0xFFFFFFFD, 0x80000000, 0x7FFFFFFF, 0x10000000, 0x00FFFFFF)
+TIMES = ((2**31 - 1, 0xFFFFFFFF), (-1, 0xFFFFFFFF), (-(2**31), 0), (0, 0xFFFFFFFF))
 VENDORS = (b"\x01\x0f", b"\x01\x10")
 DEFAULT_LEASE_S = 3
 
@@ -186,6 +188,8 @@ def torn_endpoints(prefix):
         "durability": (0x1D, "<I", ((9,), (0xFFFFFFFF,))),
         "liveliness": (0x1B, "<IiI", ((9, -1, 0), (0, 0, 0))),
         "deadline": (0x23, "<iI", ((-1, 0), (0, 0), (0, 1))),
+        "lifespan": (0x2B, "<iI", TIMES),
+        "latency": (0x27, "<iI", TIMES),
         "service": (0x1E, "<iIIiiii", ((-1, 0, 7, -1, -1, -1, -1),)),
     }
     for topic in (PUBLICATIONS, SUBSCRIPTIONS):
@@ -200,6 +204,48 @@ def torn_endpoints(prefix):
                 yield f"{topic[0]:x} parameter {number:x} of {count:x}", endpoint(
                     prefix(), topic, torn
                 )
+
+
+def written(prefix, benches, topic, kind, payload):
+    """By a writer of its own that readers of these benches are to match."""
+    writer = 0x00000102
+    partitions = struct.pack("<I", len(benches)) + b"".join(map(text, benches))
+    some = (
+        parameter(0x5A, prefix + entity(writer)),
+        parameter(0x50, prefix + entity(0x000001C1)),
+        parameter(0x05, text(topic)),
+        parameter(0x07, text(f"dyncal::wire::{kind}")),
+        parameter(0x1A, struct.pack("<IiI", 2, 0, 0x1999999A)),  # reliable
+        parameter(0x1D, struct.pack("<I", 1)),  # transient local
+        parameter(0x29, partitions),
+    )
+    announced = [announcement(prefix), data(PUBLICATIONS, parameters(*some))]
+    return [*announced, data((writer, 0), b"\0\1\0\0" + payload)]
+
+
+def torn_samples(prefix, benches):
+    kinds = {
+        "DauSamples": "SampleBlock",
+        "SourceStatus": "SourceStatus",
+        "SourceDescription": "SourceDescription",
+        "CalibrationResult": "CalibrationResult",
+        "Measurement": "Measurement",
+    }
+    for topic, kind in kinds.items():
+        for count in COUNTS:
+            word = struct.pack("<I", count)
+            for what, payload in (
+                ("key", word + b"\xff" * 64),
+                ("second key", text("other") + word + b"\xff" * 64),
+                ("rest", text("other") + text("dau") + b"\1" * 16 + word * 40),
+            ):
+                yield f"ros2 1690 {topic} {what} of {count:x}", written(
+                    prefix(), benches, topic, kind, payload
+                )
+    for seconds, fraction in TIMES:
+        stamp = submessage(INFO_TS, struct.pack("<iI", seconds, fraction))
+        own = written(prefix(), benches, "SourceStatus", "SourceStatus", text("other") + b"\1" * 80)
+        yield f"CVE-2025-63829 written at {seconds} {fraction:x}", [*own[:2], stamp, own[2]]
 
 
 def torn_handshakes(prefix):
@@ -265,6 +311,11 @@ def torn_numbers(writer, reader):
     for first, last in ranges:
         body = ends + sequence(first) + sequence(last) + struct.pack("<I", 0x7FFFFFF0)
         yield f"heartbeat {first:x} {last:x}", submessage(HEARTBEAT, body)
+    for far in (2**24, 2**40, 2**47):
+        for step in range(8):  # as often as makes a screen believe that packets were lost
+            at = ends + sequence(far + step) + sequence(far + step)
+            count = struct.pack("<I", 0x10000000 + far % 0x1000007 + step)
+            yield f"CVE-2025-64438 heartbeat from {far + step:x}", submessage(HEARTBEAT, at + count)
     for bits in (256, 257, 0xFFFFFFFF):
         for base in (1, 0, -1, 2**62):
             body = ends + sequence(base) + struct.pack("<I", bits) + b"\xff" * 32 + b"\0\0\0\x70"
@@ -285,8 +336,8 @@ def torn_numbers(writer, reader):
             )
 
 
-def crafted(known, seed=1):
-    """All packets, as (name, bytes), the same for the same `known` and seed."""
+def crafted(known, seed=1, benches=("other",)):
+    """All packets, as (name, bytes), the same for the same `known`, seed and benches."""
     draw = random.Random(seed)
     drawn = []
 
@@ -305,6 +356,8 @@ def crafted(known, seed=1):
     for one in (torn_data, torn_endpoints, torn_handshakes, torn_secured):
         for name, submessages in one(one_of_few):
             yield name, packet(drawn[-1], *submessages)
+    for name, submessages in torn_samples(one_of_few, benches):
+        yield name, packet(drawn[-1], *submessages)
     for topic in (PARTICIPANTS, PUBLICATIONS, LIVELINESS, HANDSHAKE, KEY_EXCHANGE):
         own = one_of_few()
         for name, torn in torn_numbers(*topic):
