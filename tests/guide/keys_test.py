@@ -27,6 +27,7 @@ PROGRAM = sys.argv[1]
 TABLES = {
     "corrections.adc": {"file": "adc.json", "channel": "ADC1"},
     "corrections.dso_delay": {"value_s": 1e-9, "u_s": 1e-9},
+    "check": {"sensor": "x", "max_age_h": 24.0},
     "excitation.transverse_motion": {"ratio": 0.02, "source": "x"},
     "customer": {"name": "x", "city": "x", "country": "DE"},
     "conditions": {},

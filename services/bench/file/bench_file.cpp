@@ -9,6 +9,7 @@
 
 #include "services/bench/file/bench_name.hpp"
 #include "services/bench/file/bench_tables.hpp"
+#include "services/bench/file/check_table.hpp"
 #include "services/bench/file/toml_text.hpp"
 #include "services/contract/digest.hpp"
 
@@ -107,6 +108,7 @@ BenchFile read_tables(const toml::table& parsed, const std::filesystem::path& pa
     }
     file.uncertainty = read_uncertainty(std::move(*uncertainty));
   }
+  static_cast<void>(read_check(root)); // by who conducts a run, of its text
   root.finish();
   file.named_files = files.all();
   return file;

@@ -1,5 +1,7 @@
 // `dyncal history SENSOR`: the drift of a sensor over its calibrations in the store
-// (services/records/store/history.hpp), as tables, JSON and figures. Belongs to one thread.
+// (services/records/store/history.hpp), as tables, JSON and figures; --check: of a check sensor,
+// whether its bench is in control (services/records/store/control_chart.hpp), with an exit status
+// for each state. Belongs to one thread.
 #include <cmath>
 #include <ctime>
 #include <filesystem>
@@ -15,6 +17,7 @@
 #include "services/base/printable_text.hpp"
 #include "services/base/rounding.hpp"
 #include "services/contract/unit.hpp"
+#include "services/programs/command/check_view.hpp"
 #include "services/programs/command/command.hpp"
 #include "services/programs/command/keep_options.hpp"
 #include "services/programs/command/work_progress.hpp"
@@ -30,7 +33,41 @@ struct HistoryOptions {
   HistoryFilter filter;
   std::optional<std::filesystem::path> figures;
   bool json = false;
+  bool is_check = false;
+  ControlOptions control;
+  std::optional<double> limit_percent;
+  std::optional<double> limit_deg;
 };
+
+constexpr double degrees = 180.0 / std::numbers::pi;
+
+// Of --check alone.
+void add_check(CLI::App& command, HistoryOptions& history) {
+  CLI::Option* check = command.add_flag(
+      "--check", history.is_check,
+      "control chart of a check sensor: is its bench in control? Exit status: 0 in control, 5 "
+      "warning, 3 action, 4 too few results");
+  command
+      .add_option("--first", history.control.first,
+                  "how many complete results give the limits, and their mean the centre")
+      ->check(CLI::Range(ControlOptions::least_first, std::size_t{1000}))
+      ->capture_default_str()
+      ->needs(check);
+  command
+      .add_option("--bench", history.control.bench,
+                  "results of this bench (default: of the newest)")
+      ->needs(check);
+  command
+      .add_option("--since", history.control.since_utc,
+                  "begin with results of this day or instant, in UTC: after a service, say")
+      ->needs(check);
+  add_checked(command, "--limit-percent", history.limit_percent,
+              "action limit of |H| at each point, in place of that by scatter", CLI::PositiveNumber)
+      ->needs(check);
+  add_checked(command, "--limit-deg", history.limit_deg, "the same of arg H, in degrees",
+              CLI::PositiveNumber)
+      ->needs(check);
+}
 
 void add_history(CLI::App& command, HistoryOptions& history) {
   command
@@ -43,11 +80,11 @@ void add_history(CLI::App& command, HistoryOptions& history) {
   command.add_option("--figures", history.figures, "write figures (SVG and CSV) into this folder");
   command.add_flag("--json", history.json, "print JSON");
   add_store_place(command, history.store);
+  add_check(command, history);
 }
 
 using Json = nlohmann::ordered_json;
 
-constexpr double degrees = 180.0 / std::numbers::pi;
 constexpr double seconds_of_day = 86'400.0;
 
 std::string day_and_time(const Calibration& calibration) {
@@ -157,8 +194,8 @@ void print_open_closures(const History& history) {
 }
 
 void print_tables(const History& history) {
-  fmt::print("{}: {} calibrations, deviations from the first, E_n against the one before, each U "
-             "at its own k\n",
+  fmt::print("{}: {} calibrations, deviations from the first, E_n against the one before without "
+             "what both have in common, each U at its own k\n",
              one_line(history.sensor), history.calibrations.size());
   std::size_t compared = 0;
   std::size_t agreeing = 0;
@@ -227,17 +264,47 @@ Expected<void> write_drift(const History& history, const std::filesystem::path& 
   return {};
 }
 
-Expected<History> look_up(const HistoryOptions& command, const SharedWorkCount& count) {
+Expected<std::vector<Calibration>> look_up(const HistoryOptions& command,
+                                           const SharedWorkCount& count) {
   DYNCAL_TRY(auto store, Store::open_existing(command.store.text()));
   DYNCAL_TRY(auto calibrations, store->calibrations(command.sensor, count));
-  count->begin("comparing", "", 0);
-  return history_of(command.sensor, std::move(calibrations), command.filter);
+  DYNCAL_TRY(store->add_common_parts(calibrations, count));
+  for (Calibration& calibration : calibrations) {
+    keep_wanted(calibration, command.filter);
+  }
+  return calibrations;
 }
 
-Expected<void> run_history(const HistoryOptions& command) {
-  DYNCAL_TRY(const auto history, with_progress("opening the store", [&](const auto& count) {
+Expected<int> run_check(const HistoryOptions& command, std::vector<Calibration> calibrations) {
+  ControlOptions options = command.control;
+  if (command.limit_percent) {
+    options.limit_magnitude_rel = *command.limit_percent / 100.0;
+  }
+  if (command.limit_deg) {
+    options.limit_phase_rad = *command.limit_deg / degrees;
+  }
+  CheckView view{.sensor = command.sensor,
+                 .chart = control_chart_of(std::move(calibrations), options),
+                 .history = {}};
+  view.history = history_of(command.sensor, view.chart.calibrations);
+  if (command.figures) {
+    DYNCAL_TRY(const auto written, write_check(view, *command.figures));
+    for (const std::filesystem::path& path : written) {
+      fmt::print(stderr, "wrote {}\n", path.string());
+    }
+  }
+  fmt::print("{}", command.json ? json_text(check_json(view), 2) + "\n" : check_table(view));
+  return exit_status_of(view.chart.state);
+}
+
+Expected<int> run_history(const HistoryOptions& command) {
+  DYNCAL_TRY(auto calibrations, with_progress("opening the store", [&](const auto& count) {
                return look_up(command, count);
              }));
+  if (command.is_check) {
+    return run_check(command, std::move(calibrations));
+  }
+  const History history = history_of(command.sensor, std::move(calibrations));
   if (history.lines.empty()) {
     return fail(ErrorCode::no_result,
                 fmt::format("the store has no calibration of sensor '{}' with a value{}; 'dyncal "
@@ -252,7 +319,7 @@ Expected<void> run_history(const HistoryOptions& command) {
     DYNCAL_TRY(write_drift(history, *command.figures));
   }
   command.json ? print_json(history) : print_tables(history);
-  return {};
+  return 0;
 }
 
 const Command history_command{

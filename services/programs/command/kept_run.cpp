@@ -121,6 +121,13 @@ Expected<void> KeptRun::check(const RunOutcome& planned) {
   return disk_->folder->results().begin(completed(planned));
 }
 
+void KeptRun::set_check(const DailyCheck& check) {
+  if (disk_) {
+    disk_->folder->results().set_check(check);
+    say(sentence_of(check));
+  }
+}
+
 RunOutcome KeptRun::completed(RunOutcome so_far) const {
   so_far.adc_file = setup_.adc_file;
   return so_far;

@@ -20,6 +20,7 @@
 #include "services/records/run_folder/run_folder.hpp"
 #include "services/run/run_keeping.hpp"
 #include "services/run/run_progress.hpp"
+#include "services/views/report/daily_check.hpp"
 
 namespace dyncal::inline records::recording {
 class Recorder;
@@ -53,6 +54,8 @@ public:
 
   // Valid as long as the object.
   [[nodiscard]] RunKeeping keeping();
+  // For all results from now on.
+  void set_check(const DailyCheck& check);
   // What the progress line shows, for the log.
   void note(const RunProgress& progress);
   // When the run is over. Fails (bad_file) when the final results cannot be written.

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdio>
 #include <ctime>
+#include <optional>
 #include <utility>
 
 #include <fmt/core.h>
@@ -11,6 +12,7 @@
 #include "drivers/utc_clock.hpp"
 #include "services/base/printable_text.hpp"
 #include "services/bench/file/adc_file.hpp"
+#include "services/bench/file/check_table.hpp"
 #include "services/checks/bench_check/checks.hpp"
 #include "services/checks/doctor/unheard_analysis.hpp"
 #include "services/contract/run_identity.hpp"
@@ -22,9 +24,11 @@
 #include "services/programs/command/kept_run.hpp"
 #include "services/programs/command/laboratory_look.hpp"
 #include "services/programs/command/progress_line.hpp"
+#include "services/programs/command/required_check.hpp"
 #include "services/programs/command/run_again.hpp"
 #include "services/records/run_folder/folder_access.hpp"
 #include "services/records/run_folder/run_folder.hpp"
+#include "services/records/store/store.hpp"
 #include "services/run/bench_queue.hpp"
 #include "services/run/guard_watch.hpp"
 #include "services/run/run_controller.hpp"
@@ -43,6 +47,9 @@ void add_run(CLI::App& command, RunOptions& run) {
   command.add_option("--resume", run.resume, "resume the named run after its conductor died")
       ->excludes("--run")
       ->excludes(wait);
+  command.add_option("--without-check", run.without_check,
+                     "begin without the check that the bench file demands; the reason is in the "
+                     "result and in its documents");
   command.add_option("--output", run.output, "write the result to this file as JSON");
   add_figure_options(command, run.figures);
   run.keep.folder = "runs";
@@ -85,7 +92,33 @@ void show_notice(const ShowProgress& show, const std::string& sentence) {
 struct ConductedRun {
   RunOutcome outcome;
   std::unique_ptr<KeptRun> kept;
+  std::optional<DailyCheck> check; // nothing: the bench demands none
 };
+
+// Nothing: the bench demands none.
+std::optional<CheckDemand> check_demand(const Conduct& run) {
+  auto settings = check_settings_of(run.bench.text);
+  if (!settings) {
+    return std::nullopt;
+  }
+  const KeepOptions& keep = run.command.keep;
+  return CheckDemand{std::move(*settings), keep.folder ? store_place(keep.store, *keep.folder) : "",
+                     run.command.without_check};
+}
+
+// Before anything else that is looked at when the sources are known. `check` outlives the run.
+RunKeeping keeping_with_check(const Conduct& run, KeptRun& kept, std::optional<DailyCheck>& check) {
+  RunKeeping keeping = kept.keeping();
+  if (const auto demand = check_demand(run)) {
+    keeping.check = [&kept, &check, demand = *demand,
+                     next = std::move(keeping.check)](const RunOutcome& planned) -> Expected<void> {
+      DYNCAL_TRY(check, require_check(demand, planned, utc_now_ns()));
+      kept.set_check(*check);
+      return next ? next(planned) : Expected<void>{};
+    };
+  }
+  return keeping;
+}
 
 // `text`: of its RunIdentity.
 Expected<ConductedRun> conduct(const Conduct& run, const std::string& text) {
@@ -106,8 +139,9 @@ Expected<ConductedRun> conduct(const Conduct& run, const std::string& text) {
     kept->note(progress);
     run.show(progress);
   };
+  std::optional<DailyCheck> check;
   RunController controller(run.participant, run.bench, text, show);
-  controller.set_keeping(kept->keeping());
+  controller.set_keeping(keeping_with_check(run, *kept, check));
   auto outcome =
       resumes ? controller.resume(run.adc, run.stop) : controller.conduct(run.adc, run.stop);
   if (!outcome) {
@@ -117,7 +151,7 @@ Expected<ConductedRun> conduct(const Conduct& run, const std::string& text) {
     return fail(outcome.error());
   }
   outcome->adc_file = adc_file_of(run.bench);
-  return ConductedRun{std::move(*outcome), std::move(kept)};
+  return ConductedRun{std::move(*outcome), std::move(kept), std::move(check)};
 }
 
 // Every attempt is a run of its own.
@@ -208,7 +242,7 @@ Expected<void> show_and_keep(const Conduct& conduct, ConductedRun& run) {
   auto statuses = conduct.participant.reader(bus::topics::service_status, conduct.bench.bench,
                                              std::make_shared<bus::WakeUp>());
   const auto kept = run.kept->finish(run.outcome);
-  auto shown = show_outcome(run.outcome, command.output, command.figures);
+  auto shown = show_outcome(run.outcome, command.output, command.figures, run.check);
   if (const auto folder = run.kept->folder(); folder && kept) {
     fmt::print("kept in {}\n", folder->string());
     std::fflush(stdout);

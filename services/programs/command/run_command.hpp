@@ -21,7 +21,8 @@ struct RunOptions {
   std::optional<std::filesystem::path> output; // the result as JSON
   FigureFiles figures;                         // folder
   bool wait = false;                           // for the end of another run of the bench
-  std::string resume; // the run to go on with, the newest of that name; empty: a new one
+  std::string without_check; // why a check that the bench demands is left out; empty: it is not
+  std::string resume;        // the run to go on with, the newest of that name; empty: a new one
   KeepOptions keep;
   NetworkOptions network;
 };

@@ -36,13 +36,25 @@ ResultKeeper::~ResultKeeper() {
   stop();
 }
 
+void ResultKeeper::set_check(DailyCheck check) {
+  const std::lock_guard writing(writing_);
+  check_ = std::move(check);
+}
+
+// REQUIRES: writing_ is locked.
+Expected<void> ResultKeeper::write(const RunOutcome& state) {
+  nlohmann::ordered_json json = result_json(state);
+  add_check(check_, json);
+  return write_json(path_, json);
+}
+
 Expected<void> ResultKeeper::begin(RunOutcome planned) {
   complete(planned);
   const std::lock_guard writing(writing_);
   if (results_kept() > planned.results.size()) {
     return {}; // of a resumed run: more has come meanwhile
   }
-  return write_json(path_, result_json(planned));
+  return write(planned);
 }
 
 void ResultKeeper::keep(RunOutcome so_far) {
@@ -70,7 +82,7 @@ void ResultKeeper::write_newest(const std::stop_token& stop) {
     lock.unlock();
     complete(state);
     const std::lock_guard writing(writing_);
-    const auto written = write_json(path_, result_json(state));
+    const auto written = write(state);
     lock.lock();
     problem_ = written ? std::nullopt : std::optional(written.error());
     results_kept_ = written ? state.results.size() : results_kept_;
@@ -89,7 +101,7 @@ void ResultKeeper::stop() {
 
 Expected<void> ResultKeeper::finish(const RunOutcome& outcome) {
   stop();
-  auto written = write_results(outcome, path_);
+  auto written = write_results(outcome, path_, check_);
   if (written) {
     const std::lock_guard lock(mutex_);
     results_kept_ = outcome.results.size();

@@ -1,5 +1,6 @@
 #include "services/records/store/history.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -34,6 +35,28 @@ bool are_comparable(const HistoryValue& before, const HistoryValue& value,
   return !same_run && before.point.unit == value.point.unit;
 }
 
+// At most what leaves the smaller U something of its own: budgets of single results and U of means
+// do not agree to the last digit.
+analysis::SharedUncertainty shared_of(const HistoryLine& line, const HistoryValue& before,
+                                      const HistoryValue& value,
+                                      const std::vector<Calibration>& calibrations) {
+  constexpr double most = 0.99;
+  const CommonParts& a = calibrations[before.calibration].common;
+  const CommonParts& b = calibrations[value.calibration].common;
+  const auto of_a = a.find(line.point);
+  const auto of_b = b.find(line.point);
+  if (of_a == a.end() || of_b == b.end()) {
+    return {};
+  }
+  analysis::SharedUncertainty shared = shared_by(of_a->second, of_b->second);
+  for (const StoredValue* point : {&before.point, &value.point}) {
+    shared.magnitude_rel =
+        std::min(shared.magnitude_rel, most * point->of_magnitude.u / point->magnitude);
+    shared.phase_rad = std::min(shared.phase_rad, most * point->of_phase.u);
+  }
+  return shared;
+}
+
 void compare(const HistoryLine& line, const std::vector<Calibration>& calibrations,
              HistoryValue& value) {
   const StoredValue& first = line.values.front().point;
@@ -45,7 +68,8 @@ void compare(const HistoryLine& line, const std::vector<Calibration>& calibratio
     return;
   }
   const auto comparison =
-      analysis::compare_transfer(comparable(value.point), comparable(before.point));
+      analysis::compare_transfer(comparable(value.point), comparable(before.point),
+                                 shared_of(line, before, value, calibrations));
   if (comparison) {
     value.en_magnitude = comparison->magnitude.normalised_error();
     value.en_phase = comparison->phase.normalised_error();
@@ -66,12 +90,16 @@ PointDifferences History::differences() const {
   return differences_of(points);
 }
 
-History history_of(std::string sensor, std::vector<Calibration> calibrations,
-                   const HistoryFilter& filter) {
+void keep_wanted(Calibration& calibration, const HistoryFilter& filter) {
+  std::erase_if(calibration.points,
+                [&](const StoredValue& point) { return !is_wanted(point, filter); });
+}
+
+History history_of(std::string sensor, std::vector<Calibration> calibrations) {
   std::map<PointIdentity, HistoryLine> lines;
   for (std::size_t i = 0; i < calibrations.size(); ++i) {
     for (const StoredValue& point : calibrations[i].points) {
-      if (!is_usable(point) || !is_wanted(point, filter)) {
+      if (!is_usable(point)) {
         continue;
       }
       HistoryLine& line = lines[identity_of(point)];

@@ -3,8 +3,9 @@
 // (analysis/response/comparison.hpp).
 //
 //   deviation    magnitude: (|H| - |H|_first) / |H|_first; phase: modulo 2 pi, in (-pi, pi]
-//   E_n          with U of both; nothing for the first, across a change of unit, and between two
-//                evaluations of one run
+//   E_n          with U of both, without what they have in common (common_part.hpp) where that is
+//                known; nothing for the first, across a change of unit, and between two evaluations
+//                of one run
 //
 // Open closures are those of the channels that are shown. Values that are not known, and
 // uncertainties that are not positive, are left out. Plain functions, any thread.
@@ -52,7 +53,9 @@ struct HistoryFilter { // empty: any
   std::optional<double> level_m_s2{}; // as planned
 };
 
-[[nodiscard]] History history_of(std::string sensor, std::vector<Calibration> calibrations,
-                                 const HistoryFilter& filter = {});
+// Leaves out the other points.
+void keep_wanted(Calibration& calibration, const HistoryFilter& filter);
+
+[[nodiscard]] History history_of(std::string sensor, std::vector<Calibration> calibrations);
 
 } // namespace dyncal::inline records

@@ -366,4 +366,23 @@ Expected<std::vector<Calibration>> Store::calibrations(const std::string& sensor
   return calibrations;
 }
 
+Expected<void> Store::add_common_parts(std::vector<Calibration>& calibrations,
+                                       const SharedWorkCount& count) {
+  begin_work(count, "reading budgets", "calibrations", calibrations.size());
+  for (Calibration& calibration : calibrations) {
+    DYNCAL_TRY(const auto rows,
+               database_->execute("SELECT document FROM results WHERE result_sha256 = $1",
+                                  {calibration.run.result_sha256}));
+    ByteCount no_progress;
+    // What an older version wrote and this one cannot read shares nothing.
+    const auto result = result_of_text(rows.empty() ? "" : text_of(rows[0][0]),
+                                       calibration.run.folder, no_progress);
+    if (result) {
+      calibration.common = common_parts_of(*result, calibration.source);
+    }
+    add_done(count);
+  }
+  return {};
+}
+
 } // namespace dyncal::inline records

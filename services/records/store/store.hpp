@@ -17,6 +17,7 @@
 
 #include "services/base/error.hpp"
 #include "services/base/work_count.hpp"
+#include "services/records/store/common_part.hpp"
 #include "services/records/store/database.hpp"
 #include "services/records/store/result_record.hpp"
 
@@ -65,6 +66,7 @@ struct Calibration {
   std::string source; // the sensor's, in the run
   std::vector<StoredValue> points;
   std::vector<OpenClosure> open_closures{};
+  CommonParts common{}; // by add_common_parts(); empty: not known
 };
 
 struct KeptHash {
@@ -89,6 +91,9 @@ public:
   // Of a sensor by serial number, device or name of its source; by time.
   [[nodiscard]] Expected<std::vector<Calibration>>
   calibrations(const std::string& sensor, const SharedWorkCount& count = nullptr);
+  // Of the result files, which are read again for it.
+  [[nodiscard]] Expected<void> add_common_parts(std::vector<Calibration>& calibrations,
+                                                const SharedWorkCount& count = nullptr);
 
 private:
   explicit Store(std::unique_ptr<Database> database) : database_(std::move(database)) {}

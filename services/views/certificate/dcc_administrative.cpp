@@ -3,6 +3,7 @@
 
 #include "services/views/certificate/dcc.hpp"
 #include "services/views/certificate/dcc_conformity.hpp"
+#include "services/views/report/daily_check.hpp"
 #include "services/views/report/stated_value.hpp"
 
 namespace dyncal::inline views {
@@ -130,6 +131,10 @@ void add_statements(XmlElement parent, const CertificateContents& contents) {
            "The results relate only to the items calibrated, as they were received and in the "
            "conditions stated.");
   add_conformity_statements(list, contents.conformity);
+  if (const auto check = daily_check_of(contents.result.file)) {
+    add_text(list.add("dcc:statement").attribute("refType", "dyncal_dailyCheck"), "dcc:declaration",
+             sentence_of(*check));
+  }
   for (const std::string& text : contents.provenance) {
     add_text(list.add("dcc:statement").attribute("refType", "dyncal_provenance"), "dcc:declaration",
              text);

@@ -7,6 +7,7 @@
 
 #include "services/views/conformity/stated_conformity.hpp"
 #include "services/views/document/html.hpp"
+#include "services/views/report/daily_check.hpp"
 #include "services/views/report/stated_value.hpp"
 
 namespace dyncal::inline views {
@@ -248,6 +249,8 @@ std::string summary(const ReportContents& contents) {
                                       result.planned_steps));
   table.add("Method", method_text(contents));
   table.add("Reference", reference_text(contents));
+  const auto check = daily_check_of(result.file);
+  table.add("Check", check ? sentence_of(*check) : "");
   table.add("Conformity", contents.conformity ? verdict_text(*contents.conformity) : "");
   table.add("Phase", sign_convention());
   table.add("Uncertainty", "JCGM 100:2008 (GUM). " + rounding_rule());

@@ -8,8 +8,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "services/bench/file/check_table.hpp"
 #include "services/views/objections/axis_objections.hpp"
 #include "services/views/objections/refusing_flags.hpp"
+#include "services/views/report/daily_check.hpp"
 #include "services/views/report/result_file.hpp"
 #include "services/views/report/stated_value.hpp"
 
@@ -137,6 +139,12 @@ std::vector<std::string> objections_to(const StoredResult& result,
   }
   if (!result.problem.empty()) {
     objections.push_back("the run ended early: " + result.problem);
+  }
+  if (const auto demanded = check_settings_of(result.recipe);
+      demanded && !daily_check_of(result.file)) {
+    objections.push_back(fmt::format("the bench demands a check with sensor '{}', and the result "
+                                     "says neither when it was nor why it was left out",
+                                     demanded->sensor));
   }
   for (std::string& open : result.open_closures(channels)) {
     objections.push_back("closure open: " + std::move(open));

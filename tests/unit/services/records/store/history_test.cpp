@@ -31,6 +31,13 @@ Calibration calibration(const std::string& run, std::vector<StoredValue> points)
   return one;
 }
 
+History history_wanted(std::vector<Calibration> calibrations, const HistoryFilter& filter) {
+  for (Calibration& one : calibrations) {
+    keep_wanted(one, filter);
+  }
+  return history_of("s", std::move(calibrations));
+}
+
 TEST(History, ComparesEachCalibrationWithTheOneBefore) {
   const History history = history_of("mpu-7", {calibration("r1", {point(10, 1.0, -0.5)}),
                                                calibration("r2", {point(10, 1.002, -0.5)}),
@@ -46,6 +53,33 @@ TEST(History, ComparesEachCalibrationWithTheOneBefore) {
   EXPECT_FALSE(values[2].agrees());
   EXPECT_NEAR(values[2].deviation_magnitude_rel, 0.012, 1e-12);
   EXPECT_NEAR(*values[2].en_phase, 0.0, 1e-12);
+}
+
+// U 0.3 %, of which the reference alone is 0.29 %: a change of 0.25 % is one.
+TEST(History, TakesOutWhatBothHaveInCommon) {
+  std::vector<Calibration> two{calibration("r1", {point(10, 1.0, 0.0)}),
+                               calibration("r2", {point(10, 1.0025, 0.0)})};
+  for (Calibration& one : two) {
+    one.points[0].of_magnitude = {.u = 0.0015, .k = 2.0, .expanded = 0.003};
+    one.points[0].of_phase = {.u = 0.002, .k = 2.0, .expanded = 0.004};
+  }
+  const auto newest = [&] { return history_of("s", two).lines.front().values.back(); };
+  EXPECT_NEAR(*newest().en_magnitude, 0.0025 / std::hypot(0.003, 0.003), 1e-9);
+  EXPECT_TRUE(newest().agrees());
+  for (Calibration& one : two) {
+    one.common[{.channel = "dau/z", .frequency_hz = 10.0, .level_m_s2 = 10.0}] = {
+        .origin = "certificate of 2026", .rows = {{"reference", 0.00145, 0.0}}};
+  }
+  const double u2 = 2.0 * (0.0015 * 0.0015) - 2.0 * 0.00145 * 0.00145 * 1.0025;
+  EXPECT_NEAR(*newest().en_magnitude, 0.0025 / (2.0 * std::sqrt(u2)), 1e-6);
+  EXPECT_FALSE(newest().agrees());
+  two.back().common.begin()->second.rows[0].u_magnitude_rel = 0.1; // another row
+  EXPECT_TRUE(newest().agrees());
+  for (Calibration& one : two) { // more than all of U: a budget of another version
+    one.common.begin()->second.rows[0].u_magnitude_rel = 0.002;
+  }
+  ASSERT_TRUE(newest().en_magnitude);
+  EXPECT_TRUE(std::isfinite(*newest().en_magnitude));
 }
 
 TEST(History, TakesThePhaseModuloOneTurn) {
@@ -91,7 +125,7 @@ TEST(History, KeepsLevelsAndAxesApart) {
     EXPECT_EQ(*line.values[1].en_magnitude, 0.0);
   }
   EXPECT_EQ(history.lines[4].point.level_m_s2, 15.0);
-  EXPECT_EQ(history_of("s", twice, {.level_m_s2 = 8.0}).lines.size(), 1U);
+  EXPECT_EQ(history_wanted(twice, {.level_m_s2 = 8.0}).lines.size(), 1U);
   const History axes = history_of("s", {calibration("r1", levels), calibration("r2", along_z)});
   EXPECT_EQ(axes.lines.size(), 10U);
   EXPECT_TRUE(axes.differences().axes);
@@ -119,9 +153,9 @@ TEST(History, ShowsOneChannelAndFrequencyIfAsked) {
       calibration("r1", {point(20, 1.0, 0.0), point(10, 1.0, 0.0), y})};
   EXPECT_EQ(history_of("s", all).lines.size(), 3U);
   EXPECT_EQ(history_of("s", all).lines[1].point.frequency_hz, 10.0);
-  EXPECT_EQ(history_of("s", all, {.channel = "dau/z"}).lines.size(), 2U);
-  EXPECT_EQ(history_of("s", all, {.channel = "dau/z", .frequency_hz = 20.0}).lines.size(), 1U);
-  EXPECT_TRUE(history_of("s", all, {.channel = "dau/z", .frequency_hz = 30.0}).lines.empty());
+  EXPECT_EQ(history_wanted(all, {.channel = "dau/z"}).lines.size(), 2U);
+  EXPECT_EQ(history_wanted(all, {.channel = "dau/z", .frequency_hz = 20.0}).lines.size(), 1U);
+  EXPECT_TRUE(history_wanted(all, {.channel = "dau/z", .frequency_hz = 30.0}).lines.empty());
 }
 
 } // namespace

@@ -1,5 +1,8 @@
 #include "services/views/objections/objections.hpp"
 
+#include <filesystem>
+#include <fstream>
+
 #include <gmock/gmock.h>
 
 namespace dyncal::inline views {
@@ -71,6 +74,18 @@ TEST(Objections, ToFlagsOfValuesResultsAndChannels) {
   result.channels[0].flag_names = {"over_range"};
   EXPECT_THAT(objections_to(result, {channel}), ElementsAre(HasSubstr("at all frequencies")));
   EXPECT_THAT(objections_to(result, {"dau/other"}), SizeIs(1)); // which has no value at all
+}
+
+// A result of `dyncal run` on that bench says when the check was, or why it was left out.
+TEST(Objections, ToAResultWithoutTheCheckThatItsBenchDemands) {
+  StoredResult result = whole_run();
+  result.recipe = "bench = \"b\"\n[check]\nsensor = \"SN-1\"\nmax_age_h = 24\n";
+  EXPECT_THAT(objections_to(result, {channel}),
+              ElementsAre(HasSubstr("demands a check with sensor 'SN-1'")));
+  result.file = std::filesystem::path(testing::TempDir()) / "dyncal-objections-check.json";
+  std::ofstream(result.file) << R"({"check": {"sensor": "SN-1", "left_out": "it is away"}})";
+  EXPECT_THAT(objections_to(result, {channel}), IsEmpty());
+  std::filesystem::remove(result.file);
 }
 
 TEST(Objections, ToRunsThatAreNotWhole) {

@@ -1,0 +1,31 @@
+// The check of the bench that a run rests on, where the bench demands one: the newest result of the
+// check sensor, or why the run was made without. Who conducts the run states it; it stands in the
+// result file beside what was evaluated, as "check" (result.schema.json). Any thread.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace dyncal::inline views {
+
+struct DailyCheck {
+  std::string sensor;
+  std::string run;       // of the check; empty: this run is the check itself, or none was asked for
+  std::string began_utc; // of that run
+  std::string state;     // "in control", as the control chart says
+  std::string left_out;  // why there was none; empty: there was
+};
+
+// For tables and documents.
+[[nodiscard]] std::string sentence_of(const DailyCheck& check);
+
+// Into the JSON of a result; nothing of nothing.
+void add_check(const std::optional<DailyCheck>& check, nlohmann::ordered_json& result);
+
+// Of a result file that read_result() has taken; nothing: it does not say.
+[[nodiscard]] std::optional<DailyCheck> daily_check_of(const std::filesystem::path& result_file);
+
+} // namespace dyncal::inline views
