@@ -166,7 +166,6 @@ class Views(PageCase):
             "verdict": "data sheet: undecided", "statement": "undecided", "rule_text": "Guard band",
             "notes": ["limit 2: nothing"],
             "values": [value("10", "pass"), value("20", "undecided", "flag over_range")]})
-        self.addCleanup(self.laboratory.files.pop, "conformity.json")
         page = self.open("run/acc-2")
         page.wait_for("document.querySelectorAll('[data-statement]').length === 2")
         self.assertEqual(page.value(text_of("[data-field=conformity]")), "▲ data sheet: undecided")
