@@ -15,8 +15,10 @@ namespace dyncal::tests {
 
 class SecuredLaboratory {
 public:
-  SecuredLaboratory(std::filesystem::path folder, const std::string& bench)
-      : folder_(std::move(folder)) {
+  // `vendor`: the only DDS implementation that its folders are for; empty: any.
+  SecuredLaboratory(std::filesystem::path folder, const std::string& bench, std::string vendor = "")
+      : folder_(std::move(folder)), vendor_(std::move(vendor)) {
+    std::filesystem::create_directories(folder_);
     call({"init", authority()});
     issue("source", {"--bench", bench});
     issue("analysis", {});
@@ -26,6 +28,9 @@ public:
              const std::string& name = "") const {
     options.insert(options.begin(),
                    {"issue", authority(), role, "--output", folder_of(name.empty() ? role : name)});
+    if (!vendor_.empty()) {
+      options.insert(options.end(), {"--vendor", vendor_});
+    }
     call(options);
   }
   void call(std::vector<std::string> arguments) const {
@@ -38,6 +43,7 @@ public:
 
 private:
   std::filesystem::path folder_;
+  std::string vendor_;
 };
 
 // `folder`: of --security; empty: plain.

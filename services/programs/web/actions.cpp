@@ -56,12 +56,16 @@ std::vector<std::string> bench_files_of(const fs::path& folder) {
   return names;
 }
 
-std::vector<std::string> run_arguments(const NetworkOptions& network, const fs::path& file,
-                                       const fs::path& runs_folder) {
+std::vector<std::string> run_arguments(const ActionOptions& options, const std::string& name) {
+  const NetworkOptions& network = options.network;
+  const fs::path file = options.benches_folder / name;
   std::vector<std::string> arguments{"run",       file.string(), "--dds",
                                      network.dds, "--domain",    std::to_string(network.domain)};
-  if (!runs_folder.empty()) {
-    arguments.insert(arguments.end(), {"--folder", runs_folder.string()});
+  if (!options.runs_folder.empty()) {
+    arguments.insert(arguments.end(), {"--folder", options.runs_folder.string()});
+  }
+  if (!options.run_security.empty()) {
+    arguments.insert(arguments.end(), {"--security", options.run_security});
   }
   for (const std::string& peer : network.peers) {
     arguments.insert(arguments.end(), {"--peer", peer});
@@ -244,6 +248,13 @@ void Actions::start_run(const std::string& name, httplib::Response& response) {
     answer_action(false, "", "there is no such bench file in the folder of --benches", response);
     return;
   }
+  if (!options_.network.security.empty() && options_.run_security.empty()) {
+    answer_action(false, "",
+                  "this laboratory is secured, and dyncal-web has no certificate to conduct runs "
+                  "with: give it the folder of an operator by --run-security",
+                  response);
+    return;
+  }
   const std::lock_guard lock(mutex_);
   if (const auto run = runs_.find(name); run != runs_.end() && !run->second.running()) {
     runs_.erase(run);
@@ -258,10 +269,8 @@ void Actions::start_run(const std::string& name, httplib::Response& response) {
   fs::create_directories(logs, unknown); // the first run of all; if it fails, the log file tells
   const fs::path log =
       logs / fmt::format("{}-{}.log", name, time_name(bus::system_clock().utc_now_ns()));
-  auto child = ChildProcess::start(
-      program_folder() / "dyncal",
-      run_arguments(options_.network, options_.benches_folder / name, options_.runs_folder),
-      {log, log});
+  auto child =
+      ChildProcess::start(program_folder() / "dyncal", run_arguments(options_, name), {log, log});
   if (!child) {
     answer_action(false, "", child.error().message, response);
     return;

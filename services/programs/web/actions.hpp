@@ -4,7 +4,8 @@
 // answer is the visitor's. A step that is to be excited once more may have to wait for the planned
 // ones, longer than any visitor. A run is a `dyncal run` of a
 // bench file of one folder, one at a time of a file; what it prints is in a file beside the runs.
-// It is asked to end when the daemon ends. Every request is logged with who asked and its outcome;
+// It is asked to end when the daemon ends. In a secured laboratory it has a folder of its own: the
+// page's certificate conducts nothing. Every request is logged with who asked and its outcome;
 // his name goes with a command, too. Any thread; one command at a time, but for an abort, which
 // waits for none.
 #pragma once
@@ -32,7 +33,8 @@ struct ActionOptions {
   std::filesystem::path benches_folder;
   std::filesystem::path runs_folder;
   NetworkOptions network;
-  std::string sender; // "dyncal-web:4711@lab-1"
+  std::string run_security; // folder of the runs; empty: they are not secured
+  std::string sender;       // "dyncal-web:4711@lab-1"
 };
 
 class Actions {

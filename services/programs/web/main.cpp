@@ -58,6 +58,10 @@ void add_options(CLI::App& app, WebProgram& program) {
       ->envname("DYNCAL_TOKEN_FILE");
   app.add_option("--benches", program.web.benches_folder,
                  "folder of bench files that a run may be started with (needs --token-file)");
+  app.add_option("--run-security", program.web.run_security,
+                 "folder of an operator ('dyncal security issue') for the runs that are started "
+                 "here, where --security is given: its benches are those that can be run")
+      ->envname("DYNCAL_RUN_SECURITY");
   app.add_option("--guide", program.web.door.guide_folder,
                  "folder of the guide's pages (default: as it is installed with this program)");
   add_default(app, "--javascript", program.web.door.javascript_folder,

@@ -1,5 +1,7 @@
 #include "services/programs/web/web_service.hpp"
 
+#include <ctime>
+
 #include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
@@ -15,6 +17,7 @@
 #include "services/programs/web/signal_answers.hpp"
 #include "services/programs/web/state_cache.hpp"
 #include "services/records/store/store.hpp"
+#include "services/security/identity_check.hpp"
 #include "services/views/signals/signal_tap.hpp"
 
 namespace dyncal::inline programs::web {
@@ -118,12 +121,31 @@ void WebService::Parts::report() {
 WebService::WebService(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
 WebService::~WebService() = default;
 
+namespace {
+
+// The certificate of the page itself conducts nothing: a run has one of its own.
+Expected<void> check_run_security(const NetworkOptions& network, const std::string& folder) {
+  if (folder.empty()) {
+    return {};
+  }
+  if (network.security.empty()) {
+    return fail(ErrorCode::bad_argument,
+                "--run-security is for a secured laboratory: give --security, too");
+  }
+  DYNCAL_TRY(const auto vendor, bus::parse_vendor(network.dds));
+  return require_identity(folder, vendor, "dyncal-run", std::time(nullptr));
+}
+
+} // namespace
+
 Expected<std::unique_ptr<WebService>> WebService::create(Daemon& daemon,
                                                          const WebOptions& options) {
+  DYNCAL_TRY(check_run_security(daemon.network, options.run_security));
   DYNCAL_TRY(daemon.join());
   ActionOptions actions{.benches_folder = options.benches_folder,
                         .runs_folder = options.runs_folder,
                         .network = daemon.network,
+                        .run_security = options.run_security,
                         .sender = service_name(daemon.identity())};
   std::vector<TokenHolder> tokens;
   if (!options.token_file.empty()) {

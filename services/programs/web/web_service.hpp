@@ -24,6 +24,7 @@ struct WebOptions {
   std::string store;                 // as store_place() takes it
   std::filesystem::path token_file;  // empty: no actions
   std::filesystem::path benches_folder;
+  std::string run_security; // folder of runs that are started here; empty: they are not secured
 };
 
 class WebService {
