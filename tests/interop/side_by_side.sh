@@ -7,8 +7,10 @@
 #     --this-system ROOT, --other-system ROOT, --this-name NAME, --other-name NAME
 #                        see two_versions.sh
 #     --vendors "SAR..."  of sources, analysis, run: F Fast DDS, C Cyclone DDS (all eight)
+#     --secured yes      each program by the folder of its role, which this version issues, and
+#                        over Cyclone DDS alone: Fast DDS 3 talks to no other secured DDS
 #     --write PAGE       puts the table into PAGE, between the lines
-#                        <!-- side by side: NAMES --> and <!-- end -->
+#                        <!-- side by side: NAMES[, secured] --> and <!-- end -->
 #
 # A mix is "yes" where each run ends with 0 and has the points and transfer function of `dyncal
 # analyse` of the analysis' version, to the last bit in all that both versions write; "refused"
@@ -19,16 +21,26 @@
 set -euo pipefail
 
 . "$(dirname "${BASH_SOURCE[0]}")/two_versions.sh"
-orders="CCC FFF CCF CFC FCC CFF FCF FFC" page=
+orders="CCC FFF CCF CFC FCC CFF FCF FFC" page= secured=
 while (($# > 1)); do
   case $1 in
   --vendors) orders=$2 ;;
   --write) page=$2 ;;
+  --secured) secured=", secured" orders=CCC ;;
   *) take_side_option "$@" || { echo "unknown option $1" && exit 2; } ;;
   esac
   shift 2
 done
 prepare_sides "programs side by side" bench analysis operator
+
+security() { "${programs[this]}/dyncal" security "$@" >"$folder/log"; }
+if [[ $secured ]]; then
+  security init "$folder/authority"
+  security issue "$folder/authority" analysis --output "$folder/analysis"
+  security issue "$folder/authority" source --bench mixed --output "$folder/source"
+  security issue "$folder/authority" operator --bench mixed --output "$folder/operator"
+fi
+secured_by() { [[ -z $secured ]] || echo "--security $folder/$1"; }
 
 for side in this other; do
   "${programs[$side]}/dyncal" analyse "$folder/bench.toml" --output "$folder/expected-$side.json" \
@@ -42,11 +54,14 @@ outcome=
 one_run() { # sides of sources, analysis, run
   local status=0 difference="no result"
   rm -f "$folder/run.json"
-  begin analysis "$2" dyncal-analysis "${4:1:1}" "analysis ready"
-  begin bench "$1" dyncal-acs "${4:0:1}" ", source " "$folder/bench.toml"
+  # shellcheck disable=SC2046
+  begin analysis "$2" dyncal-analysis "${4:1:1}" "analysis ready" $(secured_by analysis)
+  # shellcheck disable=SC2046
+  begin bench "$1" dyncal-acs "${4:0:1}" ", source " "$folder/bench.toml" $(secured_by source)
+  # shellcheck disable=SC2046
   run_on operator timeout 120 "${programs[$3]}/dyncal" run "$folder/bench.toml" --output \
     "$folder/run.json" "${network[@]}" --dds "$(vendor_of "${4:2:1}")" \
-    >/dev/null 2>"$folder/run.log" || status=$?
+    $(secured_by operator) >/dev/null 2>"$folder/run.log" || status=$?
   end_services
   if [[ -s $folder/run.json ]]; then
     difference=$(compare "$folder/expected-$2.json" "$folder/run.json" 2>&1) || difference+=" "
@@ -86,7 +101,7 @@ for sides in "this this this" "other this this" "this other this" "this this oth
 done
 cat "$table"
 if [[ $page && $failed -eq 0 ]]; then
-  sed -i -e "/^<!-- side by side: ${name[this]}, ${name[other]} -->\$/,/^<!-- end -->\$/{
+  sed -i -e "/^<!-- side by side: ${name[this]}, ${name[other]}$secured -->\$/,/^<!-- end -->\$/{
     /^<!-- side by side/r $table
     /^<!--/!d
   }" "$page"

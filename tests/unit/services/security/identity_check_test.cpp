@@ -39,7 +39,8 @@ protected:
     request.role = role;
     request.benches =
         is_of_a_bench(role) ? std::vector<std::string>{"acc-1"} : std::vector<std::string>();
-    request.vendors = bus::vendors_in_this_build();
+    request.vendors = bus::speaks_alone_when_secured(GetParam()) ? std::vector{GetParam()}
+                                                                 : bus::vendors_in_this_build();
     const auto name = opened->issue(request, to);
     ASSERT_TRUE(name) << name.error().message;
   }
@@ -199,6 +200,34 @@ TEST_P(IdentityCheckOf, RefusesAKeyThatOthersCanReadOrThatIsOfAnother) {
   ASSERT_TRUE(write_output_file(files().private_key, pem_text(*make_private_key())));
   fs::permissions(files().private_key, fs::perms::owner_read);
   EXPECT_THAT(refusal(), HasSubstr("is not the key of the certificate"));
+}
+
+TEST_P(IdentityCheckOf, ReadsAFolderAsASystemHandsItOnBesideAnother) {
+  const fs::path handed_on = folder.path() / "run";
+  for (const auto& file : fs::directory_iterator(output)) {
+    fs::rename(file, handed_on.string() + "_" + file.path().filename().string());
+  }
+  EXPECT_NE(refusal(), "");
+  const auto outcome = require_identity(handed_on, GetParam(), "dyncal-dau", std::time(nullptr));
+  EXPECT_TRUE(outcome) << outcome.error().message;
+}
+
+TEST_P(IdentityCheckOf, RefusesAFolderForAMixedLaboratoryWhereTheVendorSpeaksAlone) {
+  if (bus::vendors_in_this_build().size() == 1) {
+    GTEST_SKIP() << "a build with one DDS implementation mixes none";
+  }
+  const auto opened = LaboratoryAuthority::open(authority);
+  ASSERT_TRUE(opened) << opened.error().message;
+  IdentityRequest request;
+  request.role = SecurityRole::analysis;
+  request.vendors = bus::vendors_in_this_build();
+  ASSERT_TRUE(opened->issue(request, folder.path() / "mixed"));
+  request.vendors = {GetParam()};
+  ASSERT_TRUE(opened->issue(request, folder.path() / "alone"));
+  const auto mixed = require_no_other_vendor(folder.path() / "mixed", GetParam());
+  ASSERT_FALSE(mixed);
+  EXPECT_THAT(mixed.error().message, HasSubstr("talks to no other DDS once it is secured"));
+  EXPECT_TRUE(require_no_other_vendor(folder.path() / "alone", GetParam()));
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryVendor, IdentityCheckOf,
