@@ -9,6 +9,7 @@ bool is_common_to_results(ContributionKind kind) {
   case ContributionKind::reference:
   case ContributionKind::trigger_delay:
   case ContributionKind::trace_clock:
+  case ContributionKind::transverse_motion:
     return true;
   case ContributionKind::fit_noise:
   case ContributionKind::quantisation:

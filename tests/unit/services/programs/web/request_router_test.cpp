@@ -92,7 +92,11 @@ protected:
   EventStream events_{cache_, answers_, router_,
                       [](const std::string&, const httplib::Request&) { return Text(); }};
   Permission permission_{{{.token = secret}}, clock_, router_};
-  Actions actions_{{.benches_folder = {}, .runs_folder = {}, .network = {}, .sender = "test"},
+  Actions actions_{{.benches_folder = {},
+                    .runs_folder = {},
+                    .network = {},
+                    .run_security = {},
+                    .sender = "test"},
                    participant_,
                    clock_,
                    cache_,
