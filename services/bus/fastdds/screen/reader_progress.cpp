@@ -48,7 +48,7 @@ void ReaderProgress::acknowledged(const Key& key, std::int64_t next, Instant now
   if (readers_.size() >= max_readers && !readers_.contains(key)) {
     readers_.clear();
   }
-  readers_[key] = {next, now};
+  readers_[key] = {.next = next, .told = now};
 }
 
 std::int64_t ReaderProgress::allowed(std::int64_t wanted, std::int64_t visits, Instant now) {
@@ -71,13 +71,13 @@ ReaderProgress::Range ReaderProgress::of_gap(Bytes source, Bytes entities, Range
   if (reader == readers_.end() || now - reader->second.told >= lives) {
     return {range.first, std::min(range.end, range.first + window)};
   }
-  std::int64_t& next = reader->second.next;
-  range.first = std::max(range.first, next);
-  if (range.first != next || range.end - next <= window) {
-    range.end = std::min(range.end, next + window);
+  Progress& progress = reader->second;
+  range.first = std::max(range.first, progress.next);
+  if (range.first != progress.next || range.end - progress.next <= window || progress.moved) {
+    range.end = std::min(range.end, progress.next + window);
   } else {
-    range.end = next + allowed(range.end - next, visits_in_gap, now);
-    next = range.end;
+    range.end = progress.next + allowed(range.end - progress.next, visits_in_gap, now);
+    progress.moved = true;
   }
   return range;
 }
@@ -92,11 +92,7 @@ std::int64_t ReaderProgress::heartbeat_begin(Bytes source, Bytes entities, std::
   if (first - next <= window) {
     return first;
   }
-  const std::int64_t begin = next + allowed(first - next, 1, now);
-  if (reader != readers_.end()) {
-    reader->second.next = begin;
-  }
-  return begin;
+  return next + allowed(first - next, 1, now);
 }
 
 } // namespace dyncal::bus

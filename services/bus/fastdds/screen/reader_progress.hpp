@@ -9,9 +9,9 @@
 // its length, but handed on in pieces:
 //
 //   GAP        from where the reader is, if it begins there: as far as the allowance goes; its
-//              rest is told again, since the reader asks for it. Beyond `window` from there:
-//              left out, a reader asks for 256 numbers at a time. The same where it is not known
-//              where the reader is
+//              rest is told again, since the reader asks for it, once for each of its ACKNACKs.
+//              Beyond `window` from there: left out, a reader asks for 256 numbers at a time. The
+//              same where it is not known where the reader is
 //   HEARTBEAT  its beginning is at most the allowance ahead of the reader, which then asks for
 //              what is not there any more, and is told that it is not
 //
@@ -79,6 +79,7 @@ private:
   struct Progress {
     std::int64_t next = 1; // the first number that it lacks
     Instant told;
+    bool moved = false; // by a piece, since then
   };
   using AllProgress = std::map<Key, Progress>;
 

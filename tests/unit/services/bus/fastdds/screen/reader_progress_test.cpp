@@ -66,6 +66,15 @@ TEST_F(ReaderProgressTest, ForgedHolesCostNoMoreThanTheAllowance) {
   EXPECT_LE(visited, ReaderProgress::max_visits + packets * ReaderProgress::window);
 }
 
+TEST_F(ReaderProgressTest, NoPieceFollowsOneThatTheReaderHasNotAcknowledged) {
+  acknack(one_reader, 5);
+  static_cast<void>(heartbeat(one_reader, many)); // as one that the library passes over
+  const ReaderProgress::Range piece = gap(one_reader, 5, many);
+  EXPECT_EQ(piece.first, 5);
+  EXPECT_GE(piece.end, 5 + ReaderProgress::window);
+  EXPECT_EQ(gap(one_reader, 5, many).end, 5 + ReaderProgress::window) << "it would be kept";
+}
+
 TEST_F(ReaderProgressTest, WhatIsFarBehindWhatAReaderLacksIsNotKept) {
   acknack(one_reader, 5);
   EXPECT_EQ(gap(one_reader, 7, many).end, 5 + ReaderProgress::window);
