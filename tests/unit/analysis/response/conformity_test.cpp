@@ -100,6 +100,8 @@ int passes_of_200(double truth, DecisionRule rule, unsigned seed) {
 TEST(Conformity, ErrorRatesAreThoseOfTheRule) {
   for (const double sign : {-1.0, 1.0}) {
     const int at_limit = passes_of_200(sign * 5.0, DecisionRule::simple_acceptance, 7);
+    RecordProperty("simple_at_limit", at_limit);
+    RecordProperty("guard_band_at_limit", passes_of_200(sign * 5.0, DecisionRule::guard_band, 11));
     EXPECT_GE(at_limit, 77) << "of 100 +- 23";
     EXPECT_LE(at_limit, 123) << "of 100 +- 23";
     for (const auto rule : {DecisionRule::guard_band, DecisionRule::guard_band_non_binary}) {

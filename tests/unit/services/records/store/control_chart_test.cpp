@@ -89,6 +89,10 @@ TEST(ControlChart, FindsADriftAndAlarmsForNothingElse) {
     alarms += without == CheckState::action ? 1 : 0;
     warnings += without == CheckState::warning ? 1 : 0;
   }
+  RecordProperty("found", found);
+  RecordProperty("found_delay", found_delay);
+  RecordProperty("alarms", alarms);
+  RecordProperty("warnings", warnings);
   EXPECT_GE(found, 95);
   EXPECT_GE(found_delay, 95);
   EXPECT_LE(alarms, 5);
