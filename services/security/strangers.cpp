@@ -95,11 +95,10 @@ void StrangerWatch::look(const bus::Discovery& discovery, Instant now) {
   }
 }
 
-std::vector<Stranger> StrangerWatch::strangers(Instant now,
-                                               std::chrono::nanoseconds for_at_least) const {
+std::vector<Stranger> StrangerWatch::strangers(std::chrono::nanoseconds for_at_least) const {
   std::vector<Stranger> strangers;
   for (const auto& [id, one] : seen_) {
-    if (now - one.first >= for_at_least) {
+    if (one.last - one.first >= for_at_least) {
       strangers.push_back({id, one.name});
     }
   }

@@ -47,9 +47,9 @@ public:
   static constexpr std::chrono::seconds forgotten_after{15};
 
   void look(const bus::Discovery& discovery, Instant now);
-  // Who was one for so long. Programs that begin are, while they authenticate each other.
-  [[nodiscard]] std::vector<Stranger> strangers(Instant now,
-                                                std::chrono::nanoseconds for_at_least) const;
+  // Who was seen to be one for so long. Programs that begin are, while they authenticate each
+  // other.
+  [[nodiscard]] std::vector<Stranger> strangers(std::chrono::nanoseconds for_at_least) const;
 
 private:
   struct Seen {

@@ -13,6 +13,7 @@ namespace dyncal::tests {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -30,6 +31,10 @@ struct Folders {
   std::string conductor;
 };
 
+Folders folders_of(const SecuredLaboratory& lab) {
+  return {lab.folder_of("source"), lab.folder_of("analysis"), lab.folder_of("operator")};
+}
+
 nlohmann::json result_over(const fs::path& folder, const fs::path& bench, const Vendors& vendors,
                            const Folders& secured) {
   Laboratory laboratory(folder);
@@ -46,24 +51,26 @@ nlohmann::json result_over(const fs::path& folder, const fs::path& bench, const 
 TEST(SecuredRuns, AreThoseOfAPlainLaboratoryToTheBit) {
   const auto folder = fresh_folder("secured-runs");
   const auto bench = recorded_bench(folder, bench_name, "3");
-  const SecuredLaboratory lab(folder, bench_name);
-  const Folders secured{lab.folder_of("source"), lab.folder_of("analysis"),
-                        lab.folder_of("operator")};
+  const Folders secured = folders_of(SecuredLaboratory(folder, bench_name));
   const auto plain = result_over(folder, bench, {"cyclonedds", "cyclonedds"}, {});
   ASSERT_FALSE(plain.is_discarded());
   ASSERT_EQ(plain["points"].size(), 18U);
-  std::vector<Vendors> pairs{{"cyclonedds", "cyclonedds"}, {"fastdds", "fastdds"}};
-  if (base::build_description().find("fastdds 3.") != std::string::npos) {
-    std::cout << "not mixed: Fast DDS 3 talks to no other secured DDS\n";
-  } else {
-    pairs.insert(pairs.end(), {{"cyclonedds", "fastdds"}, {"fastdds", "cyclonedds"}});
-  }
-  for (const Vendors& vendors : pairs) {
-    const auto result = result_over(folder, bench, vendors, secured);
+  const auto expect_the_same = [&](const Vendors& vendors, const Folders& folders) {
+    const auto result = result_over(folder, bench, vendors, folders);
     ASSERT_FALSE(result.is_discarded()) << vendors.acs << vendors.analysis;
     EXPECT_EQ(result["points"], plain["points"]);
     EXPECT_EQ(result["transfer_function"], plain["transfer_function"]);
+  };
+  expect_the_same({"cyclonedds", "cyclonedds"}, secured);
+  if (base::build_description().find("fastdds 3.") != std::string::npos) {
+    std::cout << "not mixed: Fast DDS 3 talks to no other secured DDS\n";
+    expect_the_same({"fastdds", "fastdds"},
+                    folders_of(SecuredLaboratory(folder / "alone", bench_name, "fastdds")));
+    return;
   }
+  expect_the_same({"fastdds", "fastdds"}, secured);
+  expect_the_same({"cyclonedds", "fastdds"}, secured);
+  expect_the_same({"fastdds", "cyclonedds"}, secured);
 }
 
 class WrongIdentity : public testing::TestWithParam<std::string> {
@@ -81,7 +88,7 @@ protected:
 
   fs::path folder_ = fresh_folder("wrong-identity-" + GetParam());
   fs::path bench_ = recorded_bench(folder_, bench_name, "3");
-  SecuredLaboratory lab_{folder_, bench_name};
+  SecuredLaboratory lab_{folder_, bench_name, GetParam()};
 };
 
 TEST_P(WrongIdentity, IsRefusedByTheProgramThatHasIt) {
@@ -105,7 +112,8 @@ TEST_P(WrongIdentity, IsRefusedByTheProgramThatHasIt) {
 
 TEST_P(WrongIdentity, SeesNothingAndIsNotSeenWithoutAny) {
   Laboratory laboratory(folder_);
-  laboratory.start("dyncal-analysis", with_security({}, lab_.folder_of("analysis")), GetParam());
+  ProgramRun& analysis = laboratory.start(
+      "dyncal-analysis", with_security({}, lab_.folder_of("analysis")), GetParam());
   laboratory.start("dyncal-acs", with_security({bench_}, lab_.folder_of("source")), GetParam());
   lab_.issue("watcher", {});
   const auto list = [&](const std::string& folder) {
@@ -114,12 +122,30 @@ TEST_P(WrongIdentity, SeesNothingAndIsNotSeenWithoutAny) {
     return run.output() + run.errors();
   };
   EXPECT_THAT(list(lab_.folder_of("watcher")), HasSubstr(bench_name));
+  EXPECT_THAT(list(lab_.folder_of("watcher")), Not(HasSubstr("may not talk to")));
   EXPECT_THAT(list(""), Not(HasSubstr(bench_name)));
   laboratory.start("dyncal-analysis", {}, GetParam());
   ProgramRun& doctor = laboratory.start(
       "dyncal", with_security({"doctor", "--seconds", "3"}, lab_.folder_of("watcher")), GetParam());
   EXPECT_TRUE(doctor.wait(patience)) << doctor.errors();
+  const std::string stranger = "1 program is here that this program may not talk to: "
+                               "dyncal-analysis:[0-9]+ on [^ ]+ .without --security";
+  EXPECT_THAT(doctor.output(), ContainsRegex(stranger));
+  EXPECT_THAT(list(lab_.folder_of("watcher")), ContainsRegex(stranger));
+  EXPECT_TRUE(analysis.wait_for_error_text("that this program may not talk to", patience));
+  EXPECT_THAT(analysis.errors(), ContainsRegex(stranger));
+}
+
+TEST_P(WrongIdentity, OfAnotherAuthorityIsNamedByThoseWhoMayNotTalkToIt) {
+  const SecuredLaboratory other(folder_ / "other", bench_name, GetParam());
+  lab_.issue("watcher", {});
+  Laboratory laboratory(folder_);
+  laboratory.start("dyncal-analysis", with_security({}, other.folder_of("analysis")), GetParam());
+  ProgramRun& doctor = laboratory.start(
+      "dyncal", with_security({"doctor", "--seconds", "5"}, lab_.folder_of("watcher")), GetParam());
+  EXPECT_TRUE(doctor.wait(patience)) << doctor.errors();
   EXPECT_THAT(doctor.output(), HasSubstr("1 program is here that this program may not talk to"));
+  EXPECT_THAT(doctor.output(), ContainsRegex("of (the|another) authority")) << "as announced";
 }
 
 INSTANTIATE_TEST_SUITE_P(EitherVendor, WrongIdentity, testing::Values("cyclonedds", "fastdds"),

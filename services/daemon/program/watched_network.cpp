@@ -118,9 +118,9 @@ void WatchedNetwork::look_for_strangers() {
   strangers_.look(discovered_(), now);
   {
     const std::lock_guard lock(mutex_);
-    strangers_sentence_ = strangers_sentence(strangers_.strangers(now, strange_for), revoked_);
+    strangers_sentence_ = strangers_sentence(strangers_.strangers(strange_for), revoked_);
   }
-  const auto all = strangers_.strangers(now, said_when_strange_for);
+  const auto all = strangers_.strangers(said_when_strange_for);
   bool is_news = false;
   for (const Stranger& one : all) {
     is_news = (said_.size() < max_said && said_.insert(one.id).second) || is_news;

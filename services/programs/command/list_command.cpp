@@ -85,7 +85,8 @@ Expected<void> run_list(const ListOptions& command, const std::stop_token& stop)
   const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                            std::chrono::duration<double>(command.seconds));
   auto number_of_things = std::size_t{0};
-  auto quiet_at = Clock::now() + 2 * quiet_time;
+  // Who may not be talked to is known after two announcements.
+  auto quiet_at = Clock::now() + (command.network.security.empty() ? 2 : 4) * quiet_time;
   while (!watched->is_over() && Clock::now() < std::min(deadline, quiet_at)) {
     watched->work(Clock::now() + 100ms);
     std::size_t things = laboratory.programs().size();
