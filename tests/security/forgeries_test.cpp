@@ -89,7 +89,8 @@ struct Ended {
 class Forgeries : public testing::TestWithParam<std::size_t> {
 protected:
   static void SetUpTestSuite() {
-    folder = fresh_folder("forgeries");
+    // Each test may be a process of its own, at the same time as others.
+    folder = fresh_folder("forgeries-" + std::to_string(own_dds_domain()));
     bench = recorded_bench(folder, bench_name, "3");
     const Ended ended = run({"", "cyclonedds", "cyclonedds"}, nullptr, {});
     ASSERT_EQ(ended.status, 0) << ended.errors;

@@ -53,6 +53,13 @@ TEST(RequiredCheck, StopsARunUnlessAReasonIsStated) {
   EXPECT_THAT(std::string(std::istreambuf_iterator<char>(html), {}),
               HasSubstr("was left out: the check sensor is away"));
 
+  // Evaluated anew, it is a run of that bench still.
+  ProgramRun again("dyncal", {"analyse", run, "--output", folder / "again.json"}, folder);
+  ASSERT_EQ(again.wait(patience), 0) << again.errors();
+  std::ifstream evaluated(folder / "again.json");
+  EXPECT_EQ(nlohmann::json::parse(evaluated).at("check").at("left_out"),
+            "the check sensor is away");
+
   ProgramRun& check = bench.start({"run", bench.bench_file(), "--folder", folder / "check"});
   ASSERT_EQ(check.wait(patience), 0) << check.errors();
   const auto of_check = check_of_only_run(folder / "check");

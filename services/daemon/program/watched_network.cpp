@@ -59,8 +59,8 @@ WatchedNetwork::join(const NetworkOptions& options, const std::string& program,
   AddressesAtStart start{addresses_of(interface_name), {}};
   const NetworkUse use{.watch_discovery = true};
   DYNCAL_TRY(auto joined, options.security.empty()
-                              ? join_network(options, program, use).map([](auto participant) {
-                                  return bus::SecuredParticipant{std::move(participant), {}};
+                              ? join_network(options, program, use).map([](auto plain) {
+                                  return bus::SecuredParticipant{std::move(plain), {}};
                                 })
                               : join_secured_network(options, program, use));
   DYNCAL_TRY(const auto vendor, bus::parse_vendor(options.dds));

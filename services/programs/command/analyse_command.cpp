@@ -29,8 +29,10 @@
 #include "services/records/replay/sample_memory.hpp"
 #include "services/records/replay/shot_files.hpp"
 #include "services/run/run_plan.hpp"
+#include "services/views/report/daily_check.hpp"
 #include "services/views/report/run_figures.hpp"
 #include "services/views/report/show_outcome.hpp"
+#include "services/views/report/stored_result.hpp"
 
 namespace dyncal::inline programs {
 namespace {
@@ -278,7 +280,11 @@ Expected<void> run_analyse(const AnalyseOptions& command, const std::stop_token&
   DYNCAL_TRY(check_outputs(command.output, command.figures));
   keep_memory_for_samples();
   DYNCAL_TRY(const auto outcome, analyse(command, stop));
-  DYNCAL_TRY(show_outcome(outcome, command.output, command.figures));
+  std::error_code unknown;
+  const bool is_of_run = std::filesystem::is_directory(command.bench_file, unknown);
+  DYNCAL_TRY(
+      show_outcome(outcome, command.output, command.figures,
+                   is_of_run ? daily_check_of(result_file_of(command.bench_file)) : std::nullopt));
   return check_complete(outcome);
 }
 

@@ -1,4 +1,5 @@
 #include "services/views/objections/objections.hpp"
+#include "tests/temporary_folder.hpp"
 
 #include <filesystem>
 #include <fstream>
@@ -82,10 +83,10 @@ TEST(Objections, ToAResultWithoutTheCheckThatItsBenchDemands) {
   result.recipe = "bench = \"b\"\n[check]\nsensor = \"SN-1\"\nmax_age_h = 24\n";
   EXPECT_THAT(objections_to(result, {channel}),
               ElementsAre(HasSubstr("demands a check with sensor 'SN-1'")));
-  result.file = std::filesystem::path(testing::TempDir()) / "dyncal-objections-check.json";
+  const tests::TemporaryFolder folder;
+  result.file = folder.path() / "result.json";
   std::ofstream(result.file) << R"({"check": {"sensor": "SN-1", "left_out": "it is away"}})";
   EXPECT_THAT(objections_to(result, {channel}), IsEmpty());
-  std::filesystem::remove(result.file);
 }
 
 TEST(Objections, ToRunsThatAreNotWhole) {

@@ -7,6 +7,7 @@
 
 #include "services/views/report/result_json.hpp"
 #include "services/views/report/stored_result.hpp"
+#include "tests/temporary_folder.hpp"
 #include "tests/unit/services/views/report/example_outcome.hpp"
 
 namespace dyncal::inline views {
@@ -21,7 +22,8 @@ const DailyCheck example{.sensor = "SN-1",
                          .left_out = {}};
 
 TEST(DailyCheck, StandsInTheResultFile) {
-  const auto file = std::filesystem::path(testing::TempDir()) / "dyncal-daily-check.json";
+  const tests::TemporaryFolder folder;
+  const auto file = folder.path() / "result.json";
   nlohmann::ordered_json json = result_json(tests::example_outcome());
   std::ofstream(file) << json;
   const auto without = read_result(file);
@@ -43,7 +45,6 @@ TEST(DailyCheck, StandsInTheResultFile) {
   const auto changed = read_result(file);
   ASSERT_FALSE(changed);
   EXPECT_THAT(changed.error().message, HasSubstr("check"));
-  std::filesystem::remove(file);
   EXPECT_FALSE(daily_check_of(file));
 }
 
