@@ -155,7 +155,8 @@ protected:
                              vendors.forger, vendors.analysis, vendors.others));
     std::optional<SecuredLaboratory> secured;
     if (is_secured) {
-      secured.emplace(fresh_folder("forgeries-secured"), bench_name);
+      secured.emplace(fresh_folder("forgeries-secured-" + std::to_string(own_dds_domain())),
+                      bench_name);
     }
     const Ended ended = run(vendors, secured ? &*secured : nullptr,
                             [&](Forger& forger) { attack.begin(forger, draw); });

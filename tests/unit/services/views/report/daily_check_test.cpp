@@ -45,6 +45,7 @@ TEST(DailyCheck, StandsInTheResultFile) {
   const auto changed = read_result(file);
   ASSERT_FALSE(changed);
   EXPECT_THAT(changed.error().message, HasSubstr("check"));
+  std::filesystem::remove(file);
   EXPECT_FALSE(daily_check_of(file));
 }
 
