@@ -7,6 +7,7 @@
 
 #include "tests/security/secured_laboratory.hpp"
 #include "tests/system/laboratory.hpp"
+#include "tests/system/test_folder.hpp"
 #include "tests/system/web_visitor.hpp"
 
 namespace dyncal::tests {
@@ -40,7 +41,7 @@ protected:
     return WebVisitor(web, token).post("/api/run", {{"file", "bench.toml"}});
   }
 
-  fs::path folder_ = fresh_folder("secured-page");
+  fs::path folder_ = fresh_folder_of_this_test();
   fs::path bench_ = recorded_bench(folder_, "files", "3");
   SecuredLaboratory lab_{folder_, "files", "cyclonedds"};
   Laboratory laboratory_{folder_};

@@ -8,6 +8,7 @@
 #include "services/base/version.hpp"
 #include "tests/security/secured_laboratory.hpp"
 #include "tests/system/laboratory.hpp"
+#include "tests/system/test_folder.hpp"
 
 namespace dyncal::tests {
 namespace {
@@ -86,7 +87,7 @@ protected:
     return run.errors();
   }
 
-  fs::path folder_ = fresh_folder("wrong-identity-" + GetParam());
+  fs::path folder_ = fresh_folder_of_this_test();
   fs::path bench_ = recorded_bench(folder_, bench_name, "3");
   SecuredLaboratory lab_{folder_, bench_name, GetParam()};
 };
