@@ -143,7 +143,8 @@ private:
   std::array<iovec, batch_size> parts_{};
   std::array<mmsghdr, batch_size> headers_{};
   std::array<sockaddr_in, batch_size> senders_{};
-  std::array<std::array<char, CMSG_SPACE(sizeof(std::uint32_t))>, batch_size> controls_{};
+  alignas(cmsghdr)
+      std::array<std::array<char, CMSG_SPACE(sizeof(std::uint32_t))>, batch_size> controls_{};
 };
 
 class Receiver::Socket {

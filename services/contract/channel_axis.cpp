@@ -39,6 +39,10 @@ std::string axis_of(std::string_view channel, std::span<const ChannelAxis> state
   return letter == '\0' ? std::string() : std::string(1, letter);
 }
 
+bool is_of_x_y_z(std::string_view axis) {
+  return letter_of(axis) != '\0';
+}
+
 bool lies_across(std::string_view axis, std::string_view excited) {
   const char one = letter_of(axis);
   const char other = letter_of(excited);

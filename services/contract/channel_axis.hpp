@@ -19,6 +19,9 @@ struct ChannelAxis {
 // Empty: not known.
 [[nodiscard]] std::string axis_of(std::string_view channel, std::span<const ChannelAxis> stated);
 
+// One of x, y, z.
+[[nodiscard]] bool is_of_x_y_z(std::string_view axis);
+
 // Both are of x, y, z, and not the same.
 [[nodiscard]] bool lies_across(std::string_view axis, std::string_view excited);
 

@@ -105,7 +105,12 @@ class Combine(unittest.TestCase):
             for one in result["transfer_function"]:
                 one["excited_axis"] = "x"
 
+        def reference(result):
+            device = {"name": "another", "serial": "2", "certificate": "C-2"}
+            result["corrections"]["reference_standard"] = {"devices": [device]}
+
         one = self.runs[0]
+        self.assertIn("references differ", self.refused(one, self.run_of("F", 1.0, reference)))
         self.assertIn("serial number", self.refused(one, self.run_of("S", 1.0, serial)))
         self.assertIn("was interrupted", self.refused(one, self.run_of("I", 1.0, interrupted)))
         self.assertIn("excited axis", self.refused(one, self.run_of("A", 1.0, axis)))

@@ -17,7 +17,8 @@ struct SensitivityUnit {
   std::string output; // in SI: "V", "C", "m/s^2"; "1" without a unit
   std::string input;
 
-  [[nodiscard]] bool is_one() const { return output == input; }
+  // Written as "1": not "V/V", which is a gain of any size.
+  [[nodiscard]] bool is_one() const { return output == "1"; }
 };
 
 // Nothing: not known.

@@ -2,6 +2,7 @@
 
 #include "analysis/base/frequency.hpp"
 #include "services/checks/bench_check/checks.hpp"
+#include "services/contract/transverse_motion.hpp"
 
 namespace dyncal::inline checks::bench_check {
 namespace {
@@ -39,6 +40,20 @@ void check_adc(const BenchView& view, const analysis::Frequency& frequency, std:
   }
 }
 
+// A channel across the excited axis has no certificate at a frequency without it.
+void check_transverse_motion(const BenchView& view, const analysis::Frequency& frequency,
+                             std::size_t entry, Findings& findings) {
+  const TransverseMotion& motion = view.bench.excitation.transverse_motion;
+  if (!motion.points.empty() && !ratio_at(motion.points, frequency.hz())) {
+    findings.push_back(
+        view.at(Severity::warning, {"excitation", "frequencies_hz"},
+                fmt::format("holds \"{}\", which excitation.transverse_motion does not cover: "
+                            "documents will refuse channels across the axis",
+                            view.bench.excitation.frequencies_hz[entry]),
+                entry));
+  }
+}
+
 } // namespace
 
 Findings check_corrections(const BenchView& view) {
@@ -48,6 +63,7 @@ Findings check_corrections(const BenchView& view) {
     if (const auto frequency = analysis::Frequency::parse(frequencies[i])) {
       check_reference(view, *frequency, i, findings);
       check_adc(view, *frequency, i, findings);
+      check_transverse_motion(view, *frequency, i, findings);
     }
   }
   return findings;

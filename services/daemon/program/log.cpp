@@ -103,7 +103,10 @@ void finish_log() {
   if (!spdlog::thread_pool()) {
     return;
   }
-  write_at_once(spdlog::default_logger()->name());
+  // Other threads may be in the middle of a line of the logger that they have.
+  static std::shared_ptr<spdlog::logger> queued;
+  queued = spdlog::default_logger();
+  write_at_once(queued->name());
   // The queue is written by the end of its thread.
   spdlog::details::registry::instance().set_tp(nullptr);
 }

@@ -34,27 +34,6 @@ double along(const Recipe& recipe, const std::vector<StepResult>& results,
 
 } // namespace
 
-std::optional<double> ratio_at(std::span<const TransverseMotionPoint> points, double frequency_hz) {
-  std::optional<double> below;
-  std::optional<double> above;
-  double below_hz = 0.0;
-  double above_hz = std::numeric_limits<double>::infinity();
-  for (const TransverseMotionPoint& point : points) {
-    if (point.frequency_hz == 0.0) {
-      return point.ratio;
-    }
-    if (point.frequency_hz <= frequency_hz && point.frequency_hz >= below_hz) {
-      below_hz = point.frequency_hz;
-      below = point.ratio;
-    }
-    if (point.frequency_hz >= frequency_hz && point.frequency_hz <= above_hz) {
-      above_hz = point.frequency_hz;
-      above = point.ratio;
-    }
-  }
-  return below && above ? std::optional(std::max(*below, *above)) : std::nullopt;
-}
-
 std::vector<bool> add_transverse_motion(const Recipe& recipe, std::vector<StepResult>& results) {
   std::vector<bool> has_got(results.size(), false);
   for (std::size_t i = 0; i < results.size(); ++i) {

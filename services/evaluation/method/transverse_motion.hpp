@@ -11,18 +11,12 @@
 // Plain functions, any thread.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "services/evaluation/recipe/recipe.hpp"
 #include "services/evaluation/result/step_result.hpp"
 
 namespace dyncal::inline evaluation {
-
-// The larger one of those at the frequencies about it; nothing outside of them. A point without a
-// frequency holds everywhere.
-[[nodiscard]] std::optional<double> ratio_at(std::span<const TransverseMotionPoint> points,
-                                             double frequency_hz);
 
 // Adds the row to the results of a step that need it; true for each that has got one.
 [[nodiscard]] std::vector<bool> add_transverse_motion(const Recipe& recipe,

@@ -29,7 +29,6 @@
 #include "services/records/replay/sample_memory.hpp"
 #include "services/records/replay/shot_files.hpp"
 #include "services/run/run_plan.hpp"
-#include "services/views/report/daily_check.hpp"
 #include "services/views/report/run_figures.hpp"
 #include "services/views/report/show_outcome.hpp"
 #include "services/views/report/stored_result.hpp"
@@ -276,15 +275,21 @@ Expected<RunOutcome> analyse(const AnalyseOptions& command, const std::stop_toke
   return outcome;
 }
 
+// Who conducted the run has stated it in its folder; where that says none, so do documents.
+std::optional<DailyCheck> check_of(const std::filesystem::path& run) {
+  std::error_code unknown;
+  if (!std::filesystem::is_directory(run, unknown)) {
+    return std::nullopt;
+  }
+  const auto result = read_result(run);
+  return result ? result->check : std::nullopt;
+}
+
 Expected<void> run_analyse(const AnalyseOptions& command, const std::stop_token& stop) {
   DYNCAL_TRY(check_outputs(command.output, command.figures));
   keep_memory_for_samples();
   DYNCAL_TRY(const auto outcome, analyse(command, stop));
-  std::error_code unknown;
-  const bool is_of_run = std::filesystem::is_directory(command.bench_file, unknown);
-  DYNCAL_TRY(
-      show_outcome(outcome, command.output, command.figures,
-                   is_of_run ? daily_check_of(result_file_of(command.bench_file)) : std::nullopt));
+  DYNCAL_TRY(show_outcome(outcome, command.output, command.figures, check_of(command.bench_file)));
   return check_complete(outcome);
 }
 

@@ -3,30 +3,19 @@
 
 #include <fmt/format.h>
 
+#include "services/base/csv_field.hpp"
 #include "services/base/output_stream.hpp"
 #include "services/records/exchange/row_formats.hpp"
 
 namespace dyncal::inline records {
 namespace {
 
-// A field of a line; quoted where it would be taken for several.
-std::string field(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) {
-    return text;
-  }
-  std::string quoted = "\"";
-  for (const char c : text) {
-    quoted += c == '"' ? "\"\"" : std::string(1, c);
-  }
-  return quoted + "\"";
-}
-
 std::string first_line(const RowTable& table) {
   std::string line;
   for (const RowColumn& column : table.columns()) {
     const bool has_unit = column.is_channel && !column.unit.empty();
     line += line.empty() ? "" : ",";
-    line += field(has_unit ? fmt::format("{} [{}]", column.name, column.unit) : column.name);
+    line += csv_field(has_unit ? fmt::format("{} [{}]", column.name, column.unit) : column.name);
   }
   return line + "\n";
 }

@@ -74,7 +74,7 @@ constexpr std::array facts{"bench", "run", "method", "planned_steps", "sources",
 Json comparable_json(const StoredResult& result, bool is_same_version) {
   Json json = result_json(result);
   for (const char* member :
-       {"began_utc", "ended_utc", "software", "analysis", "dds", "sample_clock"}) {
+       {"began_utc", "ended_utc", "software", "analysis", "dds", "sample_clock", "check"}) {
     json.erase(member);
   }
   if (is_same_version) {

@@ -43,9 +43,7 @@ void ResultKeeper::set_check(DailyCheck check) {
 
 // REQUIRES: writing_ is locked.
 Expected<void> ResultKeeper::write(const RunOutcome& state) {
-  nlohmann::ordered_json json = result_json(state);
-  add_check(check_, json);
-  return write_json(path_, json);
+  return write_json(path_, result_json(state, check_));
 }
 
 Expected<void> ResultKeeper::begin(RunOutcome planned) {

@@ -7,10 +7,9 @@
 //               shows long before it does in single points
 //   centre, s   mean of the first n results, and how much single results scatter among them
 //   limits      centre +- k s sqrt(1 + 1/n); k of Student's t with n - 1 degrees of freedom, so
-//   that
-//               all lines together leave the warning limit as rarely as one normal value leaves 2 s
-//               (4.55 %), and the action limit as rarely as 3 s (0.27 %): few results and many
-//               points do not alarm for nothing
+//               that all lines together leave the warning limit as rarely as one normal value
+//               leaves 2 s (4.55 %), and the action limit as rarely as 3 s (0.27 %): few results
+//               and many points do not alarm for nothing
 //   given       limits of |H| and arg H that somebody states take their place, warnings at two
 //               thirds; there are no lines of whole channels then
 //

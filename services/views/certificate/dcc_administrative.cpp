@@ -131,7 +131,7 @@ void add_statements(XmlElement parent, const CertificateContents& contents) {
            "The results relate only to the items calibrated, as they were received and in the "
            "conditions stated.");
   add_conformity_statements(list, contents.conformity);
-  if (const auto check = daily_check_of(contents.result.file)) {
+  if (const auto& check = contents.result.check) {
     add_text(list.add("dcc:statement").attribute("refType", "dyncal_dailyCheck"), "dcc:declaration",
              sentence_of(*check));
   }

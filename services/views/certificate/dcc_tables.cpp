@@ -1,10 +1,13 @@
 #include "services/views/certificate/dcc_tables.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <sstream>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+
+#include "services/contract/unit.hpp"
 
 namespace dyncal::inline views {
 namespace {
@@ -180,20 +183,33 @@ DccTable table_of(const XmlElement& list) {
   for (const XmlElement& data : list.descendants("metaData", dcc_namespace)) {
     add_meta_data(data, table);
   }
-  if (table.level && table.level->values.size() != table.frequency.values.size()) {
-    table.level.reset();
+  if (table.level && (table.level->values.size() != table.frequency.values.size() ||
+                      !is_acceleration(table.level->unit))) {
+    table.level.reset(); // it is no more than said
   }
   return table;
 }
 
+bool are_numbers(const Texts& texts) {
+  return std::ranges::all_of(texts, [](const std::string& text) {
+    double value = 0.0;
+    const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return status == std::errc{} && end == text.data() + text.size();
+  });
+}
+
+// Of the same length everywhere, and numbers.
 bool is_whole(const DccTable& table) {
   const std::size_t count = table.frequency.values.size();
   const auto fits = [&](const DccColumn& column) {
-    return column.values.size() == count &&
+    return column.values.size() == count && are_numbers(column.values) &&
            (column.uncertainties.empty() || column.uncertainties.size() == count) &&
-           (column.coverage_factors.empty() || column.coverage_factors.size() == count);
+           are_numbers(column.uncertainties) &&
+           (column.coverage_factors.empty() || column.coverage_factors.size() == count) &&
+           are_numbers(column.coverage_factors);
   };
-  return count > 0 && fits(table.magnitude) && (!table.phase || fits(*table.phase));
+  return count > 0 && fits(table.frequency) && fits(table.magnitude) &&
+         (!table.phase || fits(*table.phase)) && (!table.level || fits(*table.level));
 }
 
 } // namespace

@@ -110,6 +110,7 @@ std::string sensitivity_unit(const std::string& d_si) {
 Expected<DccTable> chosen_table(const std::vector<DccTable>& tables, const std::string& name,
                                 const std::string& file) {
   std::vector<std::string> names;
+  names.reserve(tables.size());
   for (const DccTable& table : tables) {
     names.push_back(fmt::format("\"{}\"", table.name));
   }
@@ -127,6 +128,21 @@ Expected<DccTable> chosen_table(const std::vector<DccTable>& tables, const std::
                         file)
           : fmt::format("{}: has several tables; choose one with --table: {}", file,
                         fmt::join(names, ", ")));
+}
+
+// What a column is taken for by its type may be in another unit: 1 kHz is not 1 Hz.
+Expected<void> check_units(const DccTable& table, const std::string& file) {
+  const bool is_angle =
+      !table.phase || table.phase->unit == R"(\degree)" || table.phase->unit == R"(\radian)";
+  if (table.frequency.unit == R"(\hertz)" && is_angle) {
+    return {};
+  }
+  return fail(ErrorCode::bad_file,
+              fmt::format("{}: {} is in '{}', and must be in {}; write the values into a reference "
+                          "file by hand",
+                          file, is_angle ? "frequency" : "the phase",
+                          is_angle ? table.frequency.unit : table.phase->unit,
+                          is_angle ? R"(\hertz)" : R"(\degree or \radian)"));
 }
 
 struct Rows {
@@ -252,6 +268,7 @@ Expected<std::string> reference_file_of(const std::filesystem::path& certificate
                                                  certificate.string()));
   }
   DYNCAL_TRY(const auto chosen, chosen_table(response_tables(root), table, certificate.string()));
+  DYNCAL_TRY(check_units(chosen, certificate.string()));
   const std::string unit = sensitivity_unit(chosen.magnitude.unit);
   if (unit.empty()) {
     return fail(ErrorCode::bad_file,
@@ -264,7 +281,10 @@ Expected<std::string> reference_file_of(const std::filesystem::path& certificate
     notes.push_back(toml_string(comment));
   }
   return head_of(device_of(root), certificate.filename().string()) +
-         fmt::format("\n[response]\nunit = {}\n", toml_string(unit)) +
+         fmt::format(
+             "\n[response]\nunit = {}\n# Of the output against what is measured (ISO 2041); "
+             "if the certificate means a delay: \"lag\".\nphase_sign = \"lead\"\n",
+             toml_string(unit)) +
          (notes.empty() ? "" : fmt::format("notes = [{}]\n", fmt::join(notes, ", "))) +
          fmt::format("rows = \"\"\"\n{}\"\"\"\n", rows_of(chosen)) + tail_of(unit);
 }

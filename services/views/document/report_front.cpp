@@ -7,6 +7,7 @@
 
 #include "services/views/conformity/stated_conformity.hpp"
 #include "services/views/document/html.hpp"
+#include "services/views/objections/subject_objections.hpp"
 #include "services/views/report/daily_check.hpp"
 #include "services/views/report/stated_value.hpp"
 
@@ -142,11 +143,7 @@ std::string period(const StoredResult& result) {
 } // namespace
 
 const ReferenceStandard* reference_of(const ReportContents& contents) {
-  if (contents.result.corrections && contents.result.corrections->reference_standard) {
-    return &*contents.result.corrections->reference_standard;
-  }
-  return contents.laboratory && contents.laboratory->reference ? &*contents.laboratory->reference
-                                                               : nullptr;
+  return reference_of(contents.result, contents.laboratory ? &*contents.laboratory : nullptr);
 }
 
 std::string title_of(const ReportContents& contents) {
@@ -249,8 +246,7 @@ std::string summary(const ReportContents& contents) {
                                       result.planned_steps));
   table.add("Method", method_text(contents));
   table.add("Reference", reference_text(contents));
-  const auto check = daily_check_of(result.file);
-  table.add("Check", check ? sentence_of(*check) : "");
+  table.add("Check", result.check ? sentence_of(*result.check) : "");
   table.add("Conformity", contents.conformity ? verdict_text(*contents.conformity) : "");
   table.add("Phase", sign_convention());
   table.add("Uncertainty", "JCGM 100:2008 (GUM). " + rounding_rule());

@@ -50,16 +50,9 @@ std::string flag_marks(const StoredResult& result, const std::vector<std::string
 
 // The mean of what the reference measured; in brackets what was planned where it measured nothing.
 std::string level_cell(const StoredResult& result, const StoredValue& value) {
-  double sum = 0.0;
-  int count = 0;
-  for (const StoredPoint& point : result.points_of(value.channel)) {
-    if (point.valid && point.frequency_text_hz == value.frequency_text_hz &&
-        point.level_m_s2 == value.level_m_s2 && std::isfinite(point.measured_level_m_s2)) {
-      sum += point.measured_level_m_s2;
-      ++count;
-    }
-  }
-  return count > 0 ? fmt::format("{:.4g}", sum / count) : fmt::format("({:g})", value.level_m_s2);
+  const double level_m_s2 = measured_level_m_s2(result, value);
+  return std::isfinite(level_m_s2) ? fmt::format("{:.4g}", level_m_s2)
+                                   : fmt::format("({:g})", value.level_m_s2);
 }
 
 // U in per cent of the value.

@@ -11,6 +11,7 @@
 namespace dyncal::inline views {
 namespace {
 
+// In D-SI or as a quotient of short forms, an angle is named alike.
 bool is_of_another_kind(const std::vector<StoredValue>& values) {
   return std::ranges::any_of(
       values, [](const StoredValue& value) { return value.unit.find("rad") != std::string::npos; });
@@ -46,7 +47,7 @@ std::vector<std::string> objections_to_axes(const StoredResult& result,
     }
     axes.insert(axis);
     const std::string& excited = values.front().excited_axis;
-    is_stated = is_stated && !excited.empty();
+    is_stated = is_stated && is_of_x_y_z(excited);
     if (lies_across(axis, excited) && lacks_transverse_motion(result, channel)) {
       objections.push_back(fmt::format(
           "{} lies across the excited axis {}, and its uncertainty lacks what the exciter moves "
@@ -57,7 +58,7 @@ std::vector<std::string> objections_to_axes(const StoredResult& result,
   }
   if (!is_stated && axes.size() > 1) {
     objections.push_back(fmt::format("channels along {} are named, and the excited axis is not "
-                                     "stated (excitation.axis in the bench file)",
+                                     "stated as one of x, y, z (excitation.axis in the bench file)",
                                      fmt::join(axes, ", ")));
   }
   return objections;

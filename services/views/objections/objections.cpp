@@ -140,8 +140,7 @@ std::vector<std::string> objections_to(const StoredResult& result,
   if (!result.problem.empty()) {
     objections.push_back("the run ended early: " + result.problem);
   }
-  if (const auto demanded = check_settings_of(result.recipe);
-      demanded && !daily_check_of(result.file)) {
+  if (const auto demanded = check_settings_of(result.recipe); demanded && !result.check) {
     objections.push_back(fmt::format("the bench demands a check with sensor '{}', and the result "
                                      "says neither when it was nor why it was left out",
                                      demanded->sensor));

@@ -164,30 +164,37 @@ tl::unexpected<Error> missing(const LaboratoryFile& file, const std::string& wha
 
 } // namespace
 
+const ReferenceStandard* reference_of(const StoredResult& result,
+                                      const LaboratoryFile* laboratory) {
+  if (result.corrections && result.corrections->reference_standard) {
+    return &*result.corrections->reference_standard;
+  }
+  return laboratory != nullptr && laboratory->reference ? &*laboratory->reference : nullptr;
+}
+
 Expected<ReferenceStandard> documented_reference(const StoredResult& result,
                                                  const LaboratoryFile& laboratory) {
   if (laboratory.persons.empty()) {
     return missing(laboratory, "table [[person]]", "a certificate names who is responsible for it");
   }
-  const bool is_of_run = result.corrections && result.corrections->reference_standard;
-  if (!is_of_run && !laboratory.reference) {
+  const ReferenceStandard* const reference = reference_of(result, &laboratory);
+  if (reference == nullptr) {
     return missing(laboratory, "table [reference]",
                    "a certificate states what its values are traceable to; better, the bench names "
                    "a reference file (corrections.reference)");
   }
-  ReferenceStandard reference =
-      is_of_run ? *result.corrections->reference_standard : *laboratory.reference;
-  if (reference.standard.empty()) {
-    const char* const meaning = "ISO 16063-11 for a laser interferometer, ISO 16063-21 for a "
-                                "reference transducer";
-    return is_of_run ? fail(ErrorCode::bad_file,
-                            fmt::format("{}: key 'reference.standard' is missing: {}; state it and "
-                                        "evaluate the run anew",
-                                        reference.file, meaning))
-                     : Expected<ReferenceStandard>(
-                           missing(laboratory, "key 'reference.standard'", meaning));
+  if (!reference->standard.empty()) {
+    return *reference;
   }
-  return reference;
+  const std::string meaning = "ISO 16063-11 for a laser interferometer, ISO 16063-21 for a "
+                              "reference transducer";
+  if (reference->file.empty()) {
+    return missing(laboratory, "key 'reference.standard'", meaning);
+  }
+  return fail(ErrorCode::bad_file,
+              fmt::format("{}: key 'reference.standard' is missing: {}; state it and evaluate the "
+                          "run anew",
+                          reference->file, meaning));
 }
 
 std::vector<std::string> objections_to_subject(const DocumentSubject& subject) {

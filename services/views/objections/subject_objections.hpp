@@ -30,6 +30,10 @@ struct DocumentSubject {
   std::string ended;
 };
 
+// What the results are traceable to: as the run states it, else the laboratory file; null: neither.
+[[nodiscard]] const ReferenceStandard* reference_of(const StoredResult& result,
+                                                    const LaboratoryFile* laboratory);
+
 // Fails (bad_file) naming what is lacking of what every document states: who is responsible, what
 // the results are traceable to, and by which standard.
 [[nodiscard]] Expected<ReferenceStandard> documented_reference(const StoredResult& result,

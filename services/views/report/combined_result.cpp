@@ -45,12 +45,31 @@ Expected<void> check_same_sensor(const StoredResult& one, const StoredResult& ot
   return {};
 }
 
+// What the values are traceable to, and what the ADC was corrected by.
+std::string certificates_of(const StoredResult& run) {
+  std::string text;
+  if (run.corrections && run.corrections->reference_standard) {
+    for (const CalibratedDevice& device : run.corrections->reference_standard->devices) {
+      text += fmt::format("{} {} {}, ", device.name, device.serial, device.certificate);
+    }
+  }
+  if (run.corrections && run.corrections->adc_file) {
+    text += "ADC " + run.corrections->adc_file->sha256;
+  }
+  return text.empty() ? "none stated" : text;
+}
+
 Expected<void> check_same_measurement(const StoredResult& one, const StoredResult& other) {
   if (one.sha256 == other.sha256 || one.run == other.run) {
     return refuse(one, other, "it is one run");
   }
   if (one.method != other.method) {
     return refuse(one, other, "their methods differ");
+  }
+  if (certificates_of(one) != certificates_of(other)) {
+    return refuse(one, other,
+                  fmt::format("their references differ ({}; {}), and a document names one",
+                              certificates_of(one), certificates_of(other)));
   }
   for (const StoredValue& value : one.values) {
     for (const StoredValue& same : other.values) {
@@ -126,7 +145,11 @@ StoredResult head_of(const std::vector<StoredResult>& runs, const std::string& n
   result.sources = first.sources;
   result.roles = first.roles;
   result.corrections = first.corrections;
+  result.check = first.check;
   for (const StoredResult& run : runs) {
+    if (run.check && !run.check->left_out.empty()) {
+      result.check = run.check; // what documents must say
+    }
     result.began_utc = std::min(result.began_utc, run.began_utc);
     result.ended_utc = std::max(result.ended_utc, run.ended_utc);
     result.combined.push_back({run.bench, run.run, run.sha256});

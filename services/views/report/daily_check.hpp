@@ -1,13 +1,9 @@
 // The check of the bench that a run rests on, where the bench demands one: the newest result of the
 // check sensor, or why the run was made without. Who conducts the run states it; it stands in the
-// result file beside what was evaluated, as "check" (result.schema.json). Any thread.
+// result file beside what was evaluated, as "check" (result.schema.json). Plain data; any thread.
 #pragma once
 
-#include <filesystem>
-#include <optional>
 #include <string>
-
-#include <nlohmann/json_fwd.hpp>
 
 namespace dyncal::inline views {
 
@@ -21,11 +17,5 @@ struct DailyCheck {
 
 // For tables and documents.
 [[nodiscard]] std::string sentence_of(const DailyCheck& check);
-
-// Into the JSON of a result; nothing of nothing.
-void add_check(const std::optional<DailyCheck>& check, nlohmann::ordered_json& result);
-
-// Of a result file that read_result() has taken; nothing: it does not say.
-[[nodiscard]] std::optional<DailyCheck> daily_check_of(const std::filesystem::path& result_file);
 
 } // namespace dyncal::inline views

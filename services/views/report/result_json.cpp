@@ -128,8 +128,11 @@ nlohmann::ordered_json result_json(const StoredResult& result) {
   return json;
 }
 
-nlohmann::ordered_json result_json(const RunOutcome& outcome) {
-  return result_json(stored_result_of(outcome));
+nlohmann::ordered_json result_json(const RunOutcome& outcome,
+                                   const std::optional<DailyCheck>& check) {
+  StoredResult result = stored_result_of(outcome);
+  result.check = check;
+  return result_json(result);
 }
 
 Expected<void> write_json(const std::filesystem::path& path, const nlohmann::ordered_json& json) {

@@ -23,7 +23,9 @@ namespace dyncal::inline views {
 [[nodiscard]] StoredResult stored_result_of(const RunOutcome& outcome);
 
 [[nodiscard]] nlohmann::ordered_json result_json(const StoredResult& result);
-[[nodiscard]] nlohmann::ordered_json result_json(const RunOutcome& outcome);
+// `check`: that of the bench, which no evaluation knows.
+[[nodiscard]] nlohmann::ordered_json result_json(const RunOutcome& outcome,
+                                                 const std::optional<DailyCheck>& check = {});
 
 // Fails (bad_file) when the file cannot be written.
 [[nodiscard]] Expected<void> write_json(const std::filesystem::path& path,

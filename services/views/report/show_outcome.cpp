@@ -65,8 +65,7 @@ std::filesystem::path free_name(const std::filesystem::path& folder, const std::
 // Results that took hours are not lost with a full disk.
 Expected<void> write_results(const RunOutcome& outcome, const std::filesystem::path& path,
                              const std::optional<DailyCheck>& check) {
-  nlohmann::ordered_json json = result_json(outcome);
-  add_check(check, json);
+  const nlohmann::ordered_json json = result_json(outcome, check);
   auto written = write_json(path, json);
   if (written) {
     return written;

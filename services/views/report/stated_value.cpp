@@ -85,6 +85,19 @@ std::string level_range(const std::vector<StoredPoint>& points) {
   return range_of(points, 3, [](const StoredPoint& point) { return point.measured_level_m_s2; });
 }
 
+double measured_level_m_s2(const StoredResult& result, const StoredValue& value) {
+  double sum_m_s2 = 0.0;
+  int count = 0;
+  for (const StoredPoint& point : result.points) {
+    if (point.valid && point.channel == value.channel && point.frequency_hz == value.frequency_hz &&
+        point.level_m_s2 == value.level_m_s2 && std::isfinite(point.measured_level_m_s2)) {
+      sum_m_s2 += point.measured_level_m_s2;
+      ++count;
+    }
+  }
+  return count > 0 ? sum_m_s2 / count : nan("");
+}
+
 std::vector<std::string> responding_channels(const StoredResult& result) {
   std::vector<std::string> responding;
   for (const StoredChannel& channel : result.channels) {

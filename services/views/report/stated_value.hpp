@@ -38,6 +38,8 @@ struct StatedValue {
 // excitation, in m/s^2: "27.3 to 28.9"; empty where nothing is known.
 [[nodiscard]] std::string temperature_range(const std::vector<StoredPoint>& points);
 [[nodiscard]] std::string level_range(const std::vector<StoredPoint>& points);
+// What the reference measured of it at a value, the mean of the repetitions; NaN: not known.
+[[nodiscard]] double measured_level_m_s2(const StoredResult& result, const StoredValue& value);
 
 // Channels that respond to the excitation.
 [[nodiscard]] std::vector<std::string> responding_channels(const StoredResult& result);

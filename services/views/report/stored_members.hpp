@@ -200,6 +200,14 @@ void members(auto& visit, Either<StoredCorrections> auto& one) {
   }
 }
 
+void members(auto& visit, Either<DailyCheck> auto& one) {
+  visit("sensor", one.sensor);
+  visit("run", one.run);
+  visit("began_utc", one.began_utc);
+  visit("state", one.state);
+  visit("left_out", one.left_out);
+}
+
 void members(auto& visit, Either<CombinedRun> auto& one) {
   visit("bench", one.bench);
   visit("run", one.run);
@@ -237,6 +245,7 @@ void members(auto& visit, Either<StoredResult> auto& one) {
   visit("points", one.points);
   visit.unless_empty("recipe", one.recipe);
   visit.unless_empty("combined", one.combined);
+  visit("check", one.check);
 }
 
 } // namespace dyncal::inline views

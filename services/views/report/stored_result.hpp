@@ -20,6 +20,7 @@
 #include "services/base/byte_count.hpp"
 #include "services/base/error.hpp"
 #include "services/evaluation/result/run_outcome.hpp"
+#include "services/views/report/daily_check.hpp"
 #include "services/views/report/expanded_uncertainty.hpp"
 
 namespace dyncal::inline views {
@@ -165,6 +166,7 @@ struct StoredResult {
   std::vector<StoredPoint> points;
   std::string recipe;                // text of the bench file
   std::vector<CombinedRun> combined; // the mountings that it combines; empty: it is of one run
+  std::optional<DailyCheck> check;   // of the bench; nothing: the run does not say
   std::string content_sha256; // without what another evaluation of the same samples may change
 
   [[nodiscard]] std::vector<StoredValue> values_of(const std::string& channel) const;

@@ -5,23 +5,14 @@
 
 #include <fmt/format.h>
 
+#include "services/base/csv_field.hpp"
+
 namespace dyncal::inline views {
 namespace {
 
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",;\"\n\r") == std::string::npos) {
-    return text;
-  }
-  std::string quoted = "\"";
-  for (const char letter : text) {
-    quoted += letter == '"' ? "\"\"" : std::string(1, letter);
-  }
-  return quoted + '"';
-}
-
 std::string cell_text(const TableCell& cell, CsvForm form) {
   if (const auto* text = std::get_if<std::string>(&cell)) {
-    return quoted(*text);
+    return csv_field(*text);
   }
   const double value = std::get<NumberCell>(cell).value;
   if (!std::isfinite(value)) {

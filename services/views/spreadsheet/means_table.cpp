@@ -6,23 +6,10 @@
 #include <fmt/ranges.h>
 
 #include "services/contract/unit.hpp"
+#include "services/views/report/stated_value.hpp"
 
 namespace dyncal::inline views {
 namespace {
-
-// The mean of what the reference measured of the excitation.
-double measured_level(const StoredResult& result, const StoredValue& value) {
-  double sum = 0.0;
-  int count = 0;
-  for (const StoredPoint& point : result.points) {
-    if (point.valid && point.channel == value.channel && point.frequency_hz == value.frequency_hz &&
-        point.level_m_s2 == value.level_m_s2 && std::isfinite(point.measured_level_m_s2)) {
-      sum += point.measured_level_m_s2;
-      ++count;
-    }
-  }
-  return count > 0 ? sum / count : StepResult::nan_value;
-}
 
 // So that U has two significant digits.
 int decimals_of(double expanded) {
@@ -56,7 +43,7 @@ MeansTable means_table(const StoredResult& result) {
     std::vector<TableCell> row{value.channel,
                                NumberCell{value.frequency_hz},
                                NumberCell{value.level_m_s2},
-                               NumberCell{measured_level(result, value)},
+                               NumberCell{measured_level_m_s2(result, value)},
                                value.excited_axis,
                                short_form(value.unit)};
     add_quantity(value.magnitude, value.of_magnitude, 1.0, row);

@@ -74,6 +74,19 @@ TEST(MeasuringChain, HoldsEveryGainAgainstG) {
   EXPECT_NEAR(points->at(0).magnitude, 0.13017 / 0.1305, 1e-12);
 }
 
+// A transducer with a voltage may have an amplifier as well.
+TEST(MeasuringChain, TakesTheGainOfAVoltage) {
+  MeasuringChain chain = charge_chain();
+  chain.transducer.unit = *parse_sensitivity_unit("mV/(m/s^2)");
+  chain.amplifier =
+      StatedResponse{*parse_sensitivity_unit("V/V"),
+                     {point(1.0, 10.0, 0.0, 1e-3, 1e-3), point(5000.0, 10.0, 0.0, 1e-3, 1e-3)}};
+  chain.channel_sensitivity = 1.305;
+  const auto points = response_of(chain);
+  ASSERT_TRUE(points) << points.error().message;
+  EXPECT_NEAR(points->front().magnitude, 0.13017 * 10.0 / 1.305, 1e-12);
+}
+
 TEST(MeasuringChain, RefusesWhatDoesNotFit) {
   const auto problem_of = [](const MeasuringChain& chain) {
     const auto points = response_of(chain);

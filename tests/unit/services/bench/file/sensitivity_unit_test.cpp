@@ -25,6 +25,10 @@ TEST(SensitivityUnit, KnowsWhatCertificatesWrite) {
     EXPECT_FALSE(unit->is_one());
   }
   EXPECT_TRUE(parse_sensitivity_unit("1").value().is_one());
+  const auto gain = parse_sensitivity_unit("mV/V");
+  ASSERT_TRUE(gain);
+  EXPECT_DOUBLE_EQ(gain->factor, 1e-3);
+  EXPECT_FALSE(gain->is_one());
   for (const char* const text : {"", "pC", "m/s^2", "pC/", "/g", "bananas/g", "V/V/V"}) {
     EXPECT_FALSE(parse_sensitivity_unit(text)) << text;
   }

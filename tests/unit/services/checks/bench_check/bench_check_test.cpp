@@ -427,6 +427,40 @@ TEST_F(BenchCheckFiles, CorrectionsThatDoNotCoverTheExcitation) {
               HasSubstr("key 'corrections.reference' names reference.csv, SHA-256"));
 }
 
+TEST_F(BenchCheckFiles, PhasesThatLookLikeDegrees) {
+  const std::string text = bench + "[corrections]\nreference = \"reference.csv\"\n";
+  const auto write_phase = [this](const std::string& column, const std::string& phase) {
+    folder.write("reference.csv", "frequency_hz,magnitude," + column +
+                                      ",u_magnitude_rel,u_phase_rad\n10,1," + phase +
+                                      ",1e-3,1e-3\n100,1," + phase + ",1e-3,1e-3\n");
+  };
+  write_phase("phase_rad", "-0.46");
+  EXPECT_THAT(all_of(of(check(text), Severity::warning)), HasSubstr("is it given in degrees?"));
+  for (const auto& [column, phase] : {std::pair("phase_rad", "-0.05"),    // of a filter
+                                      std::pair("phase_rad", "3.12"),     // inverted
+                                      std::pair("phase_deg", "-26.0")}) { // stated so
+    write_phase(column, phase);
+    EXPECT_THAT(all_of(of(check(text), Severity::warning)),
+                testing::Not(HasSubstr("is it given in degrees?")))
+        << column << phase;
+  }
+}
+
+TEST_F(BenchCheckFiles, TransverseMotionThatDoesNotCoverTheExcitation) {
+  const auto with_motion = [this](const std::string& ratio) {
+    return with(bench, "[excitation]\n",
+                "[excitation]\naxis = \"z\"\ntransverse_motion = { " + ratio +
+                    ", source = \"E-1\" }\n");
+  };
+  EXPECT_THAT(all_of(check(with_motion("ratio = [0.01, 0.02], frequencies_hz = [20, 100]"))),
+              HasSubstr("holds \"10\", which excitation.transverse_motion does not cover"));
+  for (const char* const covering :
+       {"ratio = 0.02", "ratio = [0.01, 0.02], frequencies_hz = [5, 1000]"}) {
+    EXPECT_THAT(all_of(check(with_motion(covering))),
+                testing::Not(HasSubstr("transverse_motion does not cover")));
+  }
+}
+
 TEST_F(BenchCheckFiles, AbsoluteTimeNeedsStampsOfUtc) {
   std::string text = with(bench, "kind = \"sample-timestamping\"", "kind = \"absolute-time\"");
   text = with(text, "sync_acs = \"acs/sync\"\nsync_dau = \"dau/sync\"\n", "");

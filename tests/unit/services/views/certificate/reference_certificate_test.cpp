@@ -11,7 +11,6 @@
 namespace dyncal::inline views {
 namespace {
 
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 // A certificate with one table, in the elements of a DCC; `lists` are its quantities.
@@ -114,6 +113,26 @@ TEST_F(ReferenceCertificateTest, NamesWhatItCannotUse) {
   EXPECT_THAT(import(certificate_with(frequencies +
                                       list_of("vibration_magnitude", "1 2", R"(\kelvin)", ""))),
               HasSubstr("'\\kelvin', is not that of a sensitivity"));
+  for (const char* const unit : {R"(\kilo\hertz)", R"(\milli\hertz)", R"(\second)"}) {
+    EXPECT_THAT(
+        import(certificate_with(list_of("vibration_frequency", "1 2", unit, "") + magnitudes)),
+        HasSubstr("frequency is in"))
+        << unit;
+  }
+  for (const char* const unit : {R"(\milli\radian)", R"(\one)", R"(\second)"}) {
+    EXPECT_THAT(import(certificate_with(frequencies + magnitudes +
+                                        list_of("vibration_phase", "1 2", unit, ""))),
+                HasSubstr("the phase is in"))
+        << unit;
+  }
+  EXPECT_THAT(
+      import(certificate_with(frequencies + list_of("vibration_magnitude", "1 x", voltage, ""))),
+      HasSubstr("has no table of magnitudes"));
+  // A level in another unit is not one of the table; without it the values are there.
+  EXPECT_THAT(import(certificate_with(
+                  frequencies + magnitudes +
+                  list_of("vibration_accelerationAmplitude", "1 1", R"(\milli\volt)", ""))),
+              HasSubstr("frequency_hz, magnitude\n10, 1\n"));
   const std::string twice =
       certificate_with(frequencies + magnitudes +
                        "</dcc:list><dcc:list><dcc:name><dcc:content>Second</dcc:content>"

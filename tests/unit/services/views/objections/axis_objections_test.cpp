@@ -44,7 +44,11 @@ TEST(AxisObjections, NamesAChannelAcrossTheExcitedAxis) {
   EXPECT_THAT(objections_to_axes(result, both), ElementsAre(HasSubstr("dau/acceleration_x")));
 }
 
+// A name that says nothing of the channels is as good as none.
 TEST(AxisObjections, AsksForTheExcitedAxisWhereChannelsHaveSeveral) {
+  EXPECT_THAT(objections_to_axes(result_along("vertical"), both),
+              ElementsAre(HasSubstr("channels along x, z are named")));
+  EXPECT_THAT(objections_to_axes(result_along("vertical"), {"dau/acceleration_z"}), IsEmpty());
   const StoredResult result = result_along("");
   EXPECT_THAT(objections_to_axes(result, both),
               ElementsAre(HasSubstr("channels along x, z are named")));

@@ -1,5 +1,4 @@
 #include "services/views/objections/objections.hpp"
-#include "tests/temporary_folder.hpp"
 
 #include <filesystem>
 #include <fstream>
@@ -83,9 +82,8 @@ TEST(Objections, ToAResultWithoutTheCheckThatItsBenchDemands) {
   result.recipe = "bench = \"b\"\n[check]\nsensor = \"SN-1\"\nmax_age_h = 24\n";
   EXPECT_THAT(objections_to(result, {channel}),
               ElementsAre(HasSubstr("demands a check with sensor 'SN-1'")));
-  const tests::TemporaryFolder folder;
-  result.file = folder.path() / "result.json";
-  std::ofstream(result.file) << R"({"check": {"sensor": "SN-1", "left_out": "it is away"}})";
+  result.check = DailyCheck{
+      .sensor = "SN-1", .run = {}, .began_utc = {}, .state = {}, .left_out = "it is away"};
   EXPECT_THAT(objections_to(result, {channel}), IsEmpty());
 }
 

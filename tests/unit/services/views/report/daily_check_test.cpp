@@ -24,29 +24,23 @@ const DailyCheck example{.sensor = "SN-1",
 TEST(DailyCheck, StandsInTheResultFile) {
   const tests::TemporaryFolder folder;
   const auto file = folder.path() / "result.json";
-  nlohmann::ordered_json json = result_json(tests::example_outcome());
-  std::ofstream(file) << json;
+  std::ofstream(file) << result_json(tests::example_outcome());
   const auto without = read_result(file);
   ASSERT_TRUE(without) << without.error().message;
-  EXPECT_FALSE(daily_check_of(file));
-  add_check(std::nullopt, json);
-  EXPECT_FALSE(json.contains("check"));
-  add_check(example, json);
+  EXPECT_FALSE(without->check);
+  nlohmann::ordered_json json = result_json(tests::example_outcome(), example);
   std::ofstream(file) << json;
   const auto with = read_result(file); // by its schema
   ASSERT_TRUE(with) << with.error().message;
   EXPECT_EQ(with->content_sha256, without->content_sha256);
-  const auto check = daily_check_of(file);
-  ASSERT_TRUE(check);
-  EXPECT_EQ(sentence_of(*check), "Daily check of the bench with sensor SN-1, run monday of "
-                                 "2026-11-23T07:00:00.000000000Z: in control");
+  ASSERT_TRUE(with->check);
+  EXPECT_EQ(sentence_of(*with->check), "Daily check of the bench with sensor SN-1, run monday of "
+                                       "2026-11-23T07:00:00.000000000Z: in control");
   json["check"].erase("left_out");
   std::ofstream(file) << json;
   const auto changed = read_result(file);
   ASSERT_FALSE(changed);
   EXPECT_THAT(changed.error().message, HasSubstr("check"));
-  std::filesystem::remove(file);
-  EXPECT_FALSE(daily_check_of(file));
 }
 
 TEST(DailyCheck, SaysWhyThereWasNone) {
