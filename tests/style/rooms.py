@@ -77,7 +77,7 @@ WINGS = {
         ["report"],
         ["lab_file", "live", "model"],
         ["objections", "spreadsheet"],
-        ["conformity"],
+        ["conformity", "linearity"],
         ["certificate", "document"],
     ],
 }

@@ -75,6 +75,8 @@ struct GeneratorSettings {
   std::optional<double> level_tolerance_rel; // closed loop on the reference's amplitude
   std::optional<double> maximum_voltage_v;   // zero to peak
   std::optional<double> maximum_level_m_s2;
+  std::optional<double> maximum_velocity_m_s;    // amplitude, as the next
+  std::optional<double> maximum_displacement_mm; // half the stroke
 };
 
 struct MethodSettings {

@@ -8,6 +8,7 @@
 
 #include "analysis/base/frequency.hpp"
 #include "analysis/base/preferred_frequencies.hpp"
+#include "services/bench/file/excitation_levels.hpp"
 
 namespace dyncal::inline bench {
 namespace {
@@ -18,28 +19,6 @@ constexpr std::size_t max_axis_bytes = 16;
 constexpr double max_step_s = 86'400.0; // settling or duration of one step: a day
 // What one message of the plan carries, and more than anybody waits for.
 constexpr std::size_t max_steps = 10'000;
-
-void spread_levels(TomlTable& table, ExcitationSettings& excitation) {
-  const std::size_t frequencies = excitation.frequencies_hz.size();
-  if (excitation.levels_m_s2.size() == 1) {
-    if (excitation.levels_m_s2.front() <= 0.0) {
-      table.refuse("level", "must be positive, in m/s^2");
-    }
-    excitation.levels_m_s2.resize(frequencies, excitation.levels_m_s2.front());
-  }
-  if (table.refused("frequencies_hz") || table.refused("level")) {
-    return;
-  }
-  if (excitation.levels_m_s2.size() != frequencies) {
-    table.refuse("level", fmt::format("lists {} levels for {} frequencies",
-                                      excitation.levels_m_s2.size(), frequencies));
-  }
-  for (std::size_t i = 0; i < excitation.levels_m_s2.size(); ++i) {
-    if (excitation.levels_m_s2[i] <= 0.0) {
-      table.refuse_entry("level", i, "must be positive, in m/s^2");
-    }
-  }
-}
 
 void read_axis(TomlTable& table, ExcitationSettings& excitation) {
   excitation.axis = table.text("axis");
@@ -144,8 +123,7 @@ ExcitationSettings read_excitation(TomlTable table) {
                          fmt::format("holds \"{}\", which is not a positive number in Hz", text));
     }
   }
-  excitation.levels_m_s2 = table.numbers("level", "m/s^2");
-  spread_levels(table, excitation);
+  excitation.levels_m_s2 = read_levels(table, excitation.frequencies_hz);
   excitation.level_deviation_rel =
       table.optional_number("level_deviation_rel", "parts of the level");
   if (excitation.level_deviation_rel && *excitation.level_deviation_rel <= 0.0) {

@@ -39,6 +39,8 @@ GeneratorSettings read_generator(TomlTable table, const ExcitationSettings& exci
   read_limit("level_tolerance_rel", "parts of the level", generator.level_tolerance_rel);
   read_limit("maximum_voltage_v", "V, zero to peak", generator.maximum_voltage_v);
   read_limit("maximum_level_m_s2", "m/s^2", generator.maximum_level_m_s2);
+  read_limit("maximum_velocity_m_s", "m/s", generator.maximum_velocity_m_s);
+  read_limit("maximum_displacement_mm", "mm", generator.maximum_displacement_mm);
   if (generator.level_tolerance_rel && !is_instrument(generator.driver)) {
     table.refuse(
         "level_tolerance_rel",

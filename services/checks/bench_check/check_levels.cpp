@@ -1,9 +1,11 @@
 #include <algorithm>
-#include <numbers>
+#include <map>
+#include <string_view>
 
 #include <fmt/core.h>
 
 #include "analysis/base/frequency.hpp"
+#include "analysis/base/sine_motion.hpp"
 #include "services/checks/bench_check/checks.hpp"
 
 namespace dyncal::inline checks::bench_check {
@@ -46,24 +48,59 @@ std::optional<double> voltage_v(const BenchView& view, const PlannedLevel& plann
   return planned.level_m_s2 / generator.level_per_volt;
 }
 
-void check_limits(const BenchView& view, const PlannedLevel& planned, Findings& findings) {
+struct Limit {
+  const char* key = nullptr;
+  std::optional<double> largest{};
+  double planned = 0.0; // in the same unit
+  const char* unit = nullptr;
+};
+
+std::vector<Limit> limits_of(const BenchView& view, const PlannedLevel& planned) {
   const GeneratorSettings& generator = view.bench.generator;
-  if (generator.maximum_level_m_s2 && planned.level_m_s2 > *generator.maximum_level_m_s2) {
-    findings.push_back(view.at(Severity::error, {"excitation", "level"},
-                               fmt::format("has {:g} m/s^2 at {:g} Hz, above "
-                                           "generator.maximum_level_m_s2 = {:g}",
-                                           planned.level_m_s2, planned.frequency_hz,
-                                           *generator.maximum_level_m_s2),
-                               level_entry(view, planned)));
+  const double level_m_s2 = planned.level_m_s2;
+  std::vector<Limit> limits{
+      {"maximum_level_m_s2", generator.maximum_level_m_s2, level_m_s2, "m/s^2"},
+      {"maximum_velocity_m_s", generator.maximum_velocity_m_s,
+       analysis::velocity_m_s(level_m_s2, planned.frequency_hz), "m/s"},
+      {"maximum_displacement_mm", generator.maximum_displacement_mm,
+       1e3 * analysis::displacement_m(level_m_s2, planned.frequency_hz), "mm"}};
+  if (const auto voltage = voltage_v(view, planned)) {
+    limits.push_back({"maximum_voltage_v", generator.maximum_voltage_v, *voltage, "V"});
   }
-  const auto voltage = voltage_v(view, planned);
-  if (voltage && generator.maximum_voltage_v && *voltage > *generator.maximum_voltage_v) {
-    findings.push_back(view.at(Severity::error, {"excitation", "level"},
-                               fmt::format("of {:g} m/s^2 at {:g} Hz needs {:.4g} V, above "
-                                           "generator.maximum_voltage_v = {:g}",
-                                           planned.level_m_s2, planned.frequency_hz, *voltage,
-                                           *generator.maximum_voltage_v),
-                               level_entry(view, planned)));
+  return limits;
+}
+
+Finding beyond_limit(const BenchView& view, const PlannedLevel& planned, const Limit& limit) {
+  const std::string needed =
+      limit.planned == planned.level_m_s2
+          ? fmt::format("has {:g} m/s^2 at {:g} Hz", planned.level_m_s2, planned.frequency_hz)
+          : fmt::format("of {:g} m/s^2 at {:g} Hz needs {:.4g} {}", planned.level_m_s2,
+                        planned.frequency_hz, limit.planned, limit.unit);
+  return view.at(Severity::error, {"excitation", "level"},
+                 fmt::format("{}, above generator.{} = {:g}", needed, limit.key, *limit.largest),
+                 level_entry(view, planned));
+}
+
+// Where one level holds for all frequencies, only the frequency that is farthest beyond a limit.
+void check_limits(const BenchView& view, const std::vector<PlannedLevel>& levels,
+                  Findings& findings) {
+  std::map<std::string_view, std::pair<double, Finding>> farthest;
+  for (const PlannedLevel& planned : levels) {
+    for (const Limit& limit : limits_of(view, planned)) {
+      if (!limit.largest || limit.planned <= *limit.largest) {
+        continue;
+      }
+      Finding finding = beyond_limit(view, planned, limit);
+      if (level_entry(view, planned)) {
+        findings.push_back(std::move(finding));
+      } else if (auto& [planned_most, kept] = farthest[limit.key]; limit.planned > planned_most) {
+        planned_most = limit.planned;
+        kept = std::move(finding);
+      }
+    }
+  }
+  for (auto& [key, kept] : farthest) {
+    findings.push_back(std::move(kept.second));
   }
 }
 
@@ -91,8 +128,7 @@ void check_missing_limits(const BenchView& view, Findings& findings) {
 void report_extremes(const BenchView& view, const std::vector<PlannedLevel>& levels,
                      Findings& findings) {
   const auto stroke_m = [](const PlannedLevel& planned) {
-    const double omega = 2.0 * std::numbers::pi * planned.frequency_hz;
-    return planned.level_m_s2 / (omega * omega);
+    return analysis::displacement_m(planned.level_m_s2, planned.frequency_hz);
   };
   const auto widest = std::ranges::max_element(levels, {}, stroke_m);
   const auto strongest = std::ranges::max_element(levels, {}, &PlannedLevel::level_m_s2);
@@ -114,12 +150,7 @@ Findings check_levels(const BenchView& view) {
   if (levels.empty()) {
     return findings;
   }
-  for (const PlannedLevel& planned : levels) {
-    check_limits(view, planned, findings);
-    if (!level_entry(view, planned)) {
-      break; // the same is true of all frequencies
-    }
-  }
+  check_limits(view, levels, findings);
   check_missing_limits(view, findings);
   report_extremes(view, levels, findings);
   return findings;

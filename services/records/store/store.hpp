@@ -17,9 +17,9 @@
 
 #include "services/base/error.hpp"
 #include "services/base/work_count.hpp"
-#include "services/records/store/common_part.hpp"
 #include "services/records/store/database.hpp"
 #include "services/records/store/result_record.hpp"
+#include "services/views/report/common_part.hpp"
 
 namespace dyncal::inline records {
 

@@ -38,27 +38,6 @@ bool covers(const ToleranceRow& row, const std::string& channel, double frequenc
                     row.to_level_m_s2.value_or(level_m_s2));
 }
 
-// The first flag that says that value or U may not be believed; empty: none.
-std::string doubt_about(const StoredResult& result, const StoredValue& value) {
-  std::vector<std::string> names = value.flag_names;
-  for (const StoredChannel& channel : result.channels) {
-    if (channel.channel == value.channel) {
-      names.insert(names.end(), channel.flag_names.begin(), channel.flag_names.end());
-    }
-  }
-  for (const StoredPoint& point : result.points) {
-    if (point.valid && mean_identity_of(point) == identity_of(value)) {
-      names.insert(names.end(), point.flag_names.begin(), point.flag_names.end());
-    }
-  }
-  for (const std::string& name : names) {
-    if (const FlagVerdict verdict = verdict_on(parse_flag_name(name)); verdict.forbids) {
-      return fmt::format("flag {}: {}", name, verdict.reason);
-    }
-  }
-  return "";
-}
-
 // Of that frequency, and of the same level and axis if there are several.
 const StoredValue* value_at(const std::vector<StoredValue>& values, double frequency_hz,
                             const StoredValue& like) {

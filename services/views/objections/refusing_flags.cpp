@@ -1,6 +1,12 @@
 #include "services/views/objections/refusing_flags.hpp"
 
 #include <array>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "services/evaluation/result/point_identity.hpp"
+#include "services/views/report/result_file.hpp"
 
 namespace dyncal::inline views {
 namespace {
@@ -100,6 +106,26 @@ static_assert(is_in_order(), "one row for every flag, in the order of the enum")
 FlagVerdict verdict_on(ResultFlag flag) {
   const Row& row = rows.at(static_cast<std::size_t>(flag));
   return {row.forbids, row.reason};
+}
+
+std::string doubt_about(const StoredResult& result, const StoredValue& value) {
+  std::vector<std::string> names = value.flag_names;
+  for (const StoredChannel& channel : result.channels) {
+    if (channel.channel == value.channel) {
+      names.insert(names.end(), channel.flag_names.begin(), channel.flag_names.end());
+    }
+  }
+  for (const StoredPoint& point : result.points) {
+    if (point.valid && mean_identity_of(point) == identity_of(value)) {
+      names.insert(names.end(), point.flag_names.begin(), point.flag_names.end());
+    }
+  }
+  for (const std::string& name : names) {
+    if (const FlagVerdict verdict = verdict_on(parse_flag_name(name)); verdict.forbids) {
+      return fmt::format("flag {}: {}", name, verdict.reason);
+    }
+  }
+  return "";
 }
 
 } // namespace dyncal::inline views

@@ -5,9 +5,11 @@
 // or is stated beside the value, does not. Plain functions, any thread.
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include "services/evaluation/result/result_flag.hpp"
+#include "services/views/report/stored_result.hpp"
 
 namespace dyncal::inline views {
 
@@ -17,5 +19,7 @@ struct FlagVerdict {
 };
 
 [[nodiscard]] FlagVerdict verdict_on(ResultFlag flag);
+// The first such flag of a mean, of its channel or of its repetitions, and why; empty: none.
+[[nodiscard]] std::string doubt_about(const StoredResult& result, const StoredValue& value);
 
 } // namespace dyncal::inline views

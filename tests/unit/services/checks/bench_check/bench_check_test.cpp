@@ -75,6 +75,23 @@ TEST(BenchCheck, FileWithFiveFaultsTellsFive) {
       << all_of(errors);
 }
 
+TEST(BenchCheck, StrokeAndVelocityOfTheExciterAreLimits) {
+  const std::string limits = "level_per_volt = 10.0\nmaximum_displacement_mm = 2.0\n"
+                             "maximum_velocity_m_s = 0.1";
+  const auto errors =
+      of(check_text(with(smartup_bench, "level_per_volt = 10.0", limits)), Severity::error);
+  ASSERT_EQ(errors.size(), 2U) << all_of(errors); // at 10 Hz, where both are largest
+  EXPECT_THAT(all_of(errors), HasSubstr("of 10 m/s^2 at 10 Hz needs 2.533 mm, above "
+                                        "generator.maximum_displacement_mm = 2"));
+  EXPECT_THAT(all_of(errors), HasSubstr("of 10 m/s^2 at 10 Hz needs 0.1592 m/s, above "
+                                        "generator.maximum_velocity_m_s = 0.1"));
+  const std::string within =
+      with(with(smartup_bench, "level_per_volt = 10.0", limits), "level = 10.0",
+           "level = 10.0\nlevel_displacement_mm = 1.5\n"
+           "level_velocity_m_s = 0.1");
+  EXPECT_EQ(of(check_text(within), Severity::error).size(), 0U) << all_of(check_text(within));
+}
+
 TEST(BenchCheck, EveryWrongEntryOfAListIsTold) {
   const auto errors = of(check_text(with(smartup_bench, "[\"10\", \"80\", \"250\"]",
                                          "[\n\"ten\",\n\"80\",\n\"-5\"\n]")),

@@ -1,4 +1,4 @@
-#include "services/records/store/common_part.hpp"
+#include "services/views/report/common_part.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "analysis/uncertainty/common_contributions.hpp"
 
-namespace dyncal::inline records {
+namespace dyncal::inline views {
 namespace {
 
 std::string instruments_of(const StoredResult& result, const std::string& sensor_source) {
@@ -45,6 +45,8 @@ void add_rows(const std::vector<const StoredPoint*>& repetitions, CommonPart& pa
     for (const analysis::Contribution& row : point->budget) {
       if (analysis::is_common_to_results(row.kind)) {
         CommonRow& sum = rows[row.name()];
+        sum.may_depend_on_level =
+            row.kind == analysis::ContributionKind::reference && !row.subject.empty();
         sum.u_magnitude_rel += row.u_magnitude_rel * row.u_magnitude_rel;
         sum.u_phase_rad += row.u_phase_rad * row.u_phase_rad;
       }
@@ -52,8 +54,8 @@ void add_rows(const std::vector<const StoredPoint*>& repetitions, CommonPart& pa
   }
   const auto count = static_cast<double>(repetitions.size());
   for (const auto& [name, sum] : rows) {
-    part.rows.push_back(
-        {name, std::sqrt(sum.u_magnitude_rel / count), std::sqrt(sum.u_phase_rad / count)});
+    part.rows.push_back({name, std::sqrt(sum.u_magnitude_rel / count),
+                         std::sqrt(sum.u_phase_rad / count), sum.may_depend_on_level});
   }
 }
 
@@ -61,6 +63,22 @@ void add_rows(const std::vector<const StoredPoint*>& repetitions, CommonPart& pa
 double shared_square(double one, double other) {
   constexpr double same_rel = 0.01;
   return std::abs(one - other) <= same_rel * std::max(one, other) ? one * other : 0.0;
+}
+
+analysis::SharedUncertainty shared(const CommonPart& one, const CommonPart& other,
+                                   bool of_one_level) {
+  double magnitude = 0.0;
+  double phase = 0.0;
+  if (one.origin == other.origin) {
+    for (const CommonRow& row : one.rows) {
+      const auto same = std::ranges::find(other.rows, row.name, &CommonRow::name);
+      if (same != other.rows.end() && (of_one_level || !row.may_depend_on_level)) {
+        magnitude += shared_square(row.u_magnitude_rel, same->u_magnitude_rel);
+        phase += shared_square(row.u_phase_rad, same->u_phase_rad);
+      }
+    }
+  }
+  return {.magnitude_rel = std::sqrt(magnitude), .phase_rad = std::sqrt(phase)};
 }
 
 } // namespace
@@ -83,18 +101,11 @@ CommonParts common_parts_of(const StoredResult& result, const std::string& sourc
 }
 
 analysis::SharedUncertainty shared_by(const CommonPart& one, const CommonPart& other) {
-  double magnitude = 0.0;
-  double phase = 0.0;
-  if (one.origin == other.origin) {
-    for (const CommonRow& row : one.rows) {
-      const auto same = std::ranges::find(other.rows, row.name, &CommonRow::name);
-      if (same != other.rows.end()) {
-        magnitude += shared_square(row.u_magnitude_rel, same->u_magnitude_rel);
-        phase += shared_square(row.u_phase_rad, same->u_phase_rad);
-      }
-    }
-  }
-  return {.magnitude_rel = std::sqrt(magnitude), .phase_rad = std::sqrt(phase)};
+  return shared(one, other, true);
 }
 
-} // namespace dyncal::inline records
+analysis::SharedUncertainty shared_between_levels(const CommonPart& one, const CommonPart& other) {
+  return shared(one, other, false);
+}
+
+} // namespace dyncal::inline views

@@ -4,6 +4,9 @@
 //
 // Two values share a row if instruments and corrections are the same and its u is the same within
 // 1 %: one that was calibrated again shares nothing. Plain functions, any thread.
+//
+// Two levels of one result share less: what the reference's certificate names beside its
+// sensitivity (its amplitude linearity, its drift) may be another at another level.
 #pragma once
 
 #include <map>
@@ -14,12 +17,13 @@
 #include "services/evaluation/result/point_identity.hpp"
 #include "services/views/report/stored_result.hpp"
 
-namespace dyncal::inline records {
+namespace dyncal::inline views {
 
 struct CommonRow {
   std::string name; // of the contribution
   double u_magnitude_rel = 0.0;
   double u_phase_rad = 0.0;
+  bool may_depend_on_level = false;
 };
 
 struct CommonPart {   // of one mean
@@ -34,5 +38,7 @@ using CommonParts = std::map<PointIdentity, CommonPart>;
 
 // 0: nothing is known to be shared.
 [[nodiscard]] analysis::SharedUncertainty shared_by(const CommonPart& one, const CommonPart& other);
+[[nodiscard]] analysis::SharedUncertainty shared_between_levels(const CommonPart& one,
+                                                                const CommonPart& other);
 
-} // namespace dyncal::inline records
+} // namespace dyncal::inline views

@@ -1,10 +1,10 @@
-#include "services/records/store/common_part.hpp"
+#include "services/views/report/common_part.hpp"
 
 #include <functional>
 
 #include <gtest/gtest.h>
 
-namespace dyncal::inline records {
+namespace dyncal::inline views {
 namespace {
 
 using analysis::ContributionKind;
@@ -91,4 +91,4 @@ TEST(CommonPart, IsNotWhatALaterVersionAdds) {
 }
 
 } // namespace
-} // namespace dyncal::inline records
+} // namespace dyncal::inline views
