@@ -10,6 +10,7 @@
 #include "services/bench/file/bench_name.hpp"
 #include "services/bench/file/bench_tables.hpp"
 #include "services/bench/file/check_table.hpp"
+#include "services/bench/file/toml_lines.hpp"
 #include "services/bench/file/toml_text.hpp"
 #include "services/contract/digest.hpp"
 
@@ -80,6 +81,7 @@ BenchFile read_tables(const toml::table& parsed, const std::filesystem::path& pa
   TomlTable root(parsed, "", path.string(), problems);
   file.bench = root.required_text("bench");
   check_name(root, "bench", file.bench);
+  file.sensor = line_of(root, "sensor");
   if (auto network = root.table("network")) {
     file.network = read_network(std::move(*network));
   }

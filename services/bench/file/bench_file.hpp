@@ -135,6 +135,7 @@ struct BenchFile {
   std::string text;
   std::string sha256;
   std::string bench;
+  std::string sensor{}; // under calibration: its serial number in the library; may be empty
   NetworkSettings network;
   ExcitationSettings excitation;
   GeneratorSettings generator;

@@ -1,33 +1,10 @@
 #include "services/bench/file/calibrated_device.hpp"
 
-#include <chrono>
-#include <sstream>
-
-#include <fmt/core.h>
-
+#include "services/base/calendar_day.hpp"
 #include "services/bench/file/toml_lines.hpp"
 
 namespace dyncal::inline bench {
 namespace {
-
-// The day that many months after another one; the last of a month that is too short.
-std::string day_after(const std::string& day, int months) {
-  std::istringstream stream(day);
-  int year = 0;
-  unsigned month = 0;
-  unsigned number = 0;
-  char dash = 0;
-  stream >> year >> dash >> month >> dash >> number;
-  using namespace std::chrono; // NOLINT(google-build-using-namespace): of calendars
-  year_month_day later =
-      year_month_day{std::chrono::year(year), std::chrono::month(month), std::chrono::day(number)} +
-      std::chrono::months(months);
-  if (!later.ok()) {
-    later = later.year() / later.month() / last;
-  }
-  return fmt::format("{:04}-{:02}-{:02}", static_cast<int>(later.year()),
-                     static_cast<unsigned>(later.month()), static_cast<unsigned>(later.day()));
-}
 
 // The day itself, or an interval after `issued`.
 std::string validity_of(TomlTable& table, const std::string& issued) {
@@ -39,7 +16,7 @@ std::string validity_of(TomlTable& table, const std::string& issued) {
   if (!stated.empty()) {
     table.refuse("interval_months", "stands in place of 'valid_until'");
   }
-  return issued.empty() ? "" : day_after(issued, months);
+  return issued.empty() ? "" : months_after(issued, months);
 }
 
 } // namespace

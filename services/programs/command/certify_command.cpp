@@ -10,6 +10,7 @@
 #include "services/programs/command/command.hpp"
 #include "services/programs/command/issued_number.hpp"
 #include "services/programs/command/keep_options.hpp"
+#include "services/programs/command/named_sensor.hpp"
 #include "services/programs/command/work_progress.hpp"
 #include "services/records/provenance/result_provenance.hpp"
 #include "services/views/certificate/certificate_file.hpp"
@@ -21,6 +22,7 @@ namespace {
 struct CertifyOptions {
   CertificateFileRequest file; // without an output: as above
   SigningKey key;              // without names: not signed
+  SensorOptions sensor;        // without any: as the run's source describes itself
   NumberOptions number;
 };
 
@@ -32,8 +34,7 @@ void add_certify(CLI::App& command, CertifyOptions& options) {
       .add_option("--lab", certify.laboratory,
                   "laboratory file: who issues it, customer, reference, conditions")
       ->required();
-  command.add_option("--sensor", certify.sensor,
-                     "sensor file (default: as the run's source describes itself)");
+  add_sensor_options(command, options.sensor);
   command.add_option("--tolerances", certify.tolerances,
                      "tolerance file (default: what the sensor file has of it)");
   command.add_option("--channel", certify.channels,
@@ -111,6 +112,7 @@ Expected<void> gather(CertifyOptions& options, const std::string& place,
   if (options.file.key) {
     DYNCAL_TRY(require_proof(certify.held));
   }
+  DYNCAL_TRY(certify.sensor, sensor_of_run(options.sensor, certify.held.result, place));
   certify.number = options.number.number;
   certify.replaces = options.number.replaces;
   if (replaced) {

@@ -10,11 +10,11 @@
 #include "services/base/output_file.hpp"
 #include "services/programs/command/command.hpp"
 #include "services/programs/command/keep_options.hpp"
+#include "services/programs/command/named_sensor.hpp"
 #include "services/programs/command/work_progress.hpp"
 #include "services/views/conformity/asked_conformity.hpp"
 #include "services/views/conformity/conformity_json.hpp"
 #include "services/views/conformity/conformity_table.hpp"
-#include "services/views/lab_file/sensor_file.hpp"
 #include "services/views/report/stated_value.hpp"
 
 namespace dyncal::inline programs {
@@ -23,7 +23,8 @@ namespace {
 struct ConformityOptions {
   std::filesystem::path run;
   std::filesystem::path tolerances;
-  std::filesystem::path sensor;
+  SensorOptions sensor;
+  StorePlace store;
   std::vector<std::string> channels;
   bool keep = false;
   bool json = false;
@@ -34,12 +35,13 @@ void add_conformity_options(CLI::App& command, ConformityOptions& options) {
       ->required();
   CLI::Option* tolerances = command.add_option("--tolerances", options.tolerances,
                                                "tolerance file: [conformity] and [[tolerance]]");
-  command.add_option("--sensor", options.sensor, "sensor file that has them")->excludes(tolerances);
+  add_sensor_option(command, options.sensor.sensor)->excludes(tolerances);
   command.add_option("--channel", options.channels,
                      "channel to judge (repeatable; default: all that respond)");
   command.add_flag("--keep", options.keep,
                    "write conformity.json into the run folder too, where the page shows it");
   command.add_flag("--json", options.json, "print JSON");
+  add_store_place(command, options.store);
   command.footer("Exit status: 0 everything passes, 1 failure, 2 wrong command line, 3 something "
                  "does not pass or is undecided.");
 }
@@ -52,19 +54,18 @@ struct JudgedRun {
 Expected<JudgedRun> judge(const ConformityOptions& options) {
   DYNCAL_TRY(auto result, read_values(options.run));
   std::optional<Tolerances> of_sensor;
-  if (!options.sensor.empty()) {
-    DYNCAL_TRY(const auto sensor, read_sensor_file(options.sensor));
-    of_sensor = sensor.tolerances;
+  if (options.tolerances.empty()) {
+    DYNCAL_TRY(const auto sensor,
+               sensor_of_run(options.sensor, result, options.store.text_for(options.run)));
+    of_sensor = sensor ? sensor->tolerances : std::nullopt;
   }
   const std::vector<std::string> channels =
       options.channels.empty() ? responding_channels(result) : options.channels;
   DYNCAL_TRY(auto report, asked_conformity(result, channels, options.tolerances, of_sensor));
   if (!report) {
     return fail(ErrorCode::bad_argument,
-                options.sensor.empty()
-                    ? "name the tolerances: --tolerances FILE, or --sensor SENSOR.toml"
-                    : fmt::format("{}: has no tolerances: [conformity] and [[tolerance]]",
-                                  options.sensor.string()));
+                "name the tolerances: --tolerances FILE, or --sensor with a sensor that has "
+                "[conformity] and [[tolerance]]");
   }
   return JudgedRun{std::move(result), std::move(*report)};
 }

@@ -12,6 +12,7 @@
 #include "services/programs/command/command.hpp"
 #include "services/programs/command/issued_number.hpp"
 #include "services/programs/command/keep_options.hpp"
+#include "services/programs/command/named_sensor.hpp"
 #include "services/programs/command/work_progress.hpp"
 #include "services/records/provenance/result_provenance.hpp"
 #include "services/views/document/pdf.hpp"
@@ -25,6 +26,7 @@ struct ReportOptions {
   std::string output; // name without its ending; empty: as above
   bool no_pdf = false;
   bool issue = false;
+  SensorOptions sensor;
   NumberOptions number;
 };
 
@@ -33,7 +35,7 @@ void add_report(CLI::App& command, ReportOptions& report) {
   take_run(command.add_option("RUN", request.run, "run folder, or a result file (JSON)"))
       ->required();
   command.add_option("--lab", request.laboratory, "laboratory file: letterhead, persons, texts");
-  command.add_option("--sensor", request.sensor, "sensor file: what was calibrated, and for whom");
+  add_sensor_options(command, report.sensor);
   command.add_option("--tolerances", request.tolerances,
                      "tolerance file (default: what the sensor file has of it)");
   command.add_option("--channel", request.channels,
@@ -63,11 +65,15 @@ Expected<ReportContents> gather(const ReportOptions& report, const std::string& 
   ReportRequest request = report.request;
   request.number = report.number.number;
   request.replaces = report.number.replaces;
+  request.is_draft = !report.issue;
   if (report.issue) {
     DYNCAL_TRY(const auto replaced, replaced_document(report.number, place, "PDF"));
     DYNCAL_TRY(request.held, read_held_result(request.run, place, count, stop));
-    DYNCAL_TRY(require_proof(*request.held));
+    DYNCAL_TRY(require_proof(request.held));
+  } else {
+    DYNCAL_TRY(request.held.result, read_values(request.run));
   }
+  DYNCAL_TRY(request.sensor, sensor_of_run(report.sensor, request.held.result, place));
   return gather_report(request);
 }
 

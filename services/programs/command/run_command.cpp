@@ -23,6 +23,7 @@
 #include "services/programs/command/figure_options.hpp"
 #include "services/programs/command/kept_run.hpp"
 #include "services/programs/command/laboratory_look.hpp"
+#include "services/programs/command/named_sensor.hpp"
 #include "services/programs/command/progress_line.hpp"
 #include "services/programs/command/required_check.hpp"
 #include "services/programs/command/run_again.hpp"
@@ -306,6 +307,18 @@ Expected<void> check_bench(const BenchFile& bench) {
   return fail(ErrorCode::bad_file, std::move(sentence));
 }
 
+// Documents of the run will look for it.
+Expected<void> check_sensor(const BenchFile& bench, const KeepOptions& keep) {
+  const std::string place = keep.folder ? store_place(keep.store, *keep.folder) : "";
+  if (bench.sensor.empty() || place.empty()) {
+    return {};
+  }
+  const auto known = sensor_named(bench.sensor, place);
+  return known ? Expected<void>{}
+               : fail(known.error().code, fmt::format("{}: key 'sensor': {}", bench.path.string(),
+                                                      known.error().message));
+}
+
 } // namespace
 
 Expected<RunOutcome> conduct_run(const RunOptions& command, const std::stop_token& asked) {
@@ -313,6 +326,7 @@ Expected<RunOutcome> conduct_run(const RunOptions& command, const std::stop_toke
   DYNCAL_TRY(RunIdentity::begin(command.run, utc_now_ns()));
   DYNCAL_TRY(const auto bench, read_bench_file(command.bench_file));
   DYNCAL_TRY(check_bench(bench));
+  DYNCAL_TRY(check_sensor(bench, command.keep));
   DYNCAL_TRY(const auto adc, read_adc_calibration(bench));
   DYNCAL_TRY(check_outputs(command.output, command.figures));
   NetworkOptions network = command.network;

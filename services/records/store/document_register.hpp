@@ -45,6 +45,10 @@ public:
   [[nodiscard]] Expected<std::vector<IssuedDocument>> of_number(const std::string& number) {
     return where("number", number);
   }
+  // By serial number.
+  [[nodiscard]] Expected<std::vector<IssuedDocument>> of_sensor(const std::string& serial) {
+    return where("serial", serial);
+  }
   // The number by which it was replaced; empty: none.
   [[nodiscard]] Expected<std::string> replacement_of(const std::string& number);
 

@@ -52,6 +52,9 @@ const std::vector<Change>& changes() {
        "result_sha256 TEXT NOT NULL, bench TEXT NOT NULL, run TEXT NOT NULL, serial TEXT NOT NULL, "
        "file TEXT NOT NULL)",
        "CREATE UNIQUE INDEX documents_by_number ON documents (number, kind)"},
+      {"CREATE TABLE sensors ("
+       "serial TEXT NOT NULL, version BIGINT NOT NULL, added_utc TEXT NOT NULL, "
+       "file TEXT NOT NULL, PRIMARY KEY (serial, version))"},
   };
   return all;
 }

@@ -54,8 +54,8 @@ SensorFile described_sensor(const StoredResult& result, const std::string& chann
 }
 
 Expected<void> gather_sensor(const CertificateRequest& request, CertificateContents& contents) {
-  if (!request.sensor.empty()) {
-    DYNCAL_TRY(contents.sensor, read_sensor_file(request.sensor));
+  if (request.sensor) {
+    contents.sensor = *request.sensor;
     return {};
   }
   contents.sensor = described_sensor(contents.result, contents.channels.front().channel);

@@ -23,14 +23,14 @@ struct CertificateRequest {
   HeldResult held;           // that is certified
   std::filesystem::path run; // its folder or file
   std::filesystem::path laboratory;
-  std::filesystem::path sensor;      // empty: as the run's source describes itself
-  std::filesystem::path tolerances;  // empty: those of the sensor file, if any
-  std::vector<std::string> channels; // empty: all that respond
-  std::string number;                // empty: that of the sensor file, if any
-  std::string performed;             // YYYY-MM-DD, of a run that does not know it
-  std::string replaces;              // number of the certificate whose place it takes; may be empty
-  std::string replaced_identifier;   // UUID of that one; empty: not known
-  std::string replaced_sha256;       // of its file; empty: not known
+  std::optional<SensorFile> sensor{}; // nothing: as the run's source describes itself
+  std::filesystem::path tolerances;   // empty: those of the sensor file, if any
+  std::vector<std::string> channels;  // empty: all that respond
+  std::string number;                 // empty: that of the sensor file, if any
+  std::string performed;              // YYYY-MM-DD, of a run that does not know it
+  std::string replaces;            // number of the certificate whose place it takes; may be empty
+  std::string replaced_identifier; // UUID of that one; empty: not known
+  std::string replaced_sha256;     // of its file; empty: not known
   bool force = false;
 };
 

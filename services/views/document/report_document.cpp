@@ -79,9 +79,7 @@ Expected<void> add_laboratory(const ReportRequest& request, ReportContents& cont
   if (!request.laboratory.empty()) {
     DYNCAL_TRY(contents.laboratory, read_laboratory_file(request.laboratory));
   }
-  if (!request.sensor.empty()) {
-    DYNCAL_TRY(contents.sensor, read_sensor_file(request.sensor));
-  }
+  contents.sensor = request.sensor;
   return {};
 }
 
@@ -102,7 +100,7 @@ Expected<void> check_issue(const ReportRequest& request, ReportContents& content
                             "not in UTC: no report of it is issued",
                             result.file.string()));
   }
-  contents.objections = request.held->objections;
+  contents.objections = request.held.objections;
   std::ranges::move(objections_to(result, contents.channels),
                     std::back_inserter(contents.objections));
   std::ranges::move(objections_to_subject({.result = result,
@@ -155,13 +153,9 @@ std::string body_of(const ReportContents& contents) {
 
 Expected<ReportContents> gather_report(const ReportRequest& request) {
   ReportContents contents;
-  contents.is_draft = !request.held;
-  if (request.held) {
-    contents.result = request.held->result;
-    contents.provenance = request.held->statements;
-  } else {
-    DYNCAL_TRY(contents.result, read_values(request.run));
-  }
+  contents.is_draft = request.is_draft;
+  contents.result = request.held.result;
+  contents.provenance = request.held.statements;
   DYNCAL_TRY(contents.channels, chosen_channels(contents.result, request.channels));
   if (const auto open = contents.result.open_closures(contents.channels);
       !open.empty() && !request.force) {
@@ -178,7 +172,7 @@ Expected<ReportContents> gather_report(const ReportRequest& request) {
   DYNCAL_TRY(contents.conformity,
              asked_conformity(contents.result, contents.channels, request.tolerances,
                               contents.sensor ? contents.sensor->tolerances : std::nullopt));
-  if (request.held) {
+  if (!request.is_draft) {
     DYNCAL_TRY(check_issue(request, contents));
   }
   add_pictures(request.run, contents);

@@ -23,14 +23,15 @@
 namespace dyncal::inline views {
 
 struct ReportRequest {
-  std::filesystem::path run;         // a run folder or a result file
-  std::filesystem::path laboratory;  // empty: no letterhead
-  std::filesystem::path sensor;      // empty: what the run knows of it
-  std::filesystem::path tolerances;  // empty: those of the sensor file, if any
-  std::vector<std::string> channels; // empty: all that respond
-  bool force = false;                // in spite of all that speaks against it, which it says
-  std::optional<HeldResult> held;    // nothing: a draft, of the result as it is
-  std::string number;                // empty: that of the sensor file, if any
+  std::filesystem::path run;          // a run folder or a result file
+  std::filesystem::path laboratory;   // empty: no letterhead
+  std::optional<SensorFile> sensor{}; // nothing: what the run knows of it
+  std::filesystem::path tolerances;   // empty: those of the sensor file, if any
+  std::vector<std::string> channels;  // empty: all that respond
+  bool force = false;                 // in spite of all that speaks against it, which it says
+  HeldResult held{};                  // that is reported
+  bool is_draft = true;               // of the result as it is
+  std::string number;                 // empty: that of the sensor file, if any
   std::string replaces;
 };
 

@@ -23,6 +23,9 @@ void read_sensor(TomlTable& root, SensorFile& file) {
   file.electronic_serial = line_of(*sensor, "electronic_serial");
   file.firmware = line_of(*sensor, "firmware");
   file.owner_identification = line_of(*sensor, "owner_identification");
+  if (sensor->has("interval_months")) {
+    file.interval_months = sensor->whole_number("interval_months", 0, 1);
+  }
   file.received = date_of(*sensor, "received");
   file.condition = line_of(*sensor, "condition");
   file.positive_direction = line_of(*sensor, "positive_direction");

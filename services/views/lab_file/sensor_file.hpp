@@ -23,14 +23,15 @@ struct SensorFile {
   std::string manufacturer;
   std::string model;
   std::string serial;
-  std::string electronic_model;     // as it calls itself, where that is another; may be empty
-  std::string electronic_serial;    // likewise
-  std::string firmware;             // may be empty
-  std::string owner_identification; // the customer's own number; may be empty
-  std::string certificate_number;   // may be empty
-  std::string received;             // YYYY-MM-DD; may be empty
-  std::string condition;            // as it came: "no visible damage"; may be empty
-  std::string positive_direction;   // of its axis; may be empty
+  std::string electronic_model;       // as it calls itself, where that is another; may be empty
+  std::string electronic_serial;      // likewise
+  std::string firmware;               // may be empty
+  std::string owner_identification;   // the customer's own number; may be empty
+  std::optional<int> interval_months; // from one calibration to the next
+  std::string certificate_number;     // may be empty
+  std::string received;               // YYYY-MM-DD; may be empty
+  std::string condition;              // as it came: "no visible damage"; may be empty
+  std::string positive_direction;     // of its axis; may be empty
   std::map<std::string, std::string> settings; // by name: "range" is "+-4 g"
   std::optional<Contact> customer;
   Conditions conditions;

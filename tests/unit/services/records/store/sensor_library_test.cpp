@@ -1,0 +1,79 @@
+#include "services/records/store/sensor_library.hpp"
+
+#include <gmock/gmock.h>
+
+#include "tests/unit/services/records/store/store_places.hpp"
+
+namespace dyncal::inline records {
+namespace {
+
+using testing::HasSubstr;
+using testing::SizeIs;
+
+std::string file_of(const std::string& serial, const std::string& more = "") {
+  return "[sensor]\nname = \"accelerometer\"\nmanufacturer = \"Works\"\nmodel = \"MPU\"\nserial = "
+         "\"" +
+         serial + "\"\n" + more;
+}
+
+class SensorLibraryTest : public tests::StorePlaces {
+protected:
+  [[nodiscard]] std::unique_ptr<SensorLibrary> library() const {
+    auto opened = SensorLibrary::open(place_);
+    EXPECT_TRUE(opened) << opened.error().message;
+    return std::move(*opened);
+  }
+};
+
+TEST_P(SensorLibraryTest, KeepsASensorAsItsFileSays) {
+  const std::string text = file_of("S-1", "interval_months = 12\n");
+  EXPECT_EQ(library()->add(text, "s.toml", false).value(), SensorAddition::added);
+  EXPECT_EQ(library()->add(text, "s.toml", false).value(), SensorAddition::already_there);
+  const auto known = library()->find("S-1");
+  ASSERT_TRUE(known && *known);
+  EXPECT_EQ((*known)->sensor.interval_months, 12);
+  EXPECT_EQ((*known)->text, text);
+  EXPECT_EQ((*known)->version, 1);
+  EXPECT_THAT((*known)->added_utc, HasSubstr("T"));
+  const auto unknown = library()->find("S-2");
+  ASSERT_TRUE(unknown);
+  EXPECT_FALSE(*unknown);
+}
+
+TEST_P(SensorLibraryTest, ChangesASensorOnlyWhenAsked) {
+  ASSERT_TRUE(library()->add(file_of("S-1"), "s.toml", false));
+  const std::string changed = file_of("S-1", "firmware = \"2\"\n");
+  const auto refused = library()->add(changed, "s.toml", false);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, HasSubstr("is in the library with another file since"));
+  EXPECT_EQ(library()->add(changed, "s.toml", true).value(), SensorAddition::changed);
+  const auto versions = library()->versions("S-1");
+  ASSERT_TRUE(versions);
+  ASSERT_THAT(*versions, SizeIs(2));
+  EXPECT_EQ((*versions)[0].sensor.firmware, "");
+  EXPECT_EQ((*versions)[1].sensor.firmware, "2");
+  ASSERT_TRUE(library()->add(file_of("R-9"), "r.toml", false));
+  const auto all = library()->all();
+  ASSERT_TRUE(all);
+  ASSERT_THAT(*all, SizeIs(2));
+  EXPECT_EQ((*all)[0].sensor.serial, "R-9");
+  EXPECT_EQ((*all)[1].version, 2);
+}
+
+TEST_P(SensorLibraryTest, RefusesWhatBelongsToOneCalibration) {
+  for (const char* part :
+       {"received = 2026-03-01\n", "condition = \"no damage\"\n", "[certificate]\nnumber = \"1\"\n",
+        "[conditions]\nmounting = \"M5\"\n"}) {
+    const auto refused = library()->add(file_of("S-1", part), "s.toml", false);
+    ASSERT_FALSE(refused) << part;
+    EXPECT_THAT(refused.error().message, HasSubstr("belongs to one calibration"));
+  }
+  EXPECT_THAT(library()->all().value(), SizeIs(0));
+}
+
+INSTANTIATE_TEST_SUITE_P(Databases, SensorLibraryTest,
+                         testing::Values(tests::StoreKind::sqlite, tests::StoreKind::postgres),
+                         tests::kind_name);
+
+} // namespace
+} // namespace dyncal::inline records
