@@ -7,15 +7,13 @@
 #include <fmt/core.h>
 
 #include "services/base/json_text.hpp"
-#include "services/base/output_file.hpp"
 #include "services/programs/command/command.hpp"
+#include "services/programs/command/judged_run.hpp"
 #include "services/programs/command/keep_options.hpp"
 #include "services/programs/command/named_sensor.hpp"
 #include "services/programs/command/work_progress.hpp"
-#include "services/views/conformity/asked_conformity.hpp"
 #include "services/views/conformity/conformity_json.hpp"
 #include "services/views/conformity/conformity_table.hpp"
-#include "services/views/report/stated_value.hpp"
 
 namespace dyncal::inline programs {
 namespace {
@@ -46,11 +44,6 @@ void add_conformity_options(CLI::App& command, ConformityOptions& options) {
                  "does not pass or is undecided.");
 }
 
-struct JudgedRun {
-  StoredResult result;
-  ConformityReport report;
-};
-
 Expected<JudgedRun> judge(const ConformityOptions& options) {
   DYNCAL_TRY(auto result, read_values(options.run));
   std::optional<Tolerances> of_sensor;
@@ -59,27 +52,18 @@ Expected<JudgedRun> judge(const ConformityOptions& options) {
                sensor_of_run(options.sensor, result, options.store.text_for(options.run)));
     of_sensor = sensor ? sensor->tolerances : std::nullopt;
   }
-  const std::vector<std::string> channels =
-      options.channels.empty() ? responding_channels(result) : options.channels;
-  DYNCAL_TRY(auto report, asked_conformity(result, channels, options.tolerances, of_sensor));
-  if (!report) {
-    return fail(ErrorCode::bad_argument,
-                "name the tolerances: --tolerances FILE, or --sensor with a sensor that has "
-                "[conformity] and [[tolerance]]");
-  }
-  return JudgedRun{std::move(result), std::move(*report)};
+  return judge_run(std::move(result), options.channels, options.tolerances, of_sensor);
 }
 
 Expected<int> run_conformity(const ConformityOptions& options) {
   DYNCAL_TRY(const auto judged,
              with_progress("reading the run", [&](const auto&) { return judge(options); }));
-  const nlohmann::ordered_json json = conformity_json(judged.report, judged.result);
   if (options.keep) {
-    const std::filesystem::path file = file_beside_run(options.run, "conformity.json");
-    DYNCAL_TRY(write_output_file(file, json_text(json, 2) + "\n"));
+    DYNCAL_TRY(const auto file, keep_conformity(options.run, judged));
     fmt::print(stderr, "wrote {}\n", file.string());
   }
-  fmt::print("{}", options.json ? json_text(json, 2) + "\n" : conformity_table(judged.report));
+  fmt::print("{}", options.json ? json_text(conformity_json(judged.report, judged.result), 2) + "\n"
+                                : conformity_table(judged.report));
   return judged.report.statement() == analysis::ConformityStatement::pass ? 0 : problems_found;
 }
 

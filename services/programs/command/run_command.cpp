@@ -21,6 +21,7 @@
 #include "services/daemon/program/watched_network.hpp"
 #include "services/programs/command/command.hpp"
 #include "services/programs/command/figure_options.hpp"
+#include "services/programs/command/judged_run.hpp"
 #include "services/programs/command/kept_run.hpp"
 #include "services/programs/command/laboratory_look.hpp"
 #include "services/programs/command/named_sensor.hpp"
@@ -35,6 +36,7 @@
 #include "services/run/run_controller.hpp"
 #include "services/run/run_plan.hpp"
 #include "services/security/identity_check.hpp"
+#include "services/views/conformity/conformity_table.hpp"
 #include "services/views/report/show_outcome.hpp"
 
 namespace dyncal::inline programs {
@@ -236,6 +238,23 @@ void take_words_of_guards(bus::Reader<wire::ServiceStatus>& statuses, const Benc
   }
 }
 
+// By the tolerances of the sensor that the bench file names, if it has some.
+Expected<void> show_conformity(const Conduct& conduct, const std::filesystem::path& folder) {
+  const KeepOptions& keep = conduct.command.keep;
+  const std::string place = keep.folder ? store_place(keep.store, *keep.folder) : "";
+  if (conduct.bench.sensor.empty() || place.empty()) {
+    return {};
+  }
+  DYNCAL_TRY(const auto sensor, sensor_named(conduct.bench.sensor, place));
+  if (sensor.tolerances) {
+    DYNCAL_TRY(auto result, read_values(folder));
+    DYNCAL_TRY(const auto judged, judge_run(std::move(result), {}, {}, sensor.tolerances));
+    fmt::print("\n{}", conformity_table(judged.report));
+    DYNCAL_TRY(keep_conformity(folder, judged));
+  }
+  return {};
+}
+
 // The folder first, which is what is left if the rest fails; then the database, which may let wait.
 // What is kept is evaluated once more at the end.
 Expected<void> show_and_keep(const Conduct& conduct, ConductedRun& run) {
@@ -248,6 +267,9 @@ Expected<void> show_and_keep(const Conduct& conduct, ConductedRun& run) {
     fmt::print("kept in {}\n", folder->string());
     std::fflush(stdout);
     run.kept->add_to_store(run.outcome);
+    if (const auto judged = show_conformity(conduct, *folder); !judged) {
+      fmt::print(stderr, "tolerances: {}\n", one_line(judged.error().message));
+    }
   }
   Expected<void> done = kept ? std::move(shown) : fail(kept.error());
   if (!done && run.outcome.output_may_be_on) {

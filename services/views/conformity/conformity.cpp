@@ -144,7 +144,8 @@ JudgedValue judged_value(const StoredResult& result, const std::vector<StoredVal
                      .frequency_hz = value.frequency_hz,
                      .level_m_s2 = value.level_m_s2,
                      .row = number};
-  const auto& relative_to_hz = tolerances.rows[number].relative_to_hz;
+  const ToleranceRow& row = tolerances.rows[number];
+  const auto& relative_to_hz = row.relative_to_hz;
   const StoredValue* reference = nullptr;
   if (relative_to_hz) {
     reference = value_at(values, *relative_to_hz, value);
@@ -155,9 +156,9 @@ JudgedValue judged_value(const StoredResult& result, const std::vector<StoredVal
       return judged;
     }
   }
-  std::string doubt = doubt_about(result, value);
+  std::string doubt = doubt_about(result, value, row.is_of_phase());
   if (doubt.empty() && reference != nullptr) {
-    doubt = doubt_about(result, *reference);
+    doubt = doubt_about(result, *reference, row.is_of_phase());
     doubt = doubt.empty() ? "" : "at the reference frequency: " + doubt;
   }
   decide(tolerances, value, reference, judged);

@@ -48,7 +48,8 @@ std::map<LineKey, LevelledValues> lines_of(const StoredResult& result,
   for (auto& [key, line] : lines) {
     std::ranges::stable_sort(line.values, {}, &StoredValue::level_m_s2);
     for (const StoredValue* value : line.values) {
-      line.doubts.push_back(doubt_about(result, *value));
+      // A delay that is not stated shifts the phases of all levels alike.
+      line.doubts.push_back(doubt_about(result, *value, false));
     }
   }
   return lines;

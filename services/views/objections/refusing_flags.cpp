@@ -15,6 +15,7 @@ struct Row {
   ResultFlag flag;
   bool forbids;
   std::string_view reason;
+  bool of_phase_alone = false;
 };
 
 // In the order of the enum.
@@ -27,7 +28,7 @@ constexpr std::array rows{
         "samples that the device marked as not measured were left out; U is of the others"},
     Row{ResultFlag::shorter_than_planned, false, "less was recorded, and U is larger for it"},
     Row{ResultFlag::clock_uncertainty_unknown, true,
-        "U of the phase lacks the uncertainty of the time stamps"},
+        "U of the phase lacks the uncertainty of the time stamps", true},
     Row{ResultFlag::excitation_broken_off, true, "the step was not finished"},
     Row{ResultFlag::step_number_uncertain, false,
         "the value holds for its frequency and level; which repetition it is, is not known"},
@@ -55,7 +56,7 @@ constexpr std::array rows{
     Row{ResultFlag::answers_before_excitation, true,
         "a negative group delay says that a role or a correction is wrong"},
     Row{ResultFlag::adc_not_calibrated, true,
-        "U of the phase lacks the delay of the ADC that records sync"},
+        "U of the phase lacks the delay of the ADC that records sync", true},
     Row{ResultFlag::reference_uncertainty_not_stated, true,
         "U lacks the uncertainty of the reference, so the value is not traceable"},
     Row{ResultFlag::mains_not_separated, true, "U holds nothing for hum at this frequency"},
@@ -76,10 +77,10 @@ constexpr std::array rows{
     Row{ResultFlag::too_short_for_noise, true,
         "U rests on noise that the record is too short to show"},
     Row{ResultFlag::shots_disagree, true, "the shots are not repetitions of one measurement"},
-    Row{ResultFlag::trigger_delay_not_stated, true,
-        "U of the phase lacks the delay of the trigger"},
+    Row{ResultFlag::trigger_delay_not_stated, true, "U of the phase lacks the delay of the trigger",
+        true},
     Row{ResultFlag::acs_delay_not_stated, true,
-        "U of the phase lacks the delay between reference and sync in the ACS"},
+        "U of the phase lacks the delay between reference and sync in the ACS", true},
     Row{ResultFlag::group_delay_ambiguous, false,
         "phases are stated at each frequency; the delay is not certified"},
     Row{ResultFlag::group_delay_not_constant, false,
@@ -105,10 +106,10 @@ static_assert(is_in_order(), "one row for every flag, in the order of the enum")
 
 FlagVerdict verdict_on(ResultFlag flag) {
   const Row& row = rows.at(static_cast<std::size_t>(flag));
-  return {row.forbids, row.reason};
+  return {row.forbids, row.reason, row.of_phase_alone};
 }
 
-std::string doubt_about(const StoredResult& result, const StoredValue& value) {
+std::string doubt_about(const StoredResult& result, const StoredValue& value, bool of_phase) {
   std::vector<std::string> names = value.flag_names;
   for (const StoredChannel& channel : result.channels) {
     if (channel.channel == value.channel) {
@@ -121,7 +122,8 @@ std::string doubt_about(const StoredResult& result, const StoredValue& value) {
     }
   }
   for (const std::string& name : names) {
-    if (const FlagVerdict verdict = verdict_on(parse_flag_name(name)); verdict.forbids) {
+    const FlagVerdict verdict = verdict_on(parse_flag_name(name));
+    if (verdict.forbids && (of_phase || !verdict.of_phase_alone)) {
       return fmt::format("flag {}: {}", name, verdict.reason);
     }
   }

@@ -16,10 +16,13 @@ namespace dyncal::inline views {
 struct FlagVerdict {
   bool forbids = true;
   std::string_view reason;
+  bool of_phase_alone = false; // the magnitude beside it may be believed
 };
 
 [[nodiscard]] FlagVerdict verdict_on(ResultFlag flag);
-// The first such flag of a mean, of its channel or of its repetitions, and why; empty: none.
-[[nodiscard]] std::string doubt_about(const StoredResult& result, const StoredValue& value);
+// The first such flag of the magnitude or phase of a mean, of its channel or of its repetitions,
+// and why; empty: none.
+[[nodiscard]] std::string doubt_about(const StoredResult& result, const StoredValue& value,
+                                      bool of_phase);
 
 } // namespace dyncal::inline views

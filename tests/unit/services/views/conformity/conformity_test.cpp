@@ -82,6 +82,18 @@ TEST(Conformity, BothLimitsHoldWhereRowsMeet) {
   EXPECT_EQ(report.values[2].statement, fail);
 }
 
+TEST(Conformity, ADoubtAboutThePhaseLeavesTheMagnitudeDecided) {
+  StoredValue value = value_at(10, 1.0);
+  value.flag_names = {"adc_not_calibrated"};
+  ToleranceRow phase = percent_row(10, 40, 5);
+  phase.unit = ToleranceUnit::degree;
+  const ConformityReport report = judged(result_of({value}), {percent_row(10, 40, 5), phase});
+  ASSERT_EQ(report.values.size(), 2U);
+  EXPECT_EQ(report.values[0].statement, pass);
+  EXPECT_EQ(report.values[1].statement, undecided);
+  EXPECT_THAT(report.values[1].reason, HasSubstr("adc_not_calibrated"));
+}
+
 TEST(Conformity, SaysWhatNoLimitAndWhatNoValueIsFor) {
   const ConformityReport report = judged(result_of({value_at(10, 1.0), value_at(80, 1.0)}),
                                          {percent_row(10, 20, 5), percent_row(100, 200, 5)});
