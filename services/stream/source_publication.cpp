@@ -212,14 +212,20 @@ dyncal::wire::SourceState SourcePublication::state(const SourcePublisher::Snapsh
   return snapshot.stage == SourceStage::starting ? wire::SOURCE_STARTING : wire::SOURCE_RUNNING;
 }
 
-void SourcePublication::measure_rate(std::uint64_t offered_samples, Clock::time_point now) {
-  rate_points_.push_back({now, offered_samples});
+// From block to block: between two statuses there is a part of one.
+void SourcePublication::measure_rate(const SourcePublisher::Snapshot& snapshot,
+                                     Clock::time_point now) {
+  if (rate_points_.empty() || snapshot.last_offer != rate_points_.back().time) {
+    rate_points_.push_back({snapshot.last_offer, snapshot.offered_samples});
+  }
   while (rate_points_.size() > 2 && now - rate_points_.front().time > rate_window) {
     rate_points_.pop_front();
   }
-  const double elapsed_s = std::chrono::duration<double>(now - rate_points_.front().time).count();
-  rate_hz_ = elapsed_s > 0.0
-                 ? static_cast<double>(offered_samples - rate_points_.front().samples) / elapsed_s
+  const RatePoint& first = rate_points_.front();
+  const RatePoint& last = rate_points_.back();
+  const double elapsed_s = std::chrono::duration<double>(last.time - first.time).count();
+  rate_hz_ = elapsed_s > 0.0 && now - last.time <= rate_window
+                 ? static_cast<double>(last.samples - first.samples) / elapsed_s
                  : 0.0;
 }
 
@@ -240,7 +246,7 @@ void SourcePublication::add_what_is_kept(dyncal::wire::SourceStatus& message) {
 
 void SourcePublication::write_status(Clock::time_point now, std::chrono::nanoseconds limit) {
   const auto snapshot = publisher_->snapshot();
-  measure_rate(snapshot.offered_samples, now);
+  measure_rate(snapshot, now);
   auto message = to_message(publisher_->options(), snapshot);
   message.session(session_);
   message.state(state(snapshot, now));

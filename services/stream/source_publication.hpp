@@ -83,7 +83,7 @@ private:
   [[nodiscard]] bool may_write();
   [[nodiscard]] dyncal::wire::SourceState state(const SourcePublisher::Snapshot& snapshot,
                                                 Clock::time_point now) const;
-  void measure_rate(std::uint64_t offered_samples, Clock::time_point now);
+  void measure_rate(const SourcePublisher::Snapshot& snapshot, Clock::time_point now);
 
   const std::shared_ptr<SourcePublisher> publisher_;
   const std::shared_ptr<RetransmissionBuffer> kept_;

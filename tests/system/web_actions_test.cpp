@@ -1,5 +1,6 @@
 // What a visitor with the token does to a real bench: starts a run, has a step excited once more,
 // pauses, goes on and aborts; then reads the run's files and the history of its sensor.
+#include <cmath>
 #include <fstream>
 
 #include <gmock/gmock.h>
@@ -54,9 +55,9 @@ protected:
     return visitor_->post(address + "/command", body);
   }
   json bench_until(const WebVisitor::Holds& holds) { return visitor_->ask_until(address, holds); }
-  // Its name, once `steps` steps of it are done.
-  std::string started_run(int steps) {
-    const json started = visitor_->post("/api/run", {{"file", "bench.toml"}});
+  // Its name, once `steps` steps of it are done. Empty `name`: the time.
+  std::string started_run(int steps, const std::string& name = "") {
+    const json started = visitor_->post("/api/run", {{"file", "bench.toml"}, {"run", name}});
     if (started["status"] != 200) {
       ADD_FAILURE() << started;
       return "";
@@ -93,12 +94,17 @@ void expect_same_again(const fs::path& run_folder) {
 }
 
 TEST_F(WebActions, ConductARun) {
-  const std::string run = started_run(1);
-  ASSERT_NE(run, "");
+  const std::string run = started_run(1, "first-run");
+  ASSERT_EQ(run, "first-run");
   EXPECT_EQ(command("pause", run)["message"], "pause: done");
   const json paused = bench_until([](const json& bench) { return bench["state"] == "paused"; });
   EXPECT_EQ(paused["state"], "paused") << paused;
   EXPECT_THAT(paused["message"], HasSubstr("dyncal-web"));
+  const json spectrum =
+      visitor_->ask_until(address + "/spectrum?source=acs&channel=reference&seconds=2",
+                          [](const json& answer) { return answer.contains("noise_floor"); });
+  EXPECT_TRUE(spectrum["noise_floor"].is_number()) << spectrum;
+  EXPECT_TRUE(spectrum["thd"].is_null()) << "nothing is excited: " << spectrum;
 
   // Nothing goes on meanwhile.
   const json second = visitor_->post("/api/run", {{"file", "bench.toml"}});
@@ -128,6 +134,19 @@ TEST_F(WebActions, ConductARun) {
     }
   }
   EXPECT_GE(of_first_step, 3U);
+  const json& mean = all["transfer_function"][0];
+  EXPECT_NEAR(mean["measured_level_m_s2"], 10.0, 0.5) << mean;
+  const std::string of_mean = "/budget?channel=" + mean["channel"].get<std::string>() +
+                              "&frequency=" + mean["frequency_text_hz"].get<std::string>();
+  const json budget = visitor_->ask(address + of_mean);
+  EXPECT_GE(budget["contributions"].size(), 3U) << budget;
+  double squares = 0.0;
+  for (const json& row : budget["contributions"]) {
+    squares += std::pow(row["u_magnitude_rel"].get<double>(), 2);
+  }
+  EXPECT_NEAR(std::sqrt(squares) * mean["magnitude"].get<double>() *
+                  mean["k_magnitude"].get<double>() / mean["U_magnitude"].get<double>(),
+              1.0, 1e-3);
 
   const fs::path kept = folder_ / "runs" / "live" / run;
   // Written as results come: what is compared is what stands when the run has ended.
@@ -156,7 +175,7 @@ TEST_F(WebActions, ConductARun) {
 
   const json sensors = visitor_->ask_until(
       "/api/history?sensor=", [](const json& history) { return history["sensors"].size() >= 1; });
-  ASSERT_GE(sensors["sensors"].size(), 1U) << sensors;
+  ASSERT_EQ(sensors["sensors"].size(), 1U) << "of the instruments the sensor alone: " << sensors;
   const json history = visitor_->ask_until(
       "/api/history?sensor=" + httplib::detail::encode_query_param(sensors["sensors"][0]),
       [](const json& answer) { return answer["runs"].size() >= 3; });

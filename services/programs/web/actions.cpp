@@ -1,7 +1,9 @@
 #include "services/programs/web/actions.hpp"
 
 #include <algorithm>
+#include <array>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
@@ -54,6 +56,21 @@ std::vector<std::string> bench_files_of(const fs::path& folder) {
   }
   std::ranges::sort(names);
   return names;
+}
+
+// What a visitor may say of a run, and the option of `dyncal run` that takes it.
+constexpr std::array<std::pair<const char*, const char*>, 1> run_members{{{"run", "--run"}}};
+constexpr std::size_t max_text_bytes = 200;
+
+// Of the members that are given. As one word each: no text can be an option of its own.
+std::vector<std::string> stated_arguments(const Json& body) {
+  std::vector<std::string> arguments;
+  for (const auto& [member, option] : run_members) {
+    if (const std::string text = text_of(body, member); !text.empty()) {
+      arguments.push_back(fmt::format("{}={}", option, text.substr(0, max_text_bytes)));
+    }
+  }
+  return arguments;
 }
 
 std::vector<std::string> run_arguments(const ActionOptions& options, const std::string& name) {
@@ -130,7 +147,7 @@ bool Actions::post(const httplib::Request& request, httplib::Response& response)
   if (is_command) {
     command(address->bench, body, by + options_.sender, request, response);
   } else {
-    start_run(text_of(body, "file"), response);
+    start_run(text_of(body, "file"), stated_arguments(body), response);
   }
   spdlog::info("{} of {}{}: {} {}", request.path, by, request.remote_addr, response.status,
                response.body);
@@ -239,10 +256,15 @@ void Actions::list_bench_files(httplib::Response& response) const {
                      {"bench", bench ? Json(bench->bench) : Json(nullptr)},
                      {"problem", bench ? Json(nullptr) : Json(bench.error().message)}});
   }
-  answer_json({{"files", std::move(files)}}, response);
+  Json members = Json::array();
+  for (const auto& [member, option] : run_members) {
+    members.push_back(member);
+  }
+  answer_json({{"files", std::move(files)}, {"members", std::move(members)}}, response);
 }
 
-void Actions::start_run(const std::string& name, httplib::Response& response) {
+void Actions::start_run(const std::string& name, const std::vector<std::string>& stated,
+                        httplib::Response& response) {
   const std::vector<std::string> known = bench_files_of(options_.benches_folder);
   if (std::ranges::find(known, name) == known.end()) {
     answer_action(false, "", "there is no such bench file in the folder of --benches", response);
@@ -269,8 +291,9 @@ void Actions::start_run(const std::string& name, httplib::Response& response) {
   fs::create_directories(logs, unknown); // the first run of all; if it fails, the log file tells
   const fs::path log =
       logs / fmt::format("{}-{}.log", name, time_name(bus::system_clock().utc_now_ns()));
-  auto child =
-      ChildProcess::start(program_folder() / "dyncal", run_arguments(options_, name), {log, log});
+  std::vector<std::string> arguments = run_arguments(options_, name);
+  arguments.insert(arguments.end(), stated.begin(), stated.end());
+  auto child = ChildProcess::start(program_folder() / "dyncal", arguments, {log, log});
   if (!child) {
     answer_action(false, "", child.error().message, response);
     return;

@@ -16,6 +16,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <httplib.h>
 
@@ -57,7 +58,9 @@ private:
   void send(const wire::Command& command, const std::string& word, httplib::Response& response);
   // Returns why the conductor does not obey, "" where it does; nothing: it has not answered.
   [[nodiscard]] std::optional<std::string> repeat_until_answered(const wire::Command& command);
-  void start_run(const std::string& name, httplib::Response& response);
+  // `stated`: further arguments of `dyncal run`.
+  void start_run(const std::string& name, const std::vector<std::string>& stated,
+                 httplib::Response& response);
   void list_bench_files(httplib::Response& response) const;
 
   ActionOptions options_;

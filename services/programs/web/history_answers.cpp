@@ -1,7 +1,8 @@
 #include "services/programs/web/history_answers.hpp"
 
 #include <ctime>
-#include <set>
+#include <map>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "services/programs/web/request_router.hpp"
 #include "services/records/store/history.hpp"
 #include "services/records/store/store.hpp"
+#include "services/records/store/unwrapped_phases.hpp"
 #include "services/views/report/json_members.hpp"
 #include "services/views/report/stored_members.hpp"
 
@@ -24,21 +26,6 @@ Json milliseconds(const std::string& utc_text) {
   std::tm utc{};
   const char* end = strptime(utc_text.c_str(), "%Y-%m-%dT%H:%M:%S", &utc);
   return end == nullptr ? Json(nullptr) : Json(static_cast<double>(timegm(&utc)) * 1e3);
-}
-
-Json sensors_json(const std::vector<StoredRun>& runs) {
-  std::set<std::string> sensors;
-  for (const StoredRun& run : runs) {
-    for (const RunSource& source : run.sources) {
-      const drivers::SourceDescription& description = source.description;
-      const std::string& sensor =
-          description.serial.empty() ? description.device : description.serial;
-      if (!sensor.empty()) {
-        sensors.insert(sensor);
-      }
-    }
-  }
-  return sensors;
 }
 
 Json open_closures(const Calibration& calibration, const std::string& channel) {
@@ -101,6 +88,23 @@ Json en_json(const History& history) {
   return rows;
 }
 
+Expected<void> add_history(Store& store, const std::string& sensor, Json& json) {
+  DYNCAL_TRY(json["sensors"], store.sensors());
+  if (sensor.empty()) {
+    return {};
+  }
+  DYNCAL_TRY(auto calibrations, store.calibrations(sensor));
+  if (calibrations.size() > HistoryAnswers::max_runs) {
+    calibrations.erase(calibrations.begin(),
+                       calibrations.end() - static_cast<std::ptrdiff_t>(HistoryAnswers::max_runs));
+  }
+  DYNCAL_TRY(store.add_common_parts(calibrations));
+  unwrap_phases(calibrations);
+  json["runs"] = runs_json(calibrations);
+  json["en"] = en_json(history_of(sensor, std::move(calibrations)));
+  return {};
+}
+
 } // namespace
 
 bool HistoryAnswers::answer(const httplib::Request& request, httplib::Response& response) {
@@ -124,21 +128,10 @@ bool HistoryAnswers::answer(const httplib::Request& request, httplib::Response& 
     response.set_content(json_text(json), "application/json");
     return true;
   }
-  const auto runs = (*store)->runs({});
-  auto calibrations =
-      sensor.empty() ? Expected<std::vector<Calibration>>{} : (*store)->calibrations(sensor);
-  if (!runs || !calibrations) {
-    answer_error(500, "failed", runs ? calibrations.error().message : runs.error().message,
-                 response);
+  if (const auto added = add_history(**store, sensor, json); !added) {
+    answer_error(500, "failed", added.error().message, response);
     return true;
   }
-  if (calibrations->size() > max_runs) {
-    calibrations->erase(calibrations->begin(),
-                        calibrations->end() - static_cast<std::ptrdiff_t>(max_runs));
-  }
-  json["sensors"] = sensors_json(*runs);
-  json["runs"] = runs_json(*calibrations);
-  json["en"] = en_json(history_of(sensor, std::move(*calibrations)));
   response.set_content(json_text(json), "application/json");
   return true;
 }

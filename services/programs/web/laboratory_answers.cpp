@@ -1,6 +1,8 @@
 #include "services/programs/web/laboratory_answers.hpp"
 
+#include <algorithm>
 #include <array>
+#include <vector>
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
@@ -8,7 +10,10 @@
 #include "services/base/parsed_number.hpp"
 #include "services/programs/web/request_router.hpp"
 #include "services/views/figures/error_bar_names.hpp"
+#include "services/views/live/run_json.hpp"
 #include "services/views/report/json_members.hpp"
+#include "services/views/report/json_number.hpp"
+#include "services/views/report/mean_budget.hpp"
 
 namespace dyncal::inline programs::web {
 namespace {
@@ -32,6 +37,37 @@ void send_file(const ServedFile& file, const std::string& name, const httplib::R
                       fmt::format("{}; filename*=UTF-8''{}", is_picture ? "inline" : "attachment",
                                   percent_encoded(name)));
   answer_with(file, media_type(name), request, response);
+}
+
+// Nothing: there is no such result.
+std::optional<Json> step_budget(const httplib::Request& request, const network::Run& run) {
+  const auto found = run.results.find({number_of(request, "step"), number_of(request, "repetition"),
+                                       request.get_param_value("channel")});
+  if (found == run.results.end()) {
+    return std::nullopt;
+  }
+  const StepResult& result = found->second;
+  return Json{{"channel", result.channel},
+              {"step", result.step},
+              {"repetition", result.repetition},
+              {"contributions", JsonWriter::of(result.budget)}};
+}
+
+// Of a mean, by its frequency, and its level where the frequency has several.
+std::optional<Json> mean_budget(const httplib::Request& request, const StoredResult& result) {
+  const auto level = parsed_number<double>(request.get_param_value("level"));
+  const std::string frequency = request.get_param_value("frequency");
+  const std::vector<StoredValue> values = result.values_of(request.get_param_value("channel"));
+  const auto value = std::ranges::find_if(values, [&](const StoredValue& one) {
+    return one.frequency_text_hz == frequency && (!level || one.level_m_s2 == *level);
+  });
+  if (value == values.end()) {
+    return std::nullopt;
+  }
+  return Json{{"channel", value->channel},
+              {"frequency_text_hz", value->frequency_text_hz},
+              {"level_m_s2", json_number(value->level_m_s2)},
+              {"contributions", JsonWriter::of(budget_of_mean(result, *value))}};
 }
 
 } // namespace
@@ -117,20 +153,19 @@ void LaboratoryAnswers::answer_figures(const std::string& bench, const httplib::
 void LaboratoryAnswers::answer_budget(const std::string& name, const httplib::Request& request,
                                       httplib::Response& response) const {
   const std::string run_name = request.get_param_value("run");
-  const network::Run::ResultKey key{number_of(request, "step"), number_of(request, "repetition"),
-                                    request.get_param_value("channel")};
+  const bool is_mean = request.has_param("frequency");
   const auto json = cache_.look([&](const network::BusState& laboratory) -> std::optional<Json> {
-    const network::Run* run = find_run(laboratory.bench(name), run_name);
-    if (run == nullptr || !run->results.contains(key)) {
+    const network::Bench* bench = laboratory.bench(name);
+    const network::Run* run = find_run(bench, run_name);
+    auto members = run == nullptr ? std::nullopt
+                   : is_mean      ? mean_budget(request, live::heard_result(*bench, *run))
+                                  : step_budget(request, *run);
+    if (!members) {
       return std::nullopt;
     }
-    const StepResult& result = run->results.at(key);
-    return Json{{"bench", name},
-                {"run", run->name},
-                {"channel", result.channel},
-                {"step", result.step},
-                {"repetition", result.repetition},
-                {"contributions", JsonWriter::of(result.budget)}};
+    Json whole{{"bench", name}, {"run", run->name}};
+    whole.update(*members);
+    return whole;
   });
   if (json) {
     answer_json(*json, response);

@@ -176,6 +176,16 @@ Text SignalAnswers::signal(const std::string& bench, const httplib::Request& req
   return text;
 }
 
+struct SignalAnswers::ExcitedStep {
+  network::Excitation now;
+  network::Plan plan; // without its steps
+
+  [[nodiscard]] bool is_in(network::StepState state) const { return now.step.state == state; }
+  [[nodiscard]] bool is_excited() const {
+    return is_in(network::StepState::settling) || is_in(network::StepState::steady);
+  }
+};
+
 Expected<Json> SignalAnswers::spectrum(const Question& question) {
   const auto found = find(question);
   std::vector<Sample> samples;
@@ -196,6 +206,8 @@ Expected<Json> SignalAnswers::spectrum(const Question& question) {
   if (!spectrum) {
     return fail(ErrorCode::no_result, spectrum.error().message);
   }
+  const auto step = excited_step(question.bench);
+  const bool is_excited = step && step->is_excited();
   Json lines = Json::array();
   for (const auto& [hz, amplitude] : spectrum->lines) {
     lines.push_back({shown(hz), shown(amplitude)});
@@ -206,18 +218,11 @@ Expected<Json> SignalAnswers::spectrum(const Question& question) {
               {"lines", std::move(lines)},
               {"fundamental_hz", json_number(spectrum->fundamental_hz)},
               {"amplitude", json_number(spectrum->amplitude)},
-              {"thd", json_number(spectrum->thd)},
+              {"thd", is_excited ? json_number(spectrum->thd) : Json(nullptr)},
               {"noise_floor", json_number(spectrum->noise_floor)},
               {"window", spectrum_window},
               {"resolution_hz", json_number(spectrum->resolution_hz)}};
 }
-
-struct SignalAnswers::ExcitedStep {
-  network::Excitation now;
-  network::Plan plan; // without its steps
-
-  [[nodiscard]] bool is_in(network::StepState state) const { return now.step.state == state; }
-};
 
 // The one that is excited now, by what was announced last; nothing: no run is under way.
 std::optional<SignalAnswers::ExcitedStep>
@@ -286,9 +291,7 @@ Expected<Json> SignalAnswers::fit(const std::string& bench) {
             {"sync", fitted(step->plan.sync_acs)},
             {"dau_phase",
              fitted(step->plan.sync_dau.empty() ? step->plan.sync_dso : step->plan.sync_dau)}};
-  const bool is_excited =
-      step->is_in(network::StepState::settling) || step->is_in(network::StepState::steady);
-  if (!is_excited) { // asked for all the same: earlier samples show where a step begins
+  if (!step->is_excited()) { // asked for all the same: earlier samples show where a step begins
     json["step"] = 0;
     json["reference"] = json["sync"] = json["dau_phase"] = nullptr;
   }

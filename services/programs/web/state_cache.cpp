@@ -138,7 +138,7 @@ Text StateCache::results(const std::string& name, const std::string& run_name,
   Json json{{"number", number},
             {"now_utc_ms", milliseconds(laboratory_.clock().utc_now_ns())},
             {"bench", name}};
-  json.update(live::run_json(name, *run));
+  json.update(live::run_json(*bench, *run));
   json["runs"] = runs_json(*bench);
   add_files(run->name, json);
   return keep(key, json, number);

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <ctime>
+#include <iterator>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -312,6 +314,7 @@ Expected<std::vector<StoredValue>> Store::points_of(const std::string& result_sh
   std::vector<StoredValue> points;
   for (const DatabaseRow& row : rows) {
     StoredValue point;
+    point.unwrapped_phase_rad = nan("");
     point.channel = text_of(row[0]);
     point.frequency_text_hz = text_of(row[1]);
     point.frequency_hz = number_of(row[2]);
@@ -364,6 +367,18 @@ Expected<std::vector<Calibration>> Store::calibrations(const std::string& sensor
     add_done(count);
   }
   return calibrations;
+}
+
+Expected<std::vector<std::string>> Store::sensors() {
+  DYNCAL_TRY(const auto rows,
+             database_->execute("SELECT DISTINCT CASE WHEN serial = '' THEN device ELSE serial END "
+                                "FROM sources WHERE EXISTS (SELECT 1 FROM points WHERE "
+                                "points.result_sha256 = sources.result_sha256 AND "
+                                "points.source = sources.source) ORDER BY 1"));
+  std::vector<std::string> sensors;
+  std::ranges::transform(rows, std::back_inserter(sensors),
+                         [](const DatabaseRow& row) { return text_of(row[0]); });
+  return sensors;
 }
 
 Expected<void> Store::add_common_parts(std::vector<Calibration>& calibrations,

@@ -91,6 +91,8 @@ public:
   // Of a sensor by serial number, device or name of its source; by time.
   [[nodiscard]] Expected<std::vector<Calibration>>
   calibrations(const std::string& sensor, const SharedWorkCount& count = nullptr);
+  // Serial numbers of all sensors that have values, or devices where there is none.
+  [[nodiscard]] Expected<std::vector<std::string>> sensors();
   // Of the result files, which are read again for it.
   [[nodiscard]] Expected<void> add_common_parts(std::vector<Calibration>& calibrations,
                                                 const SharedWorkCount& count = nullptr);

@@ -1,7 +1,13 @@
 #include "services/views/live/run_json.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
 #include <nlohmann/json.hpp>
 
+#include "services/contract/channel_name.hpp"
+#include "services/contract/unit.hpp"
 #include "services/views/report/json_members.hpp"
 #include "services/views/report/result_json.hpp"
 #include "services/views/report/rounded_json.hpp"
@@ -13,9 +19,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-RunOutcome outcome_of(const std::string& bench, const network::Run& run) {
+RunOutcome outcome_of(const network::Bench& bench, const network::Run& run) {
   RunOutcome outcome;
-  outcome.bench = bench;
+  outcome.bench = bench.name;
   outcome.run = run.name;
   for (const auto& [key, result] : run.results) {
     outcome.results.push_back(result);
@@ -29,6 +35,34 @@ RunOutcome outcome_of(const std::string& bench, const network::Run& run) {
     outcome.clock_reports.push_back(report);
   }
   return outcome;
+}
+
+// Of the plan, where it measures in m/s^2, as levels are stated.
+std::optional<std::string> reference_of(const network::Bench& bench, const network::Run& run) {
+  const auto name = parse_channel_name(run.plan ? run.plan->reference : "");
+  const auto source = name ? bench.sources.find(name->source) : bench.sources.end();
+  if (source == bench.sources.end() || !source->second.description) {
+    return std::nullopt;
+  }
+  const auto& channels = source->second.description->channels;
+  const auto channel =
+      std::ranges::find(channels, name->channel, &drivers::ChannelDescription::name);
+  return channel != channels.end() && is_acceleration(channel->unit)
+             ? std::optional(run.plan->reference)
+             : std::nullopt;
+}
+
+void add_measured_levels(const network::Run& run, const std::string& reference,
+                         StoredResult& result) {
+  auto point = result.points.begin(); // in the same order
+  for (const auto& [key, heard] : run.results) {
+    const auto fit = std::ranges::find(heard.fits, reference, &analysis::ChannelFit::channel);
+    if (fit != heard.fits.end()) {
+      point->measured_level_m_s2 = fit->fit.amplitude();
+      point->u_measured_level_m_s2 = fit->fit.u_amplitude();
+    }
+    ++point;
+  }
 }
 
 Json points_json(const network::Run& run, const StoredResult& result) {
@@ -50,6 +84,9 @@ Json values_json(const StoredResult& result) {
   Json values = Json::array();
   for (const StoredValue& value : result.values) {
     values.push_back(JsonWriter::of(value));
+    if (const double level = measured_level_m_s2(result, value); std::isfinite(level)) {
+      values.back()["measured_level_m_s2"] = level;
+    }
     values.back()["text"] = rounded_json(value.magnitude, value.of_magnitude.expanded,
                                          value.phase_rad, value.of_phase.expanded);
   }
@@ -88,8 +125,16 @@ Json clocks_json(const StoredResult& result) {
 
 } // namespace
 
-Json run_json(const std::string& bench, const network::Run& run) {
-  const StoredResult result = stored_result_of(outcome_of(bench, run));
+StoredResult heard_result(const network::Bench& bench, const network::Run& run) {
+  StoredResult result = stored_result_of(outcome_of(bench, run));
+  if (const auto reference = reference_of(bench, run)) {
+    add_measured_levels(run, *reference, result);
+  }
+  return result;
+}
+
+Json run_json(const network::Bench& bench, const network::Run& run) {
+  const StoredResult result = heard_result(bench, run);
   return {{"run", run.name},
           {"state", to_string(run.state())},
           {"flag_legend", JsonWriter::of(result.flags)},

@@ -5,14 +5,16 @@
 // Without what the page asks for by itself or does not show: budgets, fits, samples by source.
 #pragma once
 
-#include <string>
-
 #include <nlohmann/json_fwd.hpp>
 
-#include "services/network/run.hpp"
+#include "services/network/bench.hpp"
+#include "services/views/report/stored_result.hpp"
 
 namespace dyncal::inline views::live {
 
-[[nodiscard]] nlohmann::ordered_json run_json(const std::string& bench, const network::Run& run);
+// What a result file of the run would have of it.
+[[nodiscard]] StoredResult heard_result(const network::Bench& bench, const network::Run& run);
+
+[[nodiscard]] nlohmann::ordered_json run_json(const network::Bench& bench, const network::Run& run);
 
 } // namespace dyncal::inline views::live

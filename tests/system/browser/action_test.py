@@ -77,9 +77,11 @@ class Actions(PageCase):
         self.unlock(page)
         self.press(page, "Start a run …")
         page.wait_for("document.querySelector('dialog select')?.value === 'acc-1.toml'")
+        page.value("document.querySelector('dialog [name=run]').value = ' daily 7 '")
         self.in_dialog(page, "Start the run")
         page.wait_for(f"{text_of('.answer')}.includes('accepted')")
-        self.assertEqual(self.laboratory.posted, [("/api/run", {"file": "acc-1.toml"})])
+        self.assertEqual(self.laboratory.posted,
+                         [("/api/run", {"file": "acc-1.toml", "run": "daily 7"})])
         self.press(page, "Forget token")
         page.wait_for("[...document.querySelectorAll('button')].some(b => "
                       "b.textContent === 'Act with a token …' && b.checkVisibility())")

@@ -89,8 +89,21 @@ def texts_of(selector):
     return f"[...document.querySelectorAll({selector!r})].map(e => e.textContent)"
 
 
-def rows_of_chart(chart):
+def rows_of_chart(chart, canvases=".canvas"):
     """What a chart of the page draws: rows of x and [low, y, high] of each layer."""
     return (f"(g => [...Array(g.numRows()).keys()].map(r => [...Array(g.numColumns()).keys()]"
             ".map(c => c === 0 ? g.getValue(r, c) : g.getValue(r, c) ?? [null])))"
-            f"(document.querySelectorAll('.canvas')[{chart}].graph)")
+            f"(document.querySelectorAll({canvases!r})[{chart}].graph)")
+
+
+def choose(page, value):
+    """An option of the only list that has it."""
+    page.value(f"(s => {{ s.value = {value!r}; s.dispatchEvent(new Event('change')); }})"
+               "([...document.querySelectorAll('select')].find(s => [...s.options].some(o => "
+               f"o.value === {value!r})))")
+
+
+def drawn_pixels(chart):
+    return (f"(c => c ? (d => {{ let n = 0; for (let i = 3; i < d.length; i += 4) n += d[i] > 0; "
+            "return n; })(c.getContext('2d').getImageData(0, 0, c.width, c.height).data) : 0)"
+            f"(document.querySelectorAll('.canvas')[{chart}]?.querySelector('canvas'))")

@@ -220,7 +220,8 @@ class Handler(http.server.BaseHTTPRequestHandler):
             self.give(state.history(asked.get("sensor")))
         elif parts == ["api", "bench-files"]:
             if self.may_act():
-                self.give({"files": [{"file": "acc-1.toml", "bench": "acc-1"}]})
+                self.give({"files": [{"file": "acc-1.toml", "bench": "acc-1"}],
+                           "members": ["run"]})
         elif parts[:2] == ["api", "bench"]:
             self.answer_bench(parts[2], parts[3:], asked)
         elif parts[0] == "files":
@@ -241,7 +242,8 @@ class Handler(http.server.BaseHTTPRequestHandler):
                 lab.figures_wait.wait()
             self.give(answer)
         elif rest == ["budget"]:
-            self.give(state.budget(asked["channel"], asked["step"], asked["repetition"]))
+            asked.pop("run")
+            self.give(state.budget(**asked))
         elif rest == ["signal"]:
             self.give(lab.signal(name, **asked))
         elif rest == ["spectrum"]:

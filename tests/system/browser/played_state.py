@@ -59,7 +59,8 @@ def point(step, seed=0):
     return {
         "channel": CHANNEL, "step": step, "repetition": repetition, "attempt": 1,
         "frequency_text_hz": text, "frequency_hz": frequency, "level_m_s2": level(frequency),
-        "valid": True, "problem": "", "magnitude": magnitude, "u_magnitude": magnitude * u_rel,
+        "measured_level_m_s2": 0.9876 * level(frequency), "valid": True,
+        "problem": "", "magnitude": magnitude, "u_magnitude": magnitude * u_rel,
         "phase_rad": math.remainder(phase, 2 * math.pi), "u_phase_rad": u_phase,
         "U_magnitude": 2 * magnitude * u_rel, "k_magnitude": 2.0, "U_phase_rad": 2 * u_phase,
         "k_phase": 2.0, "unit": "\\one", "lost": 12 if step == 9 else 0,
@@ -97,6 +98,7 @@ def transfer(points):
             "channel": CHANNEL, "unit": "\\one", "frequency_text_hz": text,
             "frequency_hz": float(text),
             "level_m_s2": group[0]["level_m_s2"], "magnitude": magnitude, "u_magnitude": u,
+            "measured_level_m_s2": group[0]["measured_level_m_s2"],
             "U_magnitude": 2.1 * u, "k_magnitude": 2.1,
             "phase_rad": wrapped, "u_phase_rad": u_phase,
             "U_phase_rad": 2.05 * u_phase, "k_phase": 2.05, "unwrapped_phase_rad": before,
@@ -223,14 +225,16 @@ def fit():
                           "columns": [[t / 10, 0.3 + 2e-4 * math.sin(t)] for t in range(100)]}}
 
 
-def budget(channel, step, repetition):
+def budget(channel, step=0, repetition=0, frequency="", level=None):
+    """Of a step, or of a mean, by its frequency."""
     rows = [("reference", "acs/reference", 3.1e-4, 4.2e-4), ("fit_noise", channel, 1.2e-4, 1.9e-4),
             ("adc_phase", "dau/sync", None, 3.3e-4), ("stamp_jitter", "dau", 2e-6, 6e-5),
             ("mains_hum", channel, 4e-5, 4e-5)]
-    p = point(int(step))
-    return {**{k: p[k] for k in ("frequency_text_hz", "magnitude", "u_magnitude", "phase_rad",
-                                 "u_phase_rad", "unit", "text")},
-            "channel": channel, "step": int(step), "repetition": int(repetition),
+    if frequency:
+        rows.append(("scatter of the repetitions", "", 9e-4, 8e-4))
+    return {"channel": channel, **({"frequency_text_hz": frequency, "level_m_s2": float(level)}
+                                   if frequency else {"step": int(step),
+                                                      "repetition": int(repetition)}),
             "contributions": [
                 {"kind": kind, "subject": subject, "name": kind.replace("_", " "),
                  "distribution": "normal", "repeats": "anew", "degrees_of_freedom": None,
@@ -242,10 +246,9 @@ def history(sensor):
     for i, name in enumerate(("run-38", "run-39", "run-40")):
         points = [point(step, seed=i + 1) for step in range(1, 3 * len(FREQUENCIES) + 1)]
         runs.append({"run": name, "bench": "acc-1", "utc_ms": BEGIN_UTC_MS + 86400000 * (i - 3),
-                     "state": "done", "channel": CHANNEL, "unit": "\\one",
-                     "points": transfer(points)})
+                     "state": "done", "channel": CHANNEL, "points": transfer(points)})
     errors = []
-    for a, b in ((0, 1), (0, 2), (1, 2)):
+    for a, b in ((0, 1), (1, 2)):
         for p, q in zip(runs[a]["points"], runs[b]["points"]):
             errors.append({
                 "of": runs[b]["run"], "against": runs[a]["run"],
@@ -254,5 +257,4 @@ def history(sensor):
                     p["U_magnitude"], q["U_magnitude"]),
                 "en_phase": (q["phase_rad"] - p["phase_rad"]) / math.hypot(
                     p["U_phase_rad"], q["U_phase_rad"])})
-    return {"sensors": ["MPU-9250 0xbccb0100", "ADXL355 17"], "sensor": sensor, "runs": runs,
-            "en": errors}
+    return {"sensors": ["0xbccb0100", "ADXL355 17"], "sensor": sensor, "runs": runs, "en": errors}

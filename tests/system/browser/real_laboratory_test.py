@@ -157,8 +157,8 @@ class RealLaboratory(unittest.TestCase):
             row = f"document.querySelector('[data-step=\"{point['step']}\"]')"
             page.wait_for(f"{row} && {row}.textContent.includes({flag!r})")
             number, flags, height = page.value(
-                f"(r => [Number(r.cells[5].title.split(' ')[0]), r.cells[10].innerText, "
-                f"r.cells[10].getBoundingClientRect().height])({row})")
+                f"(r => [Number(r.cells[1].title.split(' ')[0]), r.cells[12].innerText, "
+                f"r.cells[12].getBoundingClientRect().height])({row})")
             self.assertEqual(number, point["magnitude"])
             self.assertIn(f"▲ {flag}", flags)
             self.assertGreater(height, 0)
@@ -182,7 +182,7 @@ class RealLaboratory(unittest.TestCase):
             rows, _ = page.wait_for(
                 f"(rows => rows.length === {len(points)} ? rows : null)([...document."
                 "querySelectorAll('[data-step]')].map(r => [Number(r.dataset.step), "
-                "...[5, 6, 7, 8].map(i => Number(r.cells[i].title.split(' ')[0]))]))")
+                "...[1, 2, 5, 6].map(i => Number(r.cells[i].title.split(' ')[0]))]))")
             for step, *numbers in rows:
                 point = points[step]
                 self.assertEqual(numbers, [point[key] for key in (

@@ -18,7 +18,7 @@ PICTURES = [
     ("bench", "bench/acc-1", 900,
      "document.querySelector('[data-field=spectrum]').textContent !== ''", False),
     ("run", "run/acc-2", 960, "document.querySelectorAll('[data-step]').length === 51", False),
-    ("history", "history", 860, "document.querySelectorAll('[data-panel=en] tr').length > 50",
+    ("history", "history", 860, "document.querySelectorAll('[data-panel=en] tr').length > 30",
      True),
 ]
 DRAWN = ("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => "

@@ -3,11 +3,12 @@
 uncertainty leaves them, and every digit in the title."""
 
 import json
+import math
 import threading
 import unittest.mock
 
 import played_state
-from page_case import PageCase, rows_of_chart, run, text_of, texts_of
+from page_case import PageCase, choose, drawn_pixels, rows_of_chart, run, text_of, texts_of
 from played_laboratory import example
 
 
@@ -110,18 +111,23 @@ class Views(PageCase):
                           "[...r.cells].map(c => [c.textContent, c.title]))")
         points = {p["step"]: p for p in self.laboratory.points["acc-2"]}
         for row in rows:
-            point = points[int(row[0][0])]
-            for column, key in ((5, "magnitude"), (6, "u_magnitude"), (7, "phase_rad"),
-                                (8, "u_phase_rad")):
+            point = points[int(row[8][0])]
+            shown = {**point, "phase_deg": math.degrees(point["phase_rad"]),
+                     "u_phase_deg": math.degrees(point["u_phase_rad"])}
+            for column, key in ((1, "magnitude"), (2, "u_magnitude"), (3, "phase_deg"),
+                                (4, "u_phase_deg"), (5, "phase_rad"), (6, "u_phase_rad")):
                 text, title = row[column]
-                self.assertEqual(float(title.split()[0]), point[key])
-                self.assertLessEqual(abs(float(text) - point[key]), digit(text), (key, text))
+                self.assertAlmostEqual(float(title.split()[0]), shown[key], 12)
+                self.assertLessEqual(abs(float(text) - shown[key]), digit(text), (key, text))
+            self.assertEqual(float(row[7][0]), round(point["measured_level_m_s2"], 3))
+            self.assertEqual(row[7][1], f"measured {point['measured_level_m_s2']} m/s², "
+                                        f"planned {point['level_m_s2']:g} m/s²")
         means = page.value("[...document.querySelectorAll('[data-frequency]')].map(r => "
                            "[...r.cells].map(c => c.title))")
         expected = played_state.transfer(self.laboratory.points["acc-2"])
         self.assertEqual(len(means), len(expected))
         for row, mean in zip(means, expected):
-            self.assertEqual([float(row[i].split()[0]) for i in (2, 3, 4, 5)],
+            self.assertEqual([float(row[i].split()[0]) for i in (1, 2, 5, 6)],
                              [mean[k] for k in ("magnitude", "U_magnitude", "phase_rad",
                                                 "U_phase_rad")])
         self.assertEqual(page.value(text_of("[data-field=advice]")), "Repeat more often.")
@@ -184,13 +190,14 @@ class Views(PageCase):
         for point in points:
             point["excited_axis"] = "z"
         for number, level in enumerate((2.0, 15.0), len(points) + 1):
-            points.append({**points[9], "step": number, "level_m_s2": level})
+            points.append({**points[9], "step": number, "level_m_s2": level,
+                           "measured_level_m_s2": None})
         page = self.open("run/acc-2")
         page.wait_for("document.querySelectorAll('[data-step]').length === 53")
         rows = page.value("[...document.querySelectorAll('[data-step]')].slice(-2).map(r => "
                           "[...r.cells].map(c => c.textContent))")
-        self.assertEqual([row[:4] for row in rows],
-                         [["52", "80", "2", "1"], ["53", "80", "15", "1"]])
+        self.assertEqual([[row[0], *row[7:10]] for row in rows],
+                         [["80", "(2)", "52", "1"], ["80", "(15)", "53", "1"]])
         self.assertIn(", excited axis z", page.value(text_of("[data-field=unit]")))
 
     def test_figures_are_drawn_as_they_are_described(self):
@@ -271,7 +278,7 @@ class Views(PageCase):
         self.laboratory.changed()
         page.wait_for("[...document.querySelectorAll('[data-step=\"24\"]')].map(r => "
                       "r.dataset.valid).join() === 'true'", 3)
-        self.assertIn("24 (attempt 2)", page.value(texts_of("[data-step] th")))
+        self.assertIn("24 (attempt 2)", page.value(texts_of("[data-step] td")))
 
     def test_budget_of_a_clicked_point(self):
         page = self.open("run/acc-2")
@@ -296,8 +303,9 @@ class Views(PageCase):
 
     def test_history_shows_runs_and_normalised_errors(self):
         page = self.open("history")
-        page.wait_for("document.querySelectorAll('[data-panel=en] tbody tr').length === 51")
-        history = played_state.history("MPU-9250 0xbccb0100")
+        page.wait_for("document.querySelectorAll('[data-panel=en] tbody tr').length === 34")
+        self.assertIn("without what both have in common", page.value(text_of("[data-panel=en]")))
+        history = played_state.history("0xbccb0100")
         titles = page.value("[...document.querySelectorAll('[data-panel=en] tbody tr')].map(r => "
                             "[r.cells[3].title, r.cells[4].title].map(Number))")
         expected = [[e["en_magnitude"], e["en_phase"]] for e in history["en"]]
@@ -307,7 +315,7 @@ class Views(PageCase):
         page.wait_for("document.querySelectorAll('[data-panel=en] tbody tr').length === 17")
 
     def test_history_tells_levels_apart_and_shows_open_closures(self):
-        history = played_state.history("MPU-9250 0xbccb0100")
+        history = played_state.history("0xbccb0100")
         for run in history["runs"]:
             run["points"] = [{**p, "level_m_s2": level} for p in run["points"][:3]
                              for level in (2.0, 10.0)]
@@ -342,8 +350,8 @@ class Views(PageCase):
         row = f"[data-step='{point['step']}']"
         page.wait_for(f"document.querySelector({json.dumps(row)}) !== null")
         cells = page.value(f"[...document.querySelector({json.dumps(row)}).cells]"
-                           ".slice(5, 9).map(c => c.textContent)")
-        self.assertEqual(cells, ["-30", "150", "0.12", "–"])
+                           ".slice(1, 7).map(c => c.textContent)")
+        self.assertEqual(cells, ["-30", "150", "–", "–", "0.12", "–"])
 
 
 def digit(text):
@@ -351,19 +359,6 @@ def digit(text):
     mantissa, _, exponent = text.partition("e")
     places = len(mantissa.partition(".")[2])
     return (0.5 + 1e-6) * 10 ** (int(exponent or 0) - places)
-
-
-def choose(page, value):
-    """An option of the only list that has it."""
-    page.value(f"(s => {{ s.value = {value!r}; s.dispatchEvent(new Event('change')); }})"
-               "([...document.querySelectorAll('select')].find(s => [...s.options].some(o => "
-               f"o.value === {value!r})))")
-
-
-def drawn_pixels(chart):
-    return (f"(c => c ? (d => {{ let n = 0; for (let i = 3; i < d.length; i += 4) n += d[i] > 0; "
-            "return n; })(c.getContext('2d').getImageData(0, 0, c.width, c.height).data) : 0)"
-            f"(document.querySelectorAll('.canvas')[{chart}]?.querySelector('canvas'))")
 
 
 if __name__ == "__main__":

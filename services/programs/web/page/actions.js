@@ -66,6 +66,7 @@ export class Actions {
     this.show_all();
   }
 
+  /** {files, members}: what may be said of a run besides its file. */
   bench_files() {
     return get("/api/bench-files", {}, this.token);
   }
@@ -75,8 +76,9 @@ export class Actions {
     return this.answer(post(bench_path(bench, "/command"), command, this.token));
   }
 
-  start(file) {
-    return this.answer(post("/api/run", { file }, this.token));
+  /** run: {file, and what `members` of bench_files() names} */
+  start(run) {
+    return this.answer(post("/api/run", run, this.token));
   }
 
   async answer(request) {

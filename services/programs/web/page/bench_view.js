@@ -15,6 +15,7 @@ import { StateBadge } from "./state_badge.js";
 import { StepPanel } from "./step_panel.js";
 
 const FIT_EVERY_MS = 2000;
+const EXCITED = ["settling", "steady"]; // states of a step
 
 export class BenchView {
   constructor(page, route) {
@@ -133,8 +134,9 @@ export class BenchView {
   show(data) {
     this.show_head(data);
     this.plan.update(data.plan, data.now);
-    this.sources.update(data.sources ?? []);
-    this.signals.offer(data.sources ?? []);
+    const is_excited = EXCITED.includes(data.now?.state);
+    this.sources.update(data.sources ?? [], is_excited);
+    this.signals.offer(data.sources ?? [], is_excited);
     this.step.show_now(data);
     this.events.update(data.messages);
     set_attribute(this.root, "data-number", data.number);

@@ -1,12 +1,13 @@
 /**
  * Earlier runs of a sensor laid over each other, with the normalised error E_n of each against the
- * others: |E_n| up to 1 agrees within the uncertainties.
+ * one before: |E_n| up to 1 agrees within the uncertainties.
  */
 
 import { get } from "./api.js";
+import { copy_tools } from "./copy_tools.js";
 import { Choice, element, name_element, set_shown, set_text, table_in_scroll } from "./element.js";
 import { full, is_number, significant, utc_text } from "./number_text.js";
-import { series_colour, series_marker } from "./palette.js";
+import { overlay_panel } from "./overlay.js";
 import { PanelChart } from "./panel_chart.js";
 import { href_of } from "./route.js";
 import { quantity_in } from "./unit_text.js";
@@ -49,9 +50,10 @@ export class HistoryView {
       element("section", { class: "panel", "data-panel": "en" },
               element("h2", {}, "Normalised error E_n"),
               element("p", { class: "quiet" },
-                      "E_n is the difference of two runs over the root of the sum of squares of " +
-                      "their expanded uncertainties U; both agree where |E_n| is at most 1."),
-              this.worst, root),
+                      "E_n is the difference of two runs over its expanded uncertainty: both U " +
+                      "without what both have in common, as the calibration of the reference; they " +
+                      "agree where |E_n| is at most 1."),
+              this.worst, copy_tools(root), root),
     );
     this.ask();
   }
@@ -101,8 +103,11 @@ export class HistoryView {
     this.show_runs(runs);
     const shown = runs.map((run, index) => ({ run, index }))
       .filter(({ run }) => !this.hidden.has(run.run));
-    this.show_chart(this.magnitude, shown, "magnitude", quantity_in("magnitude", runs[0]?.unit));
-    this.show_chart(this.phase, shown, "phase", "phase (lead) in rad");
+    const named = shown.map(({ run, index }) => ({
+      name: `${run.run}, ${utc_text(run.utc_ms).slice(0, 10)}`, index, points: run.points ?? [] }));
+    this.magnitude.show(overlay_panel(named, "magnitude",
+                                      quantity_in("magnitude", runs[0]?.points?.[0]?.unit)));
+    this.phase.show(overlay_panel(named, "phase", "phase (lead) in rad"));
     this.show_en(new Set(shown.map(({ run }) => run.run)));
   }
 
@@ -121,26 +126,6 @@ export class HistoryView {
                        element("p", { class: "flagged" }, "▲ open closure: ",
                                name_element(sentence, 300))));
     }));
-  }
-
-  // In the form in which the daemon describes the figures of a run.
-  show_chart(chart, shown, quantity, y_label) {
-    const series = shown.flatMap(({ run, index }) => lines_of(run.points ?? []).map(
-      ({ name, points }, line) => ({
-        label: `${run.run}, ${utc_text(run.utc_ms).slice(0, 10)}${name}`,
-        colour: series_colour(index),
-        marker: series_marker(index + line),
-        radius: 6 - 1.2 * (index % 3),
-        joined: true,
-        line_width: 1.3,
-        points: points.map((p) => (quantity === "magnitude"
-          ? [p.frequency_hz, p.magnitude, p.U_magnitude ?? 0]
-          : [p.frequency_hz, p.unwrapped_phase_rad ?? p.phase_rad, p.U_phase_rad ?? 0]))
-          .sort((a, b) => a[0] - b[0]),
-      }),
-    ));
-    chart.show({ x_label: "frequency in Hz", y_label: `${y_label}, bars: U`,
-                 x_scale: "logarithmic", y_scale: "linear", y_range: null, series });
   }
 
   show_en(names) {
@@ -172,16 +157,6 @@ export class HistoryView {
     this.magnitude.destroy();
     this.phase.destroy();
   }
-}
-
-// Points as lines: one, or one a level where a frequency has several levels.
-function lines_of(points) {
-  const levels = [...new Set(points.map((p) => p.level_m_s2))].sort((a, b) => a - b);
-  const frequencies = new Set(points.map((p) => p.frequency_hz));
-  const places = new Set(points.map((p) => `${p.frequency_hz} ${p.level_m_s2}`));
-  return places.size === frequencies.size ? [{ name: "", points }] : levels.map((level) => ({
-    name: `, ${significant(level)} m/s²`, points: points.filter((p) => p.level_m_s2 === level),
-  }));
 }
 
 // Frequency, with level and axis where they tell errors apart.

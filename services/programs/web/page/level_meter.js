@@ -1,6 +1,6 @@
 /**
  * What of a channel's range a signal uses: a bar, a percentage and a word. Above 95 % of the range
- * is an overload; below 1 % the resolution of the channel is wasted.
+ * is an overload; below 1 % the resolution of the channel is wasted, but for one that is idle.
  */
 
 import { element, set_attribute, set_text } from "./element.js";
@@ -22,15 +22,18 @@ export function range_use(channel) {
     ? Math.abs(level_peak) / Math.max(Math.abs(minimum), Math.abs(maximum)) : null;
 }
 
-/** [tone, word] of it. */
-export function judge_use(use, over_range) {
+/** [tone, word] of it; is_excited: something is to be seen. */
+export function judge_use(use, over_range, is_excited) {
   if (over_range > 0 || (use !== null && use > OVERLOAD)) {
     return ["error", "✕ overload"];
   }
   if (use === null) {
     return ["stale", "range not known"];
   }
-  return use < UNDERLOAD ? ["warning", "▲ underload"] : ["ok", "✓ in range"];
+  if (use >= UNDERLOAD) {
+    return ["ok", "✓ in range"];
+  }
+  return is_excited ? ["warning", "▲ underload"] : ["stale", "○ quiet"];
 }
 
 export class LevelMeter {
@@ -43,10 +46,10 @@ export class LevelMeter {
     this.root = element("p", { class: "level" }, this.meter, " ", this.text);
   }
 
-  update(channel) {
+  update(channel, is_excited) {
     const { level_peak, level_rms, minimum, maximum, over_range, unit } = channel;
     const use = range_use(channel);
-    const [tone, word] = judge_use(use, over_range);
+    const [tone, word] = judge_use(use, over_range, is_excited);
     const percent = use === null ? 0 : Math.min(100, 100 * use);
     const short = unit_text(unit);
     this.bar.style.width = `${percent.toFixed(1)}%`;

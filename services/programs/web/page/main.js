@@ -7,13 +7,14 @@ import { Actions } from "./actions.js";
 import { BenchView } from "./bench_view.js";
 import { Connection } from "./connection.js";
 import { element, set_attribute, set_shown, set_text } from "./element.js";
-import { visible } from "./foreign_text.js";
+import { shortened, visible } from "./foreign_text.js";
 import { HistoryView } from "./history_view.js";
 import { LaboratoryView } from "./laboratory_view.js";
 import { duration_text, utc_text } from "./number_text.js";
 import { href_of, parse_route } from "./route.js";
 import { RunView } from "./run_view.js";
 import { ServerClock } from "./server_clock.js";
+import { sign_of, word_of } from "./state_badge.js";
 
 const VIEWS = {
   laboratory: { name: "Laboratory", make: LaboratoryView },
@@ -29,6 +30,9 @@ const CONNECTIONS = {
   lost: ["✕", "error", "connection lost"],
   hidden: ["‖", "stale", "paused while hidden"],
 };
+
+const STOPS = ["aborted", "paused", "silent"]; // states of a bench whose run does not go on
+const MAX_REASON = 120;
 
 class Page {
   constructor() {
@@ -77,7 +81,8 @@ class Page {
     }
     this.links.get("bench").href = href_of("bench", route.bench);
     this.links.get("run").href = href_of("run", route.bench);
-    document.title = `${VIEWS[route.view].name}${route.bench ? ` ${route.bench}` : ""} · dyncal`;
+    this.route = route;
+    this.show_title();
     if (!is_first) {
       this.main.focus({ preventScroll: true });
       window.scrollTo(0, 0);
@@ -103,6 +108,7 @@ class Page {
       this.actions.set_allowed(data.may_act === true);
       set_shown(this.guide, data.has_guide === true);
       this.show_foot();
+      this.show_title();
     }
     this.view.receive(name, data);
   }
@@ -124,6 +130,20 @@ class Page {
     set_attribute(this.status, "data-tone", tone);
     set_attribute(this.status, "data-state", this.state);
     document.body.classList.toggle("is-old", this.state === "lost");
+  }
+
+  // What stops a run stands first, so that the tab tells it.
+  show_title() {
+    const { view, bench } = this.route;
+    const stopped = (this.laboratory?.benches ?? []).find((one) =>
+      STOPS.includes(one.state) && (!bench || one.bench === bench));
+    const reason = stopped?.message ? `: ${shortened(stopped.message, MAX_REASON)}` : "";
+    const news = stopped ? `${sign_of(stopped.state)} ${shortened(stopped.bench, 48)} ` +
+      `${word_of(stopped.state)}${reason} · ` : "";
+    const title = `${news}${VIEWS[view].name}${bench ? ` ${bench}` : ""} · dyncal`;
+    if (document.title !== title) {
+      document.title = title;
+    }
   }
 
   show_foot() {

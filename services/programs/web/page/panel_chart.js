@@ -3,6 +3,7 @@
  * markers are the description's; nothing is added here but zoom, reading and the click on a point.
  */
 
+import { decade_ticker, frequency_ticker } from "./axis_ticks.js";
 import { Chart, place_x, place_y } from "./chart.js";
 import { is_number, significant } from "./number_text.js";
 import { draw_layer } from "./panel_drawing.js";
@@ -46,7 +47,7 @@ export class PanelChart {
       read: (x, points) => reading(x, points, layers, panel),
       options: {
         logscale: is_log.y,
-        axes: axes_of(is_log),
+        axes: axes_of(is_log, layers),
         series: Object.fromEntries(layers.map((layer, i) => [
           `s${i}`, { color: layer.colour, plotter: (event) => draw_layer(event, layer) }])),
       },
@@ -129,10 +130,14 @@ function rows_of(layers) {
   return [...rows.values()].sort((a, b) => a[0] - b[0]);
 }
 
-function axes_of(is_log) {
+function axes_of(is_log, layers) {
+  const plain = window.Dygraph?.numericTicks;
+  const measured = layers.filter(({ kind }) => kind === "series")
+    .flatMap(({ points }) => points.map(([x]) => x));
   return {
-    x: { logscale: is_log.x, axisLabelFormatter: (x) => significant(x, is_log.x ? 4 : 6) },
-    y: { axisLabelWidth: 66, pixelsPerLabel: is_log.y ? 34 : 26,
+    x: { logscale: is_log.x, ticker: is_log.x ? frequency_ticker(measured) : plain,
+         axisLabelFormatter: (x) => significant(x, is_log.x ? 4 : 6) },
+    y: { axisLabelWidth: 66, pixelsPerLabel: 26, ticker: is_log.y ? decade_ticker(true) : plain,
          axisLabelFormatter: (y) => significant(y, 6) },
   };
 }

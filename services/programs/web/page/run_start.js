@@ -6,6 +6,13 @@ import { ask } from "./dialog.js";
 import { element } from "./element.js";
 import { shortened } from "./foreign_text.js";
 
+// Of members of a run.
+const LABELS = {
+  run: "Name of the run (empty: the time) ", operator: "Operator ", comment: "Comment ",
+  sensor: "Sensor ",
+};
+const MAX_TEXT = 200;
+
 /** A button for ActionPanel. */
 export function start_button(actions) {
   return { text: "Start a run …", act: () => choose_and_start(actions) };
@@ -13,8 +20,9 @@ export function start_button(actions) {
 
 async function choose_and_start(actions) {
   let files;
+  let members;
   try {
-    files = (await actions.bench_files()).files ?? [];
+    ({ files = [], members = [] } = await actions.bench_files());
   } catch (problem) {
     return { ok: false, text: problem.message };
   }
@@ -23,14 +31,18 @@ async function choose_and_start(actions) {
   }
   const select = element("select", {}, files.map((file) =>
     element("option", { value: name_of(file) }, label_of(file))));
+  const inputs = members.filter((name) => Object.hasOwn(LABELS, name)).map((name) =>
+    element("input", { type: "text", name, autocomplete: "off", maxlength: MAX_TEXT }));
   const file = await ask({
     title: "Start a run",
     lines: ["The bench's exciter will move: nobody may be working on it."],
-    field: element("label", {}, "Bench file ", select),
+    field: element("div", { class: "fields" }, element("label", {}, "Bench file ", select),
+                   inputs.map((input) => element("label", {}, LABELS[input.name], input))),
     yes: "Start the run",
     danger: true,
   });
-  return file === null ? null : actions.start(file);
+  const said = inputs.map(({ name, value }) => [name, value.trim()]).filter(([, text]) => text);
+  return file === null ? null : actions.start({ file, ...Object.fromEntries(said) });
 }
 
 function name_of(file) {

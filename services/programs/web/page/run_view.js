@@ -6,6 +6,7 @@ import { bench_path, get } from "./api.js";
 import { BudgetPanel } from "./budget_panel.js";
 import { ClockPanel } from "./clock_panel.js";
 import { ClosurePanel } from "./closure_panel.js";
+import { ComparisonPanel } from "./comparison_panel.js";
 import { ConformityPanel } from "./conformity_panel.js";
 import { DownloadPanel } from "./download_panel.js";
 import { Choice, element, name_element, set_attribute, set_name, set_text } from "./element.js";
@@ -39,6 +40,7 @@ export class RunView {
     this.bars = new Choice("Bars", () => this.show_figures());
     this.bars.offer(BARS);
     this.figures = new RunFigures((step) => this.show_budget_of_step(step));
+    this.comparison = new ComparisonPanel();
     this.budget = new BudgetPanel();
     this.flags = new FlagPanel();
     this.closures = new ClosurePanel();
@@ -63,7 +65,7 @@ export class RunView {
       element("div", { class: "tools no-print" }, this.benches.root, this.runs.root,
               this.channel.root, this.bars.root),
       this.note, this.progress, this.delay,
-      this.figures.root, this.budget.root, this.flags.root, this.closures.root,
+      this.figures.root, this.comparison.root, this.budget.root, this.flags.root, this.closures.root,
       this.conformity.root, this.table.root, this.clock_panel.root, this.files.root,
     );
   }
@@ -117,7 +119,7 @@ export class RunView {
     }
     if (this.is_current()) {
       this.state.update(tile.state);
-      set_text(this.progress, tile.state === "done" ? `All ${tile.step_count ?? "–"} steps are done.`
+      set_text(this.progress, tile.state === "done" ? `All ${tile.step_count ?? ""} steps are done.`.replace("  ", " ")
         : `Step ${tile.step ?? "–"} of ${tile.step_count ?? "–"}, ` +
         `${tile.frequency_text_hz ? `${tile.frequency_text_hz} Hz, ` : ""}` +
         `${duration_text(tile.time_left_s)} left`);
@@ -170,6 +172,7 @@ export class RunView {
     this.show_delay(transfer);
     const axis = transfer?.points[0]?.excited_axis ?? points[0]?.excited_axis ?? "";
     this.table.update(points, transfer, unit, axis);
+    this.comparison.update(this.bench, run, channel);
     this.closures.update(transfer?.closures ?? []);
     this.flags.update(flags_of(run, channel), points);
     this.clock_panel.update(clock_of(run, channel));
@@ -227,5 +230,6 @@ export class RunView {
 
   leave() {
     this.figures.leave();
+    this.comparison.leave();
   }
 }

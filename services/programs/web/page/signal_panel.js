@@ -7,7 +7,7 @@ import { bench_path, get } from "./api.js";
 import { split_channel } from "./connection.js";
 import { Choice, element, set_attribute, set_shown, set_text } from "./element.js";
 import { LevelMeter } from "./level_meter.js";
-import { full, short_time, significant, UNKNOWN, utc_text, with_unit } from "./number_text.js";
+import { full, is_number, short_time, significant, utc_text, with_unit } from "./number_text.js";
 import { TraceChart } from "./trace_chart.js";
 import { quantity_in, unit_text } from "./unit_text.js";
 
@@ -26,6 +26,7 @@ export class SignalPanel {
     this.is_frozen = false;
     this.is_asking = false; // for a spectrum
     this.signal = null;
+    this.is_excited = false;
     this.channel = new Choice("Channel", () => this.change(on_change));
     this.seconds = new Choice("Window", () => this.change(on_change));
     this.seconds.offer(SECONDS.map((value) => ({ value, text: `${value} s` })), "2");
@@ -63,8 +64,9 @@ export class SignalPanel {
     return Math.max(100, Math.min(MAX_COLUMNS, Math.round(width / 100) * 100));
   }
 
-  /** The channels of the bench's sources. */
-  offer(sources) {
+  /** The channels of the bench's sources; is_excited: a step is. */
+  offer(sources, is_excited) {
+    this.is_excited = is_excited;
     const before = this.channel.value;
     const names = sources.flatMap(({ source, channels }) =>
       (channels ?? []).map(({ name }) => `${source}/${name}`));
@@ -107,7 +109,7 @@ export class SignalPanel {
   }
 
   show(signal) {
-    this.meter.update(signal);
+    this.meter.update(signal, this.is_excited);
     const columns = signal.columns ?? [];
     const gaps = signal.gaps ?? [];
     this.trace.show([{ text: "signal", points: columns, gaps }],
@@ -151,8 +153,9 @@ export class SignalPanel {
     );
     const short = unit_text(unit);
     set_text(this.spectrum_note,
-             `Fundamental ${with_unit(fundamental_hz, "Hz", 6)}, amplitude ` +
-             `${with_unit(amplitude, short)}; THD ${percent(thd)}; noise floor ` +
+             `${is_number(thd) ? "Fundamental" : "Nothing is excited; largest line at"} ` +
+             `${with_unit(fundamental_hz, "Hz", 6)}, amplitude ${with_unit(amplitude, short)}; ` +
+             `${is_number(thd) ? `THD ${significant(100 * thd, 3)} %; ` : ""}noise floor ` +
              `${with_unit(noise_floor, short, 2)} a line; ${window ?? ""} window, resolution ` +
              `${with_unit(resolution_hz, "Hz", 3)}`);
     set_attribute(this.spectrum_note, "title",
@@ -175,8 +178,4 @@ export class SignalPanel {
     this.trace.destroy();
     this.spectrum.destroy();
   }
-}
-
-function percent(part) {
-  return typeof part === "number" ? `${significant(100 * part, 3)} %` : UNKNOWN;
 }

@@ -3,6 +3,7 @@
  * stays; also plain lines (a fitted sine, a spectrum).
  */
 
+import { decade_ticker } from "./axis_ticks.js";
 import { Chart, place_x, place_y } from "./chart.js";
 import { is_number, significant } from "./number_text.js";
 import { ground_colour, series_colour } from "./palette.js";
@@ -23,8 +24,10 @@ export class TraceChart {
         logscale: y_log,
         xRangePad: 0,
         axes: {
-          x: { logscale: x_log, axisLabelFormatter: (x) => significant(x, 6) },
-          y: { axisLabelWidth: 66, pixelsPerLabel: y_log ? 34 : 26, axisLabelFormatter: (y) => significant(y, 6) },
+          x: { logscale: x_log, axisLabelFormatter: (x) => significant(x, 6),
+               ...(x_log ? { ticker: decade_ticker(false) } : {}) },
+          y: { axisLabelWidth: 66, pixelsPerLabel: 26, axisLabelFormatter: (y) => significant(y, 6),
+               ...(y_log ? { ticker: decade_ticker(true) } : {}) },
         },
       },
     });

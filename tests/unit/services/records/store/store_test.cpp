@@ -134,6 +134,15 @@ TEST_P(StoreTest, FindsRuns) {
   EXPECT_EQ(found({.bench = "none"}), "");
 }
 
+TEST_P(StoreTest, NamesTheSensorsAndNoOtherInstruments) {
+  EXPECT_THAT(store_->sensors().value(), testing::IsEmpty());
+  ASSERT_TRUE(add(ExampleResult{}));
+  ASSERT_TRUE(add(ExampleResult{.run = "r2", .days = 1, .serial = ""}));
+  ASSERT_TRUE(add(ExampleResult{.run = "r3", .days = 2}));
+  // Not the ACS, whose serial number is 42: a device where there is no number.
+  EXPECT_THAT(store_->sensors().value(), testing::UnorderedElementsAre("SmartUp", "mpu-7"));
+}
+
 TEST_P(StoreTest, GivesTheCalibrationsOfASensorByTime) {
   ASSERT_TRUE(add(ExampleResult{.run = "r2", .days = 365, .magnitude = 1.25}));
   ASSERT_TRUE(add(ExampleResult{}));

@@ -110,8 +110,8 @@ TEST(RunJson, CarriesEveryDigitAndNullForWhatIsNotANumber) {
   invalid.flags().emplace_back("dau: samples lost");
   invalid.flag_names().emplace_back("samples_lost");
   laboratory.take(invalid);
-  const Json json =
-      Json::parse(json_text(run_json("acc-1", laboratory.bench("acc-1")->runs.at("r1"))));
+  const network::Bench& bench = *laboratory.bench("acc-1");
+  const Json json = Json::parse(json_text(run_json(bench, bench.runs.at("r1"))));
   ASSERT_EQ(json["points"].size(), 2U);
   EXPECT_EQ(json["points"][0]["magnitude"].get<double>(), magnitude);
   EXPECT_TRUE(json["points"][1]["magnitude"].is_null());

@@ -130,7 +130,7 @@ TEST(SameText, OnPageTerminalReportCertificateAndInCsv) {
   std::size_t compared = 0;
   for (int i = 0; i < runs; ++i) {
     const Drawn drawn = drawn_run(random);
-    const Json page = run_json("b", drawn.run);
+    const Json page = run_json(network::Bench{}, drawn.run);
     const StoredResult stored = stored_result_of(drawn.outcome);
     const auto terminal = rows_of(result_table(drawn.outcome), ' ', 6, "", 1);
     const auto csv = figures::transfer_function_figure(
