@@ -8,8 +8,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "services/base/calendar_day.hpp"
 #include "services/base/json_text.hpp"
 #include "services/programs/web/request_router.hpp"
+#include "services/records/store/due_calibrations.hpp"
 #include "services/records/store/history.hpp"
 #include "services/records/store/store.hpp"
 #include "services/records/store/unwrapped_phases.hpp"
@@ -105,6 +107,12 @@ Expected<void> add_history(Store& store, const std::string& sensor, Json& json) 
   return {};
 }
 
+Expected<void> add_due(const std::string& place, Json& json) {
+  DYNCAL_TRY(const auto dates, calibration_dates(place));
+  json["due"] = calibration_dates_json(dates, today_utc());
+  return {};
+}
+
 } // namespace
 
 bool HistoryAnswers::answer(const httplib::Request& request, httplib::Response& response) {
@@ -115,7 +123,8 @@ bool HistoryAnswers::answer(const httplib::Request& request, httplib::Response& 
   Json json{{"sensor", sensor},
             {"sensors", Json::array()},
             {"runs", Json::array()},
-            {"en", Json::array()}};
+            {"en", Json::array()},
+            {"due", Json::array()}};
   const std::unique_lock lock(mutex_, longest_wait);
   if (!lock) {
     json["problem"] = "the store is slow and is still answering others; ask again";
@@ -128,7 +137,9 @@ bool HistoryAnswers::answer(const httplib::Request& request, httplib::Response& 
     response.set_content(json_text(json), "application/json");
     return true;
   }
-  if (const auto added = add_history(**store, sensor, json); !added) {
+  const auto added =
+      add_history(**store, sensor, json).and_then([&] { return add_due(place_, json); });
+  if (!added) {
     answer_error(500, "failed", added.error().message, response);
     return true;
   }

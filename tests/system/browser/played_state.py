@@ -257,4 +257,12 @@ def history(sensor):
                     p["U_magnitude"], q["U_magnitude"]),
                 "en_phase": (q["phase_rad"] - p["phase_rad"]) / math.hypot(
                     p["U_phase_rad"], q["U_phase_rad"])})
-    return {"sensors": ["0xbccb0100", "ADXL355 17"], "sensor": sensor, "runs": runs, "en": errors}
+    due = [{"what": "sensor", "name": "Sensor Works MPU-9250", "serial": "SN-7", "owner": None,
+            "last": None, "certificate": None, "due": None, "overdue": True},
+           {"what": "reference", "name": "Reference 8305", "serial": "1234567", "owner": None,
+            "last": "2025-01-07", "certificate": "R-2025-3", "due": "2025-06-30", "overdue": True},
+           {"what": "sensor", "name": "Sensor Works MPU-9250", "serial": "0xbccb0100",
+            "owner": "Customer Example", "last": "2026-01-07", "certificate": "2026-0042",
+            "due": "2999-01-07", "overdue": False}]
+    return {"sensors": ["0xbccb0100", "ADXL355 17"], "sensor": sensor, "runs": runs, "en": errors,
+            "due": due}

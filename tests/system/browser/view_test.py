@@ -314,6 +314,18 @@ class Views(PageCase):
         page.value("document.querySelector('.runs input').click()")
         page.wait_for("document.querySelectorAll('[data-panel=en] tbody tr').length === 17")
 
+    def test_history_lists_what_is_to_be_calibrated(self):
+        page = self.open("history")
+        page.wait_for("document.querySelectorAll('[data-panel=due] tbody tr').length === 3")
+        self.assertEqual(page.value(text_of("[data-field=due]")), "✕ 2 due, 0 more within 30 days.")
+        self.assertEqual(page.value(texts_of("[data-panel=due] tbody th")),
+                         ["✕ never calibrated", "✕ 2025-06-30", "2999-01-07"])
+        nothing = {**played_state.history("0xbccb0100"), "due": []}
+        with unittest.mock.patch.object(played_state, "history", lambda sensor: nothing):
+            page = self.open("history")
+            page.wait_for("document.querySelectorAll('[data-panel=en] tbody tr').length === 34")
+            self.assertTrue(page.value("document.querySelector('[data-panel=due]').hidden"))
+
     def test_history_tells_levels_apart_and_shows_open_closures(self):
         history = played_state.history("0xbccb0100")
         for run in history["runs"]:

@@ -1,10 +1,11 @@
 /**
  * Earlier runs of a sensor laid over each other, with the normalised error E_n of each against the
- * one before: |E_n| up to 1 agrees within the uncertainties.
+ * one before: |E_n| up to 1 agrees within the uncertainties. And what is to be calibrated.
  */
 
 import { get } from "./api.js";
 import { copy_tools } from "./copy_tools.js";
+import { DuePanel } from "./due_panel.js";
 import { Choice, element, name_element, set_shown, set_text, table_in_scroll } from "./element.js";
 import { full, is_number, significant, utc_text } from "./number_text.js";
 import { overlay_panel } from "./overlay.js";
@@ -33,6 +34,7 @@ export class HistoryView {
     this.runs = element("ul", { class: "runs" });
     this.magnitude = new PanelChart({ title: "Magnitude of earlier runs" });
     this.phase = new PanelChart({ title: "Phase of earlier runs" });
+    this.due = new DuePanel();
     this.worst = element("p", { "data-field": "en_worst" });
     const { root, body } = table_in_scroll("Normalised errors", EN_HEADINGS);
     this.en_table = root;
@@ -54,6 +56,7 @@ export class HistoryView {
                       "without what both have in common, as the calibration of the reference; they " +
                       "agree where |E_n| is at most 1."),
               this.worst, copy_tools(root), root),
+      this.due.root,
     );
     this.ask();
   }
@@ -80,6 +83,7 @@ export class HistoryView {
       set_text(this.message, `✕ No history: ${problem.message}`);
       return;
     }
+    this.due.show(this.history.due ?? []);
     const sensors = this.history.sensors ?? [];
     this.sensors.offer(sensors.map((value) => ({ value, text: value })), this.sensor);
     if (this.sensor === null && sensors.length > 0) {

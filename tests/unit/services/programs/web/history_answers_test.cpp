@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "services/records/store/sensor_library.hpp"
 #include "services/records/store/store.hpp"
 #include "tests/temporary_folder.hpp"
 #include "tests/unit/services/records/store/example_results.hpp"
@@ -90,6 +91,10 @@ TEST(HistoryAnswers, TakeOutWhatBothResultsHaveInCommon) {
         (*store)->add(folder.write(std::string(run) + ".json", tests::text_of(outcome)));
     ASSERT_TRUE(added) << added.error().message;
   }
+  const auto library = SensorLibrary::open(place);
+  ASSERT_TRUE(library && (*library)->add("[sensor]\nname = \"a\"\nmanufacturer = \"b\"\nmodel = "
+                                         "\"c\"\nserial = \"SN-9\"\ninterval_months = 12\n",
+                                         "s.toml", false));
   HistoryAnswers answers(place);
   httplib::Request request;
   request.path = "/api/history";
@@ -98,6 +103,9 @@ TEST(HistoryAnswers, TakeOutWhatBothResultsHaveInCommon) {
   ASSERT_TRUE(answers.answer(request, response));
   const auto json = nlohmann::json::parse(response.body);
   EXPECT_EQ(json["sensors"], nlohmann::json({"mpu-7"}));
+  ASSERT_EQ(json["due"].size(), 1U);
+  EXPECT_EQ(json["due"][0]["serial"], "SN-9");
+  EXPECT_TRUE(json["due"][0]["overdue"].get<bool>());
   double largest = 0.0;
   double with_all_of_u = 0.0; // at 20 Hz there is no budget
   for (const auto& one : json["en"]) {
