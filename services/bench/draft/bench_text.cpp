@@ -57,6 +57,7 @@ bench = {}
 # Decimal text, because 199.87 is not exact as a number.
 frequencies_hz = {}
 level = {:<18} # m/s^2, amplitude; or a list, one level for every frequency
+# level_displacement_mm = 5.0 # within the stroke of the exciter: the smaller of both holds
 repetitions = {}
 repeat_first = true # the first frequency once more at the end: shows a drift
 settling_s = {:<13} # before every step
