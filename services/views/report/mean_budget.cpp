@@ -28,12 +28,13 @@ struct Rows {
   }
 };
 
-void add(const Contribution& one, double n, Rows& rows) {
+// `size`: the result over the mean, which rows of the mean are relative to.
+void add(const Contribution& one, double size, double n, Rows& rows) {
   Contribution& sum = rows.row_like(one);
   const bool is_drawn = one.repeats == analysis::Repeats::anew;
-  const double magnitude2 = std::pow(one.u_magnitude_rel, 2);
+  const double magnitude2 = std::pow(size * one.u_magnitude_rel, 2);
   const double lasting2 =
-      is_drawn ? std::min(magnitude2, std::pow(one.u_lasting_magnitude_rel, 2)) : magnitude2;
+      is_drawn ? std::min(magnitude2, std::pow(size * one.u_lasting_magnitude_rel, 2)) : magnitude2;
   sum.u_magnitude_rel += (magnitude2 - lasting2) / (n * n) + lasting2 / n;
   sum.u_lasting_magnitude_rel += is_drawn ? lasting2 / n : 0.0;
   sum.u_phase_rad += std::pow(one.u_phase_rad, 2) / (is_drawn ? n * n : n);
@@ -63,7 +64,7 @@ std::vector<Contribution> budget_of_mean(const StoredResult& result, const Store
   const auto n = static_cast<double>(repetitions.size());
   for (const StoredPoint* point : repetitions) {
     for (const Contribution& one : point->budget) {
-      add(one, n, rows);
+      add(one, point->magnitude / value.magnitude, n, rows);
     }
   }
   for (Contribution& row : rows.rows) {
