@@ -91,6 +91,10 @@ Expected<PlayedSource> PlayedSource::prepare(const SourceSettings& settings,
                                              const std::stop_token& stop) {
   DYNCAL_TRY(auto driver, make_driver(settings));
   DYNCAL_TRY(auto description, describe(*driver, settings, stop));
+  if (const auto known = check_units(description, settings.identity); !known) {
+    return fail(ErrorCode::bad_argument,
+                fmt::format("source '{}': {}", settings.name, known.error().message));
+  }
   return PlayedSource(settings, std::move(driver), std::move(description));
 }
 

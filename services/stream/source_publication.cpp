@@ -118,6 +118,7 @@ bool SourcePublication::next_message() {
     if (entry->session != session_) {
       begin_session(entry->session);
     }
+    convert(publisher_->factors(), entry->block.samples, entry->block.values);
     hold(std::move(*entry), "");
     return true;
   }

@@ -33,8 +33,17 @@ void SourcePublisher::describe(const drivers::SourceDescription& reported) {
     }
     description_ = description;
     description_changed_ = true;
+    factors_ = unit_factors(reported, options_.identity);
+  }
+  for (const std::string& doubt : unit_doubts(reported, options_.identity)) {
+    warn(doubt);
   }
   wake_up_->ring();
+}
+
+std::vector<double> SourcePublisher::factors() const {
+  const std::lock_guard lock(mutex_);
+  return factors_;
 }
 
 void SourcePublisher::begin_session() {

@@ -131,6 +131,8 @@ public:
   [[nodiscard]] Snapshot snapshot() const;
   [[nodiscard]] std::uint64_t session() const; // of the blocks that are taken from now on
   [[nodiscard]] std::optional<drivers::SourceDescription> take_changed_description();
+  // Of the newest description; as unit_factors(), for the blocks of the ring, which are as taken.
+  [[nodiscard]] std::vector<double> factors() const;
   [[nodiscard]] BlockRing& ring() { return ring_; }
   void note_running(const std::vector<std::string>& runs);
   // Somebody arms for this run. Returns whether the source may answer now: not while it plays
@@ -154,6 +156,7 @@ private:
   std::size_t gap_count_ = 0;
   std::optional<drivers::SourceDescription> description_;
   bool description_changed_ = false;
+  std::vector<double> factors_;
   std::condition_variable_any running_changed_;
   std::vector<std::string> running_;
   std::vector<std::string> returned_;

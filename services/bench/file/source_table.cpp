@@ -11,7 +11,7 @@
 
 #include "services/bench/file/bench_name.hpp"
 #include "services/bench/file/driver_tables.hpp"
-#include "services/contract/unit.hpp"
+#include "services/contract/channel_unit.hpp"
 
 namespace dyncal::inline bench {
 
@@ -79,14 +79,15 @@ void read_units(TomlTable& table, SourceSettings& source) {
   std::size_t entry = 0;
   for (const auto& [channel, unit] : table.text_map("units")) {
     ++entry;
-    if (const auto d_si = to_d_si(unit)) {
-      source.units.emplace(channel, *d_si);
+    const auto parsed = parse_channel_unit(unit);
+    if (!parsed) {
+      table.refuse_entry("units", entry,
+                         fmt::format("gives channel '{}' the unit \"{}\", which {}", channel, unit,
+                                     parsed.error().message));
+    } else if (parsed->is_conversion()) {
+      source.identity.units.emplace(channel, *parsed);
     } else {
-      table.refuse_entry(
-          "units", entry,
-          fmt::format("gives channel '{}' the unit \"{}\", which is neither D-SI nor a known short "
-                      "form such as \"m/s^2\" or \"V\"",
-                      channel, unit));
+      source.units.emplace(channel, parsed->d_si);
     }
   }
 }
@@ -119,7 +120,10 @@ void read_ranges(TomlTable& table, SourceSettings& source) {
   for (const auto& [channel, text] : table.text_map("ranges")) {
     ++entry;
     if (const auto range = range_of(text)) {
-      source.identity.ranges.emplace(channel, *range);
+      const auto unit = source.identity.units.find(channel);
+      const double named = unit == source.identity.units.end() ? 1.0 : unit->second.named;
+      source.identity.ranges.emplace(channel,
+                                     StatedRange{named * range->minimum, named * range->maximum});
     } else {
       table.refuse_entry("ranges", entry,
                          fmt::format("gives channel '{}' the range \"{}\", which is neither "

@@ -104,13 +104,18 @@ std::optional<drivers::ChannelDescription> described(const BenchView& view,
     return channel != nullptr ? std::optional(*channel) : std::nullopt;
   }
   const SourceSettings* settings = view.bench.source(name.source);
-  if (settings == nullptr || !settings->units.contains(name.channel)) {
+  if (settings == nullptr) {
     return std::nullopt;
   }
   drivers::ChannelDescription channel;
   channel.name = name.channel;
-  channel.unit = settings->units.at(name.channel);
-  return channel;
+  if (const auto unit = settings->units.find(name.channel); unit != settings->units.end()) {
+    channel.unit = unit->second;
+  } else if (const auto converted = settings->identity.units.find(name.channel);
+             converted != settings->identity.units.end()) {
+    channel.unit = converted->second.d_si;
+  }
+  return channel.unit.empty() ? std::nullopt : std::optional(channel);
 }
 
 void check_quantities(const BenchView& view, Findings& findings) {
@@ -162,7 +167,14 @@ void check_names(const BenchView& view, const SourceSettings& settings, Findings
                                              device, those_there(*source, device))));
     }
   }
+  std::set<std::string> with_unit;
   for (const auto& [channel, unit] : settings.units) {
+    with_unit.insert(channel);
+  }
+  for (const auto& [channel, unit] : settings.identity.units) {
+    with_unit.insert(channel);
+  }
+  for (const std::string& channel : with_unit) {
     if (find_channel(*source, channel) == nullptr) {
       findings.push_back(
           view.at(Severity::warning, {"sources", settings.name, "units"},

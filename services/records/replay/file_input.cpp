@@ -57,12 +57,18 @@ Expected<std::unique_ptr<FileInput>> FileInput::open(const SourceSettings& setti
     return fail(ErrorCode::bad_file,
                 fmt::format("source '{}': {}", settings.name, described.error().message));
   }
+  if (const auto known = check_units(*described, settings.identity); !known) {
+    return fail(ErrorCode::bad_file,
+                fmt::format("source '{}': {}", settings.name, known.error().message));
+  }
+  input->factors_ = unit_factors(*described, settings.identity);
   input->description_ = with_identity(std::move(*described), settings.identity);
   input->thread_ = std::jthread([raw = input.get()] { raw->read(); });
   return input;
 }
 
 void FileInput::take(drivers::SampleBlock block) {
+  convert(factors_, block.samples, block.values);
   ahead_.offer_waiting(entry_of(std::move(block)), abandoned_.get_token());
 }
 

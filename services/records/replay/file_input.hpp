@@ -62,6 +62,7 @@ private:
   std::string source_;
   std::unique_ptr<drivers::SampleSource> driver_;
   drivers::SourceDescription description_;
+  std::vector<double> factors_; // as unit_factors()
   std::uint64_t number_ = 0;
   std::optional<std::int64_t> first_ns_;
   std::int64_t reached_ns_ = 0;

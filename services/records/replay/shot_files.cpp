@@ -93,6 +93,7 @@ std::filesystem::path folder_of_shots(const SourceSettings& source) {
   return series != nullptr ? series->path : std::filesystem::path();
 }
 
+// As the files and `units` of the bench file have it.
 drivers::SourceDescription describe(const SourceSettings& source,
                                     const drivers::tss::Series& series) {
   drivers::SourceDescription description;
@@ -109,7 +110,7 @@ drivers::SourceDescription describe(const SourceSettings& source,
     channel.quantity = channel.unit == one.unit ? "" : one.unit; // to be held against its role
     description.channels.push_back(std::move(channel));
   }
-  return with_identity(std::move(description), source.identity);
+  return description;
 }
 
 TriggeredRecord record_of(const StepAndShot& number, drivers::tss::Series series) {
@@ -142,11 +143,15 @@ Expected<ShotFiles> read_shot_files(const BenchFile& bench, const std::string& n
     wanted.push_back(channel.channel);
   }
   ShotFiles result;
+  std::vector<double> factors;
   for (const auto& [number, path] : files) {
     DYNCAL_TRY(auto series, read_file(path, source, wanted));
     if (result.records.empty()) {
-      result.description = describe(source, series);
+      const drivers::SourceDescription described = describe(source, series);
+      factors = unit_factors(described, source.identity);
+      result.description = with_identity(described, source.identity);
     }
+    convert(factors, series.samples, series.values);
     result.records.push_back(record_of(number, std::move(series)));
   }
   return result;

@@ -33,5 +33,61 @@ TEST(DeviceIdentity, StatesRangesOfChannels) {
   EXPECT_EQ(stated.channels[2].maximum, 3.0);
 }
 
+drivers::SourceDescription described(const std::string& unit) {
+  drivers::SourceDescription description;
+  for (const char* name : {"x", "sync"}) {
+    drivers::ChannelDescription& channel = description.channels.emplace_back();
+    channel.name = name;
+    channel.unit = name == std::string("x") ? unit : R"(\volt)";
+    channel.minimum = -4.0;
+    channel.maximum = 2.0;
+    channel.resolution = 0.5;
+  }
+  return description;
+}
+
+DeviceIdentity with_unit(const std::string& written) {
+  DeviceIdentity identity;
+  identity.units = {{"x", *parse_channel_unit(written)}};
+  return identity;
+}
+
+TEST(DeviceIdentity, ConvertsChannelsIntoDsi) {
+  const auto stated = with_identity(described(""), with_unit("g"));
+  EXPECT_EQ(stated.channels[0].unit, R"(\metre\second\tothe{-2})");
+  EXPECT_EQ(stated.channels[0].quantity, "from g");
+  EXPECT_DOUBLE_EQ(stated.channels[0].minimum, -4.0 * 9.80665);
+  EXPECT_DOUBLE_EQ(stated.channels[0].resolution, 0.5 * 9.80665);
+  EXPECT_EQ(stated.channels[1].unit, R"(\volt)");
+  EXPECT_EQ(stated.channels[1].minimum, -4.0);
+  std::vector<double> values{1.0, 2.0, 3.0, 4.0};
+  convert(unit_factors(described(""), with_unit("g")), 2, values);
+  EXPECT_EQ(values, (std::vector<double>{9.80665, 2 * 9.80665, 3.0, 4.0}));
+  const auto turned = with_identity(described(""), with_unit("-1 LSB/(m/s^2)"));
+  EXPECT_EQ(turned.channels[0].minimum, -2.0);
+  EXPECT_EQ(turned.channels[0].maximum, 4.0);
+}
+
+TEST(DeviceIdentity, ConvertsWhatAFileItselfSaysToBeInG) {
+  EXPECT_EQ(with_identity(described("g"), {}).channels[0].unit, R"(\metre\second\tothe{-2})");
+  EXPECT_EQ(unit_factors(described("g"), {}), (std::vector<double>{9.80665, 1.0}));
+  EXPECT_EQ(with_identity(described("furlong"), {}).channels[0].unit, "furlong");
+  EXPECT_TRUE(unit_factors(described("furlong"), {}).empty());
+  EXPECT_TRUE(unit_factors(described(R"(\volt)"), {}).empty());
+}
+
+TEST(DeviceIdentity, DoubtsUnitsThatTheInstrumentContradicts) {
+  const std::string m_s2 = R"(\metre\second\tothe{-2})";
+  ASSERT_EQ(unit_doubts(described(m_s2), with_unit("g")).size(), 1U);
+  EXPECT_NE(unit_doubts(described(m_s2), with_unit("g"))[0].find("says that it is in m/s^2"),
+            std::string::npos);
+  EXPECT_TRUE(unit_doubts(described(""), with_unit("g")).empty());
+  EXPECT_TRUE(unit_doubts(described(R"(\volt)"), with_unit("100 mV/g")).empty());
+  EXPECT_TRUE(check_units(described(""), with_unit("g")));
+  DeviceIdentity other = with_unit("g");
+  other.units = {{"y", other.units.at("x")}};
+  EXPECT_FALSE(check_units(described(""), other));
+}
+
 } // namespace
 } // namespace dyncal::inline contract

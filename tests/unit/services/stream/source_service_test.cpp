@@ -115,6 +115,26 @@ TEST_P(SourceServiceTest, BlocksAndAnswersWaitForTheDescription) {
   EXPECT_TRUE(listener.until([&] { return listener.samples_of("acs") == 50; }));
 }
 
+TEST_P(SourceServiceTest, PublishesInDsiWhatComesInG) {
+  DeviceIdentity identity;
+  identity.units = {{"x", *parse_channel_unit("g")}};
+  auto publisher = service->add({.bench = bench_name, .source = "acs", .identity = identity});
+  ASSERT_TRUE(publisher) << publisher.error().message;
+  drivers::SourceDescription description = two_channels("x");
+  description.channels[0].unit = "";
+  (*publisher)->take(block_from(1, 2)); // before it is known which column is in g
+  (*publisher)->describe(description);
+  service->start();
+  ASSERT_TRUE(listener.until(
+      [&] { return listener.samples_of("acs") == 2 && !listener.descriptions.empty(); }));
+  const auto& values = listener.blocks.back().values();
+  ASSERT_EQ(values.size(), 4U);
+  EXPECT_EQ(values[0], 9.80665);
+  EXPECT_EQ(values[1], 2 * 9.80665);
+  EXPECT_EQ(values[2], 3.0);
+  EXPECT_EQ(listener.descriptions.back().channels()[0].unit(), R"(\metre\second\tothe{-2})");
+}
+
 TEST_P(SourceServiceTest, AChangedDescriptionIsPublishedAgain) {
   auto source = add();
   source->describe(two_channels());
