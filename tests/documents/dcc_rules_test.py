@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Certificates of eleven kinds held against the rules that PTB publishes beside the schema: the
+"""Certificates of thirteen kinds held against the rules that PTB publishes beside the schema: the
 Schematron of dcclib, and the schema by the same library. dcclib comes from PyPI into an environment
 of the test's own, which is kept in the build folder; without a network it is skipped.
 
@@ -141,10 +141,14 @@ class Rules(unittest.TestCase):
         )
         yield self.certificate("conformity", sensor=text + stored_run.TOLERANCES)
         yield self.certificate("number", options=["--number", "2026-0099/A"])
+        yield self.certificate("german", options=["--language", "de"])
+        yield self.certificate(
+            "both-languages", sensor=text + stored_run.TOLERANCES, options=["--language", "de,en"]
+        )
 
-    def test_rules_and_schema_have_nothing_against_eleven_kinds(self):
+    def test_rules_and_schema_have_nothing_against_thirteen_kinds(self):
         files = [*self.certificates()]
-        self.assertEqual(len(files), 11)
+        self.assertEqual(len(files), 13)
         judged = run(self.python, "-c", JUDGE, SCHEMA, input="\n".join(map(str, files)))
         self.assertEqual(judged.returncode, 0, judged.stderr)
         answers = [json.loads(line) for line in judged.stdout.splitlines()]

@@ -119,6 +119,31 @@ class Report(unittest.TestCase):
         for page in range(1, pages + 1):
             self.assertIn(f"page {page} of {pages}", flowing)
 
+    def test_budget_at_the_reference_frequency_adds_up(self):
+        page = self.report("--no-pdf")
+        tables = re.findall(r'<table class="model">.*?</table>', page, re.DOTALL)
+        self.assertEqual(len(tables), 2 * len(stored_run.CHANNELS))  # magnitude, phase
+        self.assertIn("Uncertainty budget of dau/acceleration_z at 199.87 Hz", page)
+        for table in tables:
+            rows = [re.findall(r"<td>(.*?)</td>", row) for row in re.findall(r"<tr>.*?</tr>", table)]
+            *rows, total = [row for row in rows if row]
+            self.assertGreater(len(rows), 0)
+            squares = 0.0
+            for name, estimate, unit, u, distribution, sensitivity, contribution, freedom in rows:
+                self.assertTrue(name and estimate and unit and distribution and freedom)
+                squares += float(contribution) ** 2
+                if u != "–":
+                    product = float(u) * float(sensitivity)
+                    self.assertAlmostEqual(product / float(contribution), 1.0, delta=0.11, msg=name)
+            self.assertAlmostEqual(math.sqrt(squares) / float(total[6]), 1.0, delta=0.06)
+
+    def test_comments_of_the_recipe_stay_in_the_laboratory(self):
+        self.result["recipe"] = '# MEASURE IT\nbench = "b#1" # ours\n'
+        page = self.report("--no-pdf")
+        self.assertIn("bench = &quot;b#1&quot;\n", page)
+        self.assertNotIn("MEASURE IT", page)
+        self.assertNotIn("ours", page)
+
     def test_html_needs_nothing_but_itself(self):
         page = self.report("--lab", stored_run.LAB, "--no-pdf")
         fetches = Fetches()

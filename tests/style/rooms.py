@@ -73,6 +73,7 @@ WINGS = {
         ["provenance"],
     ],
     "views": [
+        ["language"],
         ["figures", "signals"],
         ["report"],
         ["lab_file", "live", "model"],

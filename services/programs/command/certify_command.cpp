@@ -10,6 +10,7 @@
 #include "services/programs/command/command.hpp"
 #include "services/programs/command/issued_number.hpp"
 #include "services/programs/command/keep_options.hpp"
+#include "services/programs/command/language_option.hpp"
 #include "services/programs/command/named_sensor.hpp"
 #include "services/programs/command/work_progress.hpp"
 #include "services/records/provenance/result_provenance.hpp"
@@ -39,6 +40,7 @@ void add_certify(CLI::App& command, CertifyOptions& options) {
                      "tolerance file (default: what the sensor file has of it)");
   command.add_option("--channel", certify.channels,
                      "channel to certify (repeatable; default: all that respond)");
+  add_language_option(command, certify.languages);
   add_number_options(command, options.number);
   command
       .add_option("--performed", certify.performed,
@@ -72,8 +74,8 @@ void print_made(const CertificateFileRequest& request, const CertificateContents
   }
   fmt::print("wrote {}: DCC 3.3.0, {} channels, {} values, {}\n", request.output.string(),
              contents.channels.size(), values, request.key ? "signed" : "NOT SIGNED (--key)");
-  for (const std::string& statement : contents.provenance) {
-    fmt::print("{}\n", statement);
+  for (const TranslatedText& statement : contents.provenance) {
+    fmt::print("{}\n", statement.english);
   }
   if (!request.key && !contents.number.empty()) {
     fmt::print("number {} is not taken: the certificate is not signed\n",

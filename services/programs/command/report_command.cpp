@@ -12,6 +12,7 @@
 #include "services/programs/command/command.hpp"
 #include "services/programs/command/issued_number.hpp"
 #include "services/programs/command/keep_options.hpp"
+#include "services/programs/command/language_option.hpp"
 #include "services/programs/command/named_sensor.hpp"
 #include "services/programs/command/work_progress.hpp"
 #include "services/records/provenance/result_provenance.hpp"
@@ -49,6 +50,7 @@ void add_report(CLI::App& command, ReportOptions& report) {
                 "issue it under its number, on the conditions of a certificate: the PDF alone "
                 "(default: a draft)")
       ->excludes(no_pdf);
+  add_language_option(command, request.languages);
   add_number_options(command, report.number);
   command.add_flag("--force", request.force,
                    "report in spite of what speaks against it; the first page says so");

@@ -92,9 +92,14 @@ VerificationFinding said_by_records(const VerifyOptions& options, const std::sto
   if (!held) {
     return {Verification::measured, false, held.error().message};
   }
-  const bool holds = held->objections.empty();
-  return {Verification::measured, holds,
-          fmt::format("{}", fmt::join(holds ? held->statements : held->objections, " "))};
+  std::vector<std::string> sentences = held->objections;
+  const bool holds = sentences.empty();
+  for (const TranslatedText& statement : held->statements) {
+    if (holds) {
+      sentences.push_back(statement.english);
+    }
+  }
+  return {Verification::measured, holds, fmt::format("{}", fmt::join(sentences, " "))};
 }
 
 Expected<std::vector<VerificationFinding>> findings_of(const VerifyOptions& options,

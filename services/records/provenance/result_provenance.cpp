@@ -6,6 +6,7 @@
 #include "services/records/exchange/opened_recording.hpp"
 #include "services/records/provenance/repeated_evaluation.hpp"
 #include "services/records/store/store.hpp"
+#include "services/views/language/statement_sentences.hpp"
 #include "services/views/report/mean_check.hpp"
 
 namespace dyncal::inline records {
@@ -14,15 +15,15 @@ namespace {
 constexpr std::size_t shown_of_hash = 12;
 
 // Empty: nothing is known of it there.
-Expected<std::string> said_by_store(const StoredResult& result, const std::string& place) {
+Expected<TranslatedText> said_by_store(const StoredResult& result, const std::string& place) {
   std::error_code unknown;
   if (place.empty() || (!is_server(place) && !std::filesystem::exists(place, unknown))) {
-    return std::string();
+    return TranslatedText();
   }
   DYNCAL_TRY(const auto store, Store::open_existing(place));
   DYNCAL_TRY(const auto kept, store->hash_of(result));
   if (!kept) {
-    return std::string();
+    return TranslatedText();
   }
   if (kept->sha256 != result.sha256) {
     return fail(ErrorCode::no_result,
@@ -33,33 +34,36 @@ Expected<std::string> said_by_store(const StoredResult& result, const std::strin
                             result.sha256.substr(0, shown_of_hash),
                             kept->sha256.substr(0, shown_of_hash)));
   }
-  return fmt::format("The result file is the one that the store has of the run, since {} (SHA-256 "
-                     "{}...).",
-                     kept->since_utc, result.sha256.substr(0, shown_of_hash));
+  return in_all_languages([&](Language language) {
+    return sentences::kept_in_store(
+        language,
+        language == Language::english ? kept->since_utc : instant_text(language, kept->since_utc),
+        result.sha256.substr(0, shown_of_hash));
+  });
 }
 
-std::string said_of_mountings(const StoredResult& result) {
+TranslatedText said_of_mountings(const StoredResult& result) {
   std::vector<std::string> runs;
   for (const CombinedRun& one : result.combined) {
     runs.push_back(fmt::format("{} (SHA-256 {}...)", one.run, one.sha256.substr(0, shown_of_hash)));
   }
-  return fmt::format("The result combines {} runs, for each of which the sensor was mounted anew, "
-                     "and each of which was held against its recording or the store: {}.",
-                     runs.size(), fmt::join(runs, ", "));
+  return in_all_languages([&](Language language) {
+    return sentences::combines_runs(language, runs.size(), fmt::join(runs, ", "));
+  });
 }
 
-std::string said_of(const RepeatedEvaluation& repeated, const StoredResult& result) {
+TranslatedText said_of(const RepeatedEvaluation& repeated, const StoredResult& result) {
   if (repeated.is_same_version) {
-    return "The recording of the run, evaluated once more, gives the same results to the last "
-           "digit.";
+    return sentences::same_digits.translated();
   }
-  const std::string how = repeated.largest_deviation_u == 0.0
-                              ? std::string("the same values and U")
-                              : fmt::format("values and U that differ by at most {:.2g} u",
-                                            repeated.largest_deviation_u);
-  return fmt::format("The recording of the run, evaluated once more by another version of the "
-                     "software than {}, gives {}.",
-                     result.analysis_software, how);
+  return in_all_languages([&](Language language) {
+    const std::string largest =
+        decimal(language, fmt::format("{:.2g}", repeated.largest_deviation_u));
+    return sentences::by_another_version(language, result.analysis_software,
+                                         repeated.largest_deviation_u == 0.0
+                                             ? sentences::same_values(language)
+                                             : sentences::other_values(language, largest));
+  });
 }
 
 // A recording that lacks some of the samples speaks for the rest, where the store has the file.
@@ -73,9 +77,14 @@ void add_recording(Expected<RepeatedEvaluation> repeated, bool is_kept, HeldResu
     held.statements.push_back(said_of(*repeated, held.result));
   }
   if (repeated->missing > 0) {
-    auto& list = is_kept ? held.statements : held.objections;
-    list.push_back(fmt::format("The recording of the run lacks samples of {} of {} single results.",
-                               repeated->missing, repeated->values));
+    TranslatedText lack = in_all_languages([&](Language language) {
+      return sentences::recording_lacks(language, repeated->missing, repeated->values);
+    });
+    if (is_kept) {
+      held.statements.push_back(std::move(lack));
+    } else {
+      held.objections.push_back(std::move(lack.english));
+    }
   }
 }
 
@@ -116,8 +125,7 @@ Expected<HeldResult> read_held_result(const std::filesystem::path& run, const st
         "store{} does not have it ('dyncal store add', or --store)",
         result.file.filename().string(), store.empty() ? "" : " " + without_password(store)));
   } else {
-    held.statements.emplace_back(
-        "There is no recording of the run that it could be evaluated from once more.");
+    held.statements.push_back(sentences::no_recording.translated());
   }
   return held;
 }

@@ -45,7 +45,6 @@ std::string new_uuid() {
 SensorFile described_sensor(const StoredResult& result, const std::string& channel) {
   SensorFile sensor;
   if (const auto source = described_source(result, channel)) {
-    sensor.name = "Digital sensor";
     sensor.model = source->device;
     sensor.serial = source->serial;
     sensor.firmware = source->firmware;
@@ -70,6 +69,8 @@ Expected<void> gather_sensor(const CertificateRequest& request, CertificateConte
 
 Expected<void> gather_laboratory(const CertificateRequest& request, CertificateContents& contents) {
   DYNCAL_TRY(contents.laboratory, read_laboratory_file(request.laboratory));
+  contents.languages =
+      request.languages.empty() ? contents.laboratory.languages : request.languages;
   DYNCAL_TRY(contents.reference, documented_reference(contents.result, contents.laboratory));
   return {};
 }

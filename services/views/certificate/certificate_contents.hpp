@@ -15,6 +15,7 @@
 #include "services/views/conformity/conformity.hpp"
 #include "services/views/lab_file/laboratory_file.hpp"
 #include "services/views/lab_file/sensor_file.hpp"
+#include "services/views/language/sentence.hpp"
 #include "services/views/objections/held_result.hpp"
 
 namespace dyncal::inline views {
@@ -31,6 +32,7 @@ struct CertificateRequest {
   std::string replaces;            // number of the certificate whose place it takes; may be empty
   std::string replaced_identifier; // UUID of that one; empty: not known
   std::string replaced_sha256;     // of its file; empty: not known
+  std::vector<Language> languages; // empty: as the laboratory file says
   bool force = false;
 };
 
@@ -53,15 +55,16 @@ struct CertificateContents {
   std::string replaces;                       // likewise
   std::string replaced_identifier;
   std::string replaced_sha256;
-  std::vector<std::string> provenance; // what the result was held against
-  std::string identifier;              // a new UUID
-  std::string began;                   // YYYY-MM-DD
+  std::vector<Language> languages{Language::english}; // the first is the mandatory one
+  std::vector<TranslatedText> provenance;             // what the result was held against
+  std::string identifier;                             // a new UUID
+  std::string began;                                  // YYYY-MM-DD
   std::string ended;
   std::string issued;
   std::string software;
   std::string recording_sha256;        // empty: no recording in the run folder
   std::vector<std::string> objections; // in spite of which it is issued
-  std::vector<std::string> flags;      // that are stated beside the values
+  std::vector<TranslatedText> flags;   // that are stated beside the values
   bool has_monte_carlo = false;        // a check for every value
 };
 

@@ -1,5 +1,6 @@
 #include "services/views/certificate/dcc.hpp"
 
+#include <algorithm>
 #include <regex>
 
 #include <fmt/format.h>
@@ -21,8 +22,31 @@ std::string single_line(std::string_view text, std::string_view otherwise) {
   return line.empty() ? std::string(otherwise) : line;
 }
 
+void add_content(XmlElement element, const TranslatedText& text) {
+  for (const Language language : all_languages) {
+    element.add("dcc:content", text.in(language)).attribute("lang", code_of(language));
+  }
+}
+
+void add_text(XmlElement parent, std::string_view element, const TranslatedText& text) {
+  add_content(parent.add(element), text);
+}
+
+void add_text(XmlElement parent, std::string_view element, const Sentence& text) {
+  add_text(parent, element, text.translated());
+}
+
 void add_text(XmlElement parent, std::string_view element, std::string_view text) {
-  parent.add(element).add("dcc:content", text).attribute("lang", "en");
+  add_text(parent, element, TranslatedText{std::string(text), std::string(text)});
+}
+
+void keep_languages(XmlElement root, const std::vector<Language>& languages) {
+  for (XmlElement& content : root.descendants("content", dcc_namespace)) {
+    const std::string code = content.attribute("lang");
+    if (std::ranges::find(languages, code, code_of) == languages.end()) {
+      content.remove();
+    }
+  }
 }
 
 void add_line(XmlElement parent, std::string_view element, std::string_view text) {
@@ -52,7 +76,7 @@ void add_make(XmlElement parent, const std::string& manufacturer, const std::str
 }
 
 void add_identification(XmlElement list, std::string_view type, std::string_view issuer,
-                        const std::string& value, std::string_view name) {
+                        const std::string& value, const Sentence& name) {
   XmlElement identification = list.add("dcc:identification").attribute("refType", type);
   identification.add("dcc:issuer", issuer);
   identification.add("dcc:value", single_line(value));
@@ -66,19 +90,21 @@ std::optional<std::string> release_of(const std::string& text) {
                                                  : std::nullopt;
 }
 
-void add_software(XmlElement list, const std::string& text, std::string_view description) {
+void add_software(XmlElement list, const std::string& text, const Sentence& description) {
   const std::string line = single_line(text);
   XmlElement software = list.add("dcc:software");
   add_text(software, "dcc:name", line.substr(0, line.find(' ')));
   software.add("dcc:release", release_of(line).value_or("v0"));
   software.add("dcc:type", "application");
-  add_text(software, "dcc:description", fmt::format("{}: {}", line, description));
+  add_text(software, "dcc:description",
+           in_all_languages([&](Language language) { return description(language, line); }));
 }
 
 XmlDocument dcc_of(const CertificateContents& contents) {
   XmlDocument document = XmlDocument::make_dcc();
   add_administrative_data(document.root(), contents);
   add_measurement_results(document.root(), contents);
+  keep_languages(document.root(), contents.languages);
   return document;
 }
 

@@ -3,6 +3,8 @@
 
 #include "services/views/certificate/dcc.hpp"
 #include "services/views/certificate/dcc_conformity.hpp"
+#include "services/views/language/certificate_sentences.hpp"
+#include "services/views/language/report_sentences.hpp"
 #include "services/views/report/daily_check.hpp"
 #include "services/views/report/stated_value.hpp"
 
@@ -20,7 +22,7 @@ void add_replaced(XmlElement core, const CertificateContents& contents) {
     return; // a report on paper
   }
   XmlElement previous = core.add("dcc:previousReport");
-  add_text(previous, "dcc:referral", "certificate that is replaced");
+  add_text(previous, "dcc:referral", sentences::replaced_certificate);
   previous.add("dcc:referralID", contents.replaces);
   previous.add("dcc:procedure", "SHA-256");
   previous.add("dcc:value", contents.replaced_sha256);
@@ -29,16 +31,19 @@ void add_replaced(XmlElement core, const CertificateContents& contents) {
 void add_core_data(XmlElement parent, const CertificateContents& contents) {
   XmlElement core = parent.add("dcc:coreData");
   core.add("dcc:countryCodeISO3166_1", contents.laboratory.laboratory.country);
-  core.add("dcc:usedLangCodeISO639_1", "en");
-  core.add("dcc:mandatoryLangCodeISO639_1", "en");
+  for (const Language language : contents.languages) {
+    core.add("dcc:usedLangCodeISO639_1", code_of(language));
+  }
+  core.add("dcc:mandatoryLangCodeISO639_1", code_of(contents.languages.front()));
   core.add("dcc:uniqueIdentifier", contents.identifier);
   XmlElement identifications = core.add("dcc:identifications");
   if (!contents.number.empty()) {
     add_identification(identifications, "basic_certificateNumber", "calibrationLaboratory",
-                       contents.number, "Certificate number");
+                       contents.number, sentences::certificate_number);
   }
   add_identification(identifications, "", "calibrationLaboratory",
-                     contents.result.bench + " / " + contents.result.run, "Bench / run");
+                     contents.result.bench + " / " + contents.result.run,
+                     sentences::bench_slash_run);
   if (!contents.sensor.received.empty()) {
     core.add("dcc:receiptDate", contents.sensor.received);
   }
@@ -53,11 +58,15 @@ void add_core_data(XmlElement parent, const CertificateContents& contents) {
 
 void add_item(XmlElement parent, const SensorFile& sensor) {
   XmlElement item = parent.add("dcc:items").add("dcc:item");
-  add_text(item, "dcc:name", sensor.name.empty() ? "Digital sensor" : sensor.name);
+  if (sensor.name.empty()) {
+    add_text(item, "dcc:name", sentences::digital_sensor);
+  } else {
+    add_text(item, "dcc:name", sensor.name);
+  }
   const auto release = release_of(sensor.firmware);
   if (release) {
     XmlElement software = item.add("dcc:installedSoftwares").add("dcc:software");
-    add_text(software, "dcc:name", "firmware");
+    add_text(software, "dcc:name", sentences::firmware_software);
     software.add("dcc:release", *release);
     software.add("dcc:type", "firmware");
     add_text(software, "dcc:description", sensor.firmware);
@@ -65,13 +74,14 @@ void add_item(XmlElement parent, const SensorFile& sensor) {
   add_make(item, sensor.manufacturer, sensor.model);
   XmlElement identifications = item.add("dcc:identifications");
   add_identification(identifications, "basic_serialNo", "manufacturer", sensor.serial,
-                     "Serial number");
+                     sentences::serial_number);
   if (!release && !sensor.firmware.empty()) {
-    add_identification(identifications, "", "manufacturer", sensor.firmware, "Firmware");
+    add_identification(identifications, "", "manufacturer", sensor.firmware,
+                       sentences::firmware_name);
   }
   if (!sensor.owner_identification.empty()) {
     add_identification(identifications, "", "owner", sensor.owner_identification,
-                       "Identification of the owner");
+                       sentences::owner_identification);
   }
 }
 
@@ -95,15 +105,11 @@ void add_persons(XmlElement parent, const LaboratoryFile& file) {
 
 void add_forced(XmlElement list, const std::vector<std::string>& objections) {
   XmlElement statement = list.add("dcc:statement").attribute("refType", "dyncal_forced");
-  add_text(statement, "dcc:name", "Issued in spite of objections");
+  add_text(statement, "dcc:name", sentences::issued_in_spite);
   XmlElement declaration = statement.add("dcc:declaration");
-  declaration
-      .add("dcc:content",
-           "THIS CERTIFICATE WAS FORCED: the software that evaluated the measurement refused it. "
-           "The laboratory has issued it all the same. What spoke against it:")
-      .attribute("lang", "en");
+  add_content(declaration, sentences::certificate_forced.translated());
   for (const std::string& objection : objections) {
-    declaration.add("dcc:content", objection).attribute("lang", "en");
+    add_content(declaration, {objection, objection});
   }
   statement.add("dcc:valid", "false");
 }
@@ -111,14 +117,17 @@ void add_forced(XmlElement list, const std::vector<std::string>& objections) {
 void add_traceability(XmlElement list, const ReferenceStandard& reference) {
   const CalibratedDevice& device = reference.devices.front();
   XmlElement statement = list.add("dcc:statement").attribute("refType", "basic_traceability");
-  add_text(statement, "dcc:name", "Metrological traceability");
+  add_text(statement, "dcc:name", sentences::traceability);
   statement.add("dcc:traceable", "true");
   statement.add("dcc:reference", single_line(device.certificate));
-  add_text(statement, "dcc:declaration",
-           fmt::format("{} The reference ({}, serial number {}) was calibrated by {}, certificate "
-                       "{}{}.",
-                       reference.traceability, device.name, device.serial, device.issued_by,
-                       device.certificate, device.issued.empty() ? "" : " of " + device.issued));
+  add_text(statement, "dcc:declaration", in_all_languages([&](Language language) {
+             return sentences::reference_calibrated(
+                 language, reference.traceability, device.name, device.serial, device.issued_by,
+                 device.certificate,
+                 device.issued.empty()
+                     ? ""
+                     : sentences::of_day(language, day_text(language, device.issued)));
+           }));
 }
 
 void add_statements(XmlElement parent, const CertificateContents& contents) {
@@ -128,14 +137,13 @@ void add_statements(XmlElement parent, const CertificateContents& contents) {
   }
   add_traceability(list, contents.reference);
   add_text(list.add("dcc:statement").attribute("refType", "dyncal_relatesOnly"), "dcc:declaration",
-           "The results relate only to the items calibrated, as they were received and in the "
-           "conditions stated.");
+           sentences::relates_only);
   add_conformity_statements(list, contents.conformity);
   if (const auto& check = contents.result.check) {
     add_text(list.add("dcc:statement").attribute("refType", "dyncal_dailyCheck"), "dcc:declaration",
-             sentence_of(*check));
+             in_all_languages([&](Language language) { return sentence_of(*check, language); }));
   }
-  for (const std::string& text : contents.provenance) {
+  for (const TranslatedText& text : contents.provenance) {
     add_text(list.add("dcc:statement").attribute("refType", "dyncal_provenance"), "dcc:declaration",
              text);
   }
@@ -149,7 +157,7 @@ void add_statements(XmlElement parent, const CertificateContents& contents) {
 void add_administrative_data(XmlElement root, const CertificateContents& contents) {
   XmlElement data = root.add("dcc:administrativeData");
   XmlElement software = data.add("dcc:dccSoftware");
-  add_software(software, contents.software, "made this certificate");
+  add_software(software, contents.software, sentences::made_certificate);
   add_core_data(data, contents);
   add_item(data, contents.sensor);
   add_laboratory(data, contents.laboratory);

@@ -9,6 +9,7 @@
 #include "services/base/per_enumerator.hpp"
 #include "services/views/certificate/dcc.hpp"
 #include "services/views/conformity/stated_conformity.hpp"
+#include "services/views/language/certificate_sentences.hpp"
 
 namespace dyncal::inline views {
 namespace {
@@ -31,7 +32,7 @@ std::string joined_of(const JudgedValues& values,
 }
 
 // With U and k where there are any.
-void add_list(XmlElement list, std::string_view type, std::string_view name,
+void add_list(XmlElement list, std::string_view type, const Sentence& name,
               const std::string& values, std::string_view unit, const JudgedValues& of = {}) {
   XmlElement quantity = list.add("dcc:quantity").attribute("refType", type);
   add_text(quantity, "dcc:name", name);
@@ -57,23 +58,32 @@ void add_numbers(XmlElement meta_data, const ToleranceRow& row, const JudgedValu
   const std::string unit = per_enumerator(row.unit, {"\\percent", "\\decibel", "\\degree"});
   XmlElement list =
       meta_data.add("dcc:data").add("dcc:list").attribute("refType", "basic_1IndexTable");
-  add_list(list, "vibration_frequency basic_nominalValue basic_tableIndex0", "Excitation frequency",
+  add_list(list, "vibration_frequency basic_nominalValue basic_tableIndex0",
+           sentences::excitation_frequency,
            joined_of(values, [](const JudgedValue& value) { return value.frequency_text_hz; }),
            "\\hertz");
   add_list(
-      list, "vibration_accelerationAmplitude basic_nominalValue",
-      "Amplitude of the excitation, as planned",
+      list, "vibration_accelerationAmplitude basic_nominalValue", sentences::planned_amplitude,
       joined_of(values,
                 [](const JudgedValue& value) { return fmt::format("{:g}", value.level_m_s2); }),
       "\\metre\\second\\tothe{-2}");
   add_list(
-      list, "basic_measurementError", "Deviation",
+      list, "basic_measurementError", sentences::deviation,
       joined_of(values, [](const JudgedValue& value) { return stated_deviation(value).value; }),
       unit, values);
-  add_list(list, "basic_toleranceLimitLower", "Lower tolerance limit of the deviation",
-           fmt::format("{}", row.lower), unit);
-  add_list(list, "basic_toleranceLimitUpper", "Upper tolerance limit of the deviation",
-           fmt::format("{}", row.upper), unit);
+  add_list(list, "basic_toleranceLimitLower", sentences::lower_limit, fmt::format("{}", row.lower),
+           unit);
+  add_list(list, "basic_toleranceLimitUpper", sentences::upper_limit, fmt::format("{}", row.upper),
+           unit);
+}
+
+std::string sentence_of(const JudgedValue& value, Language language) {
+  const std::string probability = probability_text(value, language);
+  return sentences::judged_value(
+      language, decimal(language, value.frequency_text_hz),
+      decimal(language, fmt::format("{:g}", value.level_m_s2)), name_of(value.statement, language),
+      probability.empty() ? "" : sentences::conformity_probability(language, probability),
+      value.reason.empty() ? "" : " (" + value.reason.in(language) + ")");
 }
 
 // Of one channel and limit; `values` is not empty.
@@ -81,26 +91,24 @@ void add_row(XmlElement list, const ConformityReport& report, const JudgedValues
   const JudgedValue& first = *values.front();
   const ToleranceRow& row = report.tolerances.rows[first.row];
   JudgedValues known;
-  std::vector<std::string> sentences{row_text(row)};
+  std::vector<TranslatedText> texts{
+      in_all_languages([&](Language language) { return row_text(row, language); })};
   for (const JudgedValue* value : values) {
     if (std::isfinite(value->deviation)) {
       known.push_back(value);
     }
-    const std::string probability = probability_text(*value);
-    sentences.push_back(fmt::format(
-        "{} Hz, {:g} m/s^2: {}{}{}", value->frequency_text_hz, value->level_m_s2,
-        analysis::to_string(value->statement),
-        probability.empty() ? "" : fmt::format(", probability of conformity {}", probability),
-        value->reason.empty() ? "" : " (" + value->reason + ")"));
+    texts.push_back(
+        in_all_languages([&](Language language) { return sentence_of(*value, language); }));
   }
   XmlElement meta_data = list.add("dcc:metaData").attribute("refType", "basic_conformity");
-  add_text(meta_data, "dcc:name",
-           fmt::format("Conformity of {}, limit {}", first.channel, first.row + 1));
+  add_text(meta_data, "dcc:name", in_all_languages([&](Language language) {
+             return sentences::conformity_of(language, first.channel, first.row + 1);
+           }));
   meta_data.add("dcc:convention", analysis::to_string(report.tolerances.rule));
   meta_data.add("dcc:reference", single_line(report.tolerances.specification));
   XmlElement declaration = meta_data.add("dcc:declaration");
-  for (const std::string& sentence : sentences) {
-    declaration.add("dcc:content", sentence).attribute("lang", "en");
+  for (const TranslatedText& text : texts) {
+    add_content(declaration, text);
   }
   if (!known.empty()) {
     meta_data.add("dcc:conformityXMLList", joined_of(known, [](const JudgedValue& value) {
@@ -118,18 +126,21 @@ void add_conformity_statements(XmlElement list, const std::optional<ConformityRe
   }
   const std::string specification = single_line(report->tolerances.specification);
   XmlElement rule = list.add("dcc:statement").attribute("refType", "basic_decisionRule");
-  add_text(rule, "dcc:name", "Decision rule");
+  add_text(rule, "dcc:name", sentences::decision_rule);
   rule.add("dcc:convention", analysis::to_string(report->tolerances.rule));
   rule.add("dcc:norm", "ILAC-G8:09/2019");
   rule.add("dcc:reference", specification);
-  add_text(rule, "dcc:declaration", rule_text(report->tolerances) + " " + digits_text());
+  add_text(rule, "dcc:declaration", in_all_languages([&](Language language) {
+             return rule_text(report->tolerances, language) + " " + digits_text(language);
+           }));
   XmlElement verdict = list.add("dcc:statement").attribute("refType", "basic_conformity");
-  add_text(verdict, "dcc:name", "Statement of conformity");
+  add_text(verdict, "dcc:name", sentences::conformity_statement);
   verdict.add("dcc:reference", specification);
   XmlElement declaration = verdict.add("dcc:declaration");
-  declaration.add("dcc:content", verdict_text(*report)).attribute("lang", "en");
-  for (const std::string& note : report->notes) {
-    declaration.add("dcc:content", note).attribute("lang", "en");
+  add_content(declaration,
+              in_all_languages([&](Language language) { return verdict_text(*report, language); }));
+  for (const TranslatedText& note : report->notes) {
+    add_content(declaration, note);
   }
   verdict.add("dcc:conformity", conformity_word(report->statement()));
 }

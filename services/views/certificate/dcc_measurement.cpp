@@ -9,6 +9,9 @@
 #include "services/views/certificate/dcc.hpp"
 #include "services/views/certificate/dcc_conformity.hpp"
 #include "services/views/lab_file/embedded_picture.hpp"
+#include "services/views/language/certificate_sentences.hpp"
+#include "services/views/language/setup_sentences.hpp"
+#include "services/views/language/statement_sentences.hpp"
 #include "services/views/report/run_equipment.hpp"
 #include "services/views/report/stated_value.hpp"
 
@@ -18,8 +21,8 @@ namespace {
 constexpr double kelvin_at_0_degc = 273.15;
 constexpr double pascal_per_hpa = 100.0;
 
-XmlElement add_method(XmlElement list, std::string_view type, std::string_view name,
-                      const std::string& description, const std::vector<std::string>& norms) {
+XmlElement add_method(XmlElement list, std::string_view type, const Sentence& name,
+                      const TranslatedText& description, const std::vector<std::string>& norms) {
   XmlElement method = list.add("dcc:usedMethod");
   method.attribute("refType", type);
   add_text(method, "dcc:name", name);
@@ -35,73 +38,93 @@ void add_methods(XmlElement parent, const CertificateContents& contents) {
   const bool is_primary = contents.reference.standard == "ISO 16063-11";
   add_method(list,
              is_primary ? "vibration_primarySineCalibration" : "vibration_secondarySineCalibration",
-             is_primary ? "Calibration by laser interferometry with sinusoidal excitation"
-                        : "Calibration by comparison to a reference transducer with sinusoidal "
-                          "excitation",
-             method_description(contents.result.method),
+             is_primary ? sentences::primary_method : sentences::secondary_method,
+             in_all_languages([&](Language language) {
+               return method_description(contents.result.method, language);
+             }),
              {is_primary ? "ISO 16063-11:1999" : "ISO 16063-21:2003"});
-  std::string uncertainty =
-      "Expanded uncertainties U = k u with the coverage factor k stated with each value, for the "
-      "coverage probability stated with it; u from the contributions by the law of propagation. " +
-      rounding_rule();
+  const TranslatedText uncertainty = in_all_languages([&](Language language) {
+    const std::string text =
+        sentences::stated_uncertainties(language, sentences::rounding_rule.in(language));
+    return contents.has_monte_carlo ? text + sentences::monte_carlo(language) : text;
+  });
   std::vector<std::string> norms{"JCGM 100:2008"};
   if (contents.has_monte_carlo) {
-    uncertainty += " Every single result was cross-checked by the Monte Carlo method.";
     norms.emplace_back("JCGM 101:2008");
   }
-  add_method(list, "basic_methodMeasurementUncertainty", "Measurement uncertainty", uncertainty,
-             norms);
-  add_method(list, "dyncal_phaseConvention", "Sign convention of the phase", sign_convention(),
-             {"ISO 2041:2018"});
+  add_method(list, "basic_methodMeasurementUncertainty", sentences::measurement_uncertainty,
+             uncertainty, norms);
+  add_method(list, "dyncal_phaseConvention", sentences::phase_convention,
+             sentences::sign_convention.translated(), {"ISO 2041:2018"});
 }
 
 void add_used_software(XmlElement parent, const StoredResult& result) {
   XmlElement list = parent.add("dcc:usedSoftware");
-  add_software(list, result.software, "conducted the run");
+  add_software(list, result.software, sentences::conducted_run);
   if (!result.analysis_software.empty()) {
-    add_software(list, result.analysis_software, "evaluated the run");
+    add_software(list, result.analysis_software, sentences::evaluated_run);
   }
 }
 
-XmlElement add_equipment(XmlElement list, const CalibratedDevice& equipment,
-                         const std::string& description) {
+XmlElement add_equipment(XmlElement list, const TranslatedText& name,
+                         const CalibratedDevice& equipment, const TranslatedText& description) {
   XmlElement one = list.add("dcc:measuringEquipment");
-  add_text(one, "dcc:name", equipment.name);
+  add_text(one, "dcc:name", name);
   if (!description.empty()) {
     add_text(one, "dcc:description", description);
   }
   add_make(one, equipment.manufacturer, equipment.model);
   if (!equipment.serial.empty()) {
     add_identification(one.add("dcc:identifications"), "basic_serialNo", "manufacturer",
-                       equipment.serial, "Serial number");
+                       equipment.serial, sentences::serial_number);
   }
   return one;
 }
 
-std::string certificate_of(const CalibratedDevice& device) {
+XmlElement add_equipment(XmlElement list, const CalibratedDevice& equipment,
+                         const TranslatedText& description) {
+  return add_equipment(list, {equipment.name, equipment.name}, equipment, description);
+}
+
+std::string certificate_of(const CalibratedDevice& device, Language language) {
   return device.certificate.empty()
              ? ""
-             : fmt::format("Certificate {} of {}{}.", device.certificate, device.issued_by,
-                           device.issued.empty() ? "" : ", " + device.issued);
+             : sentences::device_certificate(
+                   language, device.certificate, device.issued_by,
+                   device.issued.empty() ? "" : ", " + day_text(language, device.issued));
+}
+
+void add_run_equipment(XmlElement list, const CertificateContents& contents) {
+  const std::string& channel = contents.channels.front().channel;
+  const auto english = run_equipment(contents.result, channel, Language::english);
+  const auto german = run_equipment(contents.result, channel, Language::german);
+  for (std::size_t i = 0; i < english.size(); ++i) {
+    const CalibratedDevice& device = english[i];
+    add_equipment(
+        list, {device.name, german[i].name}, device,
+        device.certificate.empty() ? TranslatedText() : in_all_languages([&](Language language) {
+          return sentences::calibrated_by_file(language, device.certificate);
+        }));
+  }
 }
 
 void add_equipments(XmlElement parent, const CertificateContents& contents) {
   XmlElement list = parent.add("dcc:measuringEquipments");
   std::string traceability = contents.reference.traceability + " ";
   for (const CalibratedDevice& device : contents.reference.devices) {
-    add_equipment(list, device,
-                  fmt::format("Reference. {}{}", traceability, certificate_of(device)))
+    add_equipment(list, device, in_all_languages([&](Language language) {
+                    return sentences::reference_device(language, traceability,
+                                                       certificate_of(device, language));
+                  }))
         .attribute("refType", "basic_referenceStandard");
     traceability.clear();
   }
   for (const CalibratedDevice& equipment : contents.laboratory.equipment) {
-    add_equipment(list, equipment, certificate_of(equipment));
+    add_equipment(list, equipment, in_all_languages([&](Language language) {
+                    return certificate_of(equipment, language);
+                  }));
   }
-  for (const CalibratedDevice& device :
-       run_equipment(contents.result, contents.channels.front().channel)) {
-    add_equipment(list, device,
-                  device.certificate.empty() ? "" : "Calibrated by " + device.certificate);
-  }
+  add_run_equipment(list, contents);
 }
 
 void add_real(XmlElement parent, double value, double expanded, std::string_view unit) {
@@ -115,7 +138,7 @@ void add_real(XmlElement parent, double value, double expanded, std::string_view
   uncertainty.add("si:coverageProbability", "0.95");
 }
 
-XmlElement add_condition(XmlElement list, std::string_view name) {
+XmlElement add_condition(XmlElement list, const TranslatedText& name) {
   XmlElement condition = list.add("dcc:influenceCondition");
   add_text(condition, "dcc:name", name);
   return condition.add("dcc:data");
@@ -123,18 +146,21 @@ XmlElement add_condition(XmlElement list, std::string_view name) {
 
 void add_stated_conditions(XmlElement list, const Conditions& conditions) {
   if (const auto& temperature = conditions.temperature_degc) {
-    XmlElement quantity = add_condition(list, "Ambient temperature").add("dcc:quantity");
+    XmlElement quantity =
+        add_condition(list, sentences::ambient_temperature.translated()).add("dcc:quantity");
     XmlElement hybrid = quantity.attribute("refType", "basic_temperature").add("si:hybrid");
     add_real(hybrid, temperature->value + kelvin_at_0_degc, temperature->expanded, "\\kelvin");
     add_real(hybrid, temperature->value, temperature->expanded, "\\degreecelsius");
   }
   if (const auto& humidity = conditions.humidity_percent) {
-    XmlElement quantity = add_condition(list, "Relative humidity").add("dcc:quantity");
+    XmlElement quantity =
+        add_condition(list, sentences::relative_humidity.translated()).add("dcc:quantity");
     add_real(quantity.attribute("refType", "basic_humidityRelative"), humidity->value,
              humidity->expanded, "\\percent");
   }
   if (const auto& pressure = conditions.pressure_hpa) {
-    XmlElement quantity = add_condition(list, "Air pressure").add("dcc:quantity");
+    XmlElement quantity =
+        add_condition(list, sentences::air_pressure.translated()).add("dcc:quantity");
     add_real(quantity.attribute("refType", "basic_pressureAtmospheric"),
              pascal_per_hpa * pressure->value, pascal_per_hpa * pressure->expanded, "\\pascal");
   }
@@ -143,64 +169,73 @@ void add_stated_conditions(XmlElement list, const Conditions& conditions) {
 void add_conditions(XmlElement parent, const CertificateContents& contents) {
   XmlElement list = parent.add("dcc:influenceConditions");
   add_stated_conditions(list, contents.conditions);
-  const auto add_said = [&](std::string_view name, const std::string& text) {
+  const auto add_said = [&](const TranslatedText& name, const TranslatedText& text) {
     if (!text.empty()) {
       add_text(add_condition(list, name), "dcc:text", text);
     }
   };
+  const auto add_own = [&](const Sentence& name, const std::string& text) {
+    add_said(name.translated(), {text, text});
+  };
   for (const auto& [name, value] : contents.sensor.settings) {
-    add_said("Setting of the sensor: " + name, value);
+    const std::string& setting = name;
+    add_said(in_all_languages(
+                 [&](Language language) { return sentences::sensor_setting(language, setting); }),
+             {value, value});
   }
-  add_said("Positive direction of the axis", contents.sensor.positive_direction);
-  add_said("Mounting", contents.conditions.mounting);
-  add_said("Orientation", contents.conditions.orientation);
+  add_own(sentences::positive_direction_of_axis, contents.sensor.positive_direction);
+  add_own(sentences::mounting, contents.conditions.mounting);
+  add_own(sentences::orientation, contents.conditions.orientation);
   std::vector<std::string> channels;
   for (const CertifiedChannel& channel : contents.channels) {
     channels.push_back(channel.channel);
   }
   const std::vector<StoredPoint> points = contents.result.points_of(channels);
-  add_said("Excited axis", points.empty() ? "" : points.front().excited_axis);
-  const std::string temperature = temperature_range(points);
-  add_said("Temperature of the sensor",
-           temperature.empty() ? ""
-                               : temperature + " degrees Celsius, measured by the sensor itself, "
-                                               "for information");
-  const std::string level = level_range(points);
-  add_said("Level of the excitation",
-           level.empty()
-               ? "sinusoidal, amplitude as planned"
-               : fmt::format("sinusoidal, amplitude from the reference: {} m/s^2", level));
+  add_own(sentences::excited_axis, points.empty() ? "" : points.front().excited_axis);
+  add_said(sentences::sensor_temperature.translated(), in_all_languages([&](Language language) {
+             const std::string range = temperature_range(points, language);
+             return range.empty() ? "" : sentences::temperature_by_itself(language, range);
+           }));
+  add_said(sentences::excitation_level.translated(), in_all_languages([&](Language language) {
+             const std::string range = level_range(points, language);
+             return range.empty() ? sentences::level_as_planned(language)
+                                  : sentences::level_of_reference(language, range);
+           }));
 }
 
-XmlElement add_meta_data(XmlElement list, std::string_view type, std::string_view name) {
+XmlElement add_meta_data(XmlElement list, std::string_view type, const Sentence& name) {
   XmlElement data = list.add("dcc:metaData").attribute("refType", type);
   add_text(data, "dcc:name", name);
   return data;
 }
 
-void add_said(XmlElement list, std::string_view type, std::string_view name,
-              const std::string& text) {
+void add_said(XmlElement list, std::string_view type, const Sentence& name,
+              const TranslatedText& text) {
   if (!text.empty()) {
     add_text(add_meta_data(list, type, name), "dcc:declaration", text);
   }
 }
 
-std::string clock_text(const ClockReport& report) {
+void add_hash(XmlElement list, std::string_view type, const Sentence& name,
+              const std::string& sha256) {
+  add_said(list, type, name, {sha256, sha256});
+}
+
+std::string clock_text(const ClockReport& report, Language language) {
   const double rate_hz = report.clock.mean_rate_hz;
   const double u_interval_s = report.clock.u_mean_interval_s;
-  const std::string head = fmt::format("Source '{}': ", report.source);
   if (std::isfinite(u_interval_s) && u_interval_s > 0.0 && report.clock.mean_interval_s > 0.0) {
-    return fmt::format("{}mean sample rate {}.", head,
-                       stated_text(rate_hz, report.clock.of_mean_rate(), "Hz"));
+    return sentences::clock_rate(language, report.source,
+                                 stated_text(rate_hz, report.clock.of_mean_rate(), "Hz", language));
   }
-  return fmt::format("{}mean sample rate {:.6g} Hz, for information: nothing is known of the "
-                     "uncertainty of the clock that it was compared with.",
-                     head, rate_hz);
+  return sentences::clock_rate_for_information(language, report.source,
+                                               decimal(language, fmt::format("{:.6g}", rate_hz)));
 }
 
 void add_clock(XmlElement list, const StoredResult& result) {
   for (const ClockReport& clock : result.clocks) {
-    add_said(list, "dyncal_sampleClock", "Sample clock", clock_text(clock));
+    add_said(list, "dyncal_sampleClock", sentences::sample_clock,
+             in_all_languages([&](Language language) { return clock_text(clock, language); }));
   }
 }
 
@@ -208,7 +243,7 @@ void add_recipe(XmlElement list, const StoredResult& result) {
   if (result.recipe.empty()) {
     return;
   }
-  XmlElement data = add_meta_data(list, "dyncal_recipe", "Recipe: the bench file of the run");
+  XmlElement data = add_meta_data(list, "dyncal_recipe", sentences::recipe_file);
   XmlElement file = data.add("dcc:data").add("dcc:byteData");
   file.add("dcc:fileName", "bench.toml");
   file.add("dcc:mimeType", "application/toml");
@@ -217,17 +252,16 @@ void add_recipe(XmlElement list, const StoredResult& result) {
 
 void add_all_meta_data(XmlElement parent, const CertificateContents& contents) {
   XmlElement list = parent.add("dcc:measurementMetaData");
-  add_said(list, "dyncal_resultSha256", "SHA-256 of the result file", contents.result.sha256);
-  add_said(list, "dyncal_recipeSha256", "SHA-256 of the recipe", contents.result.recipe_sha256);
-  add_said(list, "dyncal_recordingSha256", "SHA-256 of the recording", contents.recording_sha256);
+  add_hash(list, "dyncal_resultSha256", sentences::result_hash, contents.result.sha256);
+  add_hash(list, "dyncal_recipeSha256", sentences::hash_of_recipe, contents.result.recipe_sha256);
+  add_hash(list, "dyncal_recordingSha256", sentences::recording_hash, contents.recording_sha256);
   add_conformity(list, contents.conformity);
   add_clock(list, contents.result);
-  for (const std::string& flag : contents.flags) {
-    add_said(list, "dyncal_flag", "To be known with the values", flag);
+  for (const TranslatedText& flag : contents.flags) {
+    add_said(list, "dyncal_flag", sentences::known_with_values, flag);
   }
   if (contents.objections.empty()) {
-    add_said(list, "dyncal_losses", "Losses",
-             "No value stated here lacks samples for a reason that is not stated with it.");
+    add_said(list, "dyncal_losses", sentences::losses_name, sentences::no_losses.translated());
   }
   add_recipe(list, contents.result);
 }
@@ -236,7 +270,7 @@ void add_all_meta_data(XmlElement parent, const CertificateContents& contents) {
 
 void add_measurement_results(XmlElement root, const CertificateContents& contents) {
   XmlElement result = root.add("dcc:measurementResults").add("dcc:measurementResult");
-  add_text(result, "dcc:name", "Dynamic calibration with sinusoidal excitation");
+  add_text(result, "dcc:name", sentences::measurement);
   add_methods(result, contents);
   add_used_software(result, contents.result);
   add_equipments(result, contents);

@@ -5,6 +5,9 @@
 
 #include "services/base/rounding.hpp"
 #include "services/views/certificate/dcc.hpp"
+#include "services/views/language/certificate_sentences.hpp"
+#include "services/views/language/report_sentences.hpp"
+#include "services/views/language/statement_sentences.hpp"
 #include "services/views/report/stated_value.hpp"
 
 namespace dyncal::inline views {
@@ -22,7 +25,7 @@ std::string joined(const Values& values, const std::function<std::string(const S
   return fmt::format("{}", fmt::join(texts, " "));
 }
 
-XmlElement add_quantity(XmlElement list, std::string_view type, std::string_view name) {
+XmlElement add_quantity(XmlElement list, std::string_view type, const Sentence& name) {
   XmlElement quantity = list.add("dcc:quantity").attribute("refType", type);
   add_text(quantity, "dcc:name", name);
   return quantity;
@@ -63,38 +66,43 @@ void add_relative_uncertainty(XmlElement quantity, const Values& values) {
   list.add("si:unitXMLList", "\\percent");
 }
 
+std::string description_of(const CertifiedChannel& channel, bool forced, Language language) {
+  std::string text =
+      sentences::result_description(language, sentences::sign_convention.in(language));
+  if (const std::string advice = advice_on_repetitions(channel.values, language); !advice.empty()) {
+    text += " " + advice;
+  }
+  return forced ? sentences::result_forced(language, text) : text;
+}
+
 void add_channel(XmlElement results, const CertifiedChannel& channel, bool forced) {
   XmlElement result = results.add("dcc:result").attribute("refType", "dyncal_transferFunction");
-  add_text(result, "dcc:name", result_name(channel.channel));
-  std::string description =
-      "Complex transfer function over frequency, means over the repetitions. " + sign_convention();
-  if (const std::string advice = advice_on_repetitions(channel.values); !advice.empty()) {
-    description += " " + advice;
-  }
-  if (forced) {
-    description = "THIS CERTIFICATE WAS FORCED, see the first statement. " + description;
-  }
-  add_text(result, "dcc:description", description);
+  add_text(result, "dcc:name", in_all_languages([&](Language language) {
+             return sentences::transfer_function_of(language, channel.channel);
+           }));
+  add_text(result, "dcc:description", in_all_languages([&](Language language) {
+             return description_of(channel, forced, language);
+           }));
   XmlElement list =
       result.add("dcc:data").add("dcc:list").attribute("refType", "basic_1IndexTable");
   add_plain_list(
       add_quantity(list, "vibration_frequency basic_nominalValue basic_tableIndex0",
-                   "Excitation frequency"),
+                   sentences::excitation_frequency),
       joined(channel.values, [](const StoredValue& value) { return value.frequency_text_hz; }),
       "\\hertz");
   add_plain_list(
       add_quantity(list, "vibration_accelerationAmplitude basic_nominalValue",
-                   "Amplitude of the excitation, as planned"),
+                   sentences::planned_amplitude),
       joined(channel.values,
              [](const StoredValue& value) { return fmt::format("{:g}", value.level_m_s2); }),
       "\\metre\\second\\tothe{-2}");
-  XmlElement magnitude = add_quantity(list, "vibration_magnitude", "Magnitude");
+  XmlElement magnitude = add_quantity(list, "vibration_magnitude", sentences::magnitude);
   add_measured_list(magnitude, channel.values, stated_magnitude, channel.unit);
   add_relative_uncertainty(magnitude, channel.values);
-  XmlElement phase = add_quantity(list, "vibration_phase", "Phase").add("si:hybrid");
+  XmlElement phase = add_quantity(list, "vibration_phase", sentences::phase).add("si:hybrid");
   add_measured_list(phase, channel.values, stated_phase_rad, "\\radian");
   add_measured_list(phase, channel.values, stated_phase_deg, "\\degree");
-  add_plain_list(add_quantity(list, "dyncal_repetitions", "Number of repetitions"),
+  add_plain_list(add_quantity(list, "dyncal_repetitions", sentences::number_of_repetitions),
                  joined(channel.values,
                         [](const StoredValue& value) { return std::to_string(value.repetitions); }),
                  "\\one");
@@ -102,8 +110,8 @@ void add_channel(XmlElement results, const CertifiedChannel& channel, bool force
 
 } // namespace
 
-std::string result_name(const std::string& channel) {
-  return "Transfer function of " + channel;
+std::string result_name(const std::string& channel, Language language) {
+  return sentences::transfer_function_of(language, channel);
 }
 
 void add_results(XmlElement measurement_result, const std::vector<CertifiedChannel>& channels,

@@ -87,7 +87,8 @@ std::optional<StatedResults> stated_results(const XmlElement& results) {
     if (!name) {
       return std::nullopt;
     }
-    std::string text = name->text();
+    const auto content = name->child("content"); // the first language
+    std::string text = content ? content->text() : name->text();
     text.erase(0, text.find_first_not_of(" \n\t"));
     text.erase(text.find_last_not_of(" \n\t") + 1);
     std::vector<StatedQuantity> quantities;

@@ -32,7 +32,8 @@ std::string declared(const XmlDocument& document, const std::string& type) {
   for (const XmlElement& data : document.root().descendants("metaData", dcc_namespace)) {
     if (data.attribute("refType") == type) {
       const auto declaration = data.child("declaration");
-      return declaration ? declaration->text() : "";
+      const auto content = declaration ? declaration->child("content") : std::nullopt;
+      return content ? content->text() : ""; // the same in every language
     }
   }
   return "";
@@ -85,9 +86,20 @@ void add_signature(const VerificationRequest& request, const XmlDocument& docume
   findings.push_back(check_trust(request, document, *signer));
 }
 
+// The language of the certificate whose names of results it is known by: that of their first text.
+Language language_of(const XmlDocument& document) {
+  const auto used = document.root().descendants("usedLangCodeISO639_1", dcc_namespace);
+  const auto is_used = [&](Language language) {
+    return std::ranges::any_of(
+        used, [&](const XmlElement& code) { return code.text() == code_of(language); });
+  };
+  const auto* const first = std::ranges::find_if(all_languages, is_used);
+  return first == std::end(all_languages) ? Language::english : *first;
+}
+
 // The channels that the certificate states, by the names of its results.
-std::vector<std::string> channels_of(const StatedResults& certificate) {
-  const std::string beginning = result_name("");
+std::vector<std::string> channels_of(const StatedResults& certificate, Language language) {
+  const std::string beginning = result_name("", language);
   std::vector<std::string> channels;
   for (const auto& [name, quantities] : certificate) {
     if (name.starts_with(beginning)) {
@@ -98,21 +110,25 @@ std::vector<std::string> channels_of(const StatedResults& certificate) {
 }
 
 Expected<StatedResults> results_of_run(const StoredResult& run,
-                                       const std::vector<std::string>& channels) {
+                                       const std::vector<std::string>& channels,
+                                       Language language) {
   DYNCAL_TRY(const auto certified, certified_channels(run, channels));
   const XmlDocument made = XmlDocument::make_dcc();
   add_results(made.root(), certified, false);
+  keep_languages(made.root(), {language});
   return *stated_results(*made.root().child("results"));
 }
 
 VerificationFinding check_numbers(const XmlDocument& document, const StoredResult& run) {
   const auto results = document.root().descendants("results", dcc_namespace);
   const auto certificate = results.size() == 1 ? stated_results(results.front()) : std::nullopt;
-  const auto channels = certificate ? channels_of(*certificate) : std::vector<std::string>();
+  const Language language = language_of(document);
+  const auto channels =
+      certificate ? channels_of(*certificate, language) : std::vector<std::string>();
   if (channels.empty()) {
     return failed(Verification::numbers, "the certificate has no results as dyncal states them");
   }
-  const auto expected = results_of_run(run, channels);
+  const auto expected = results_of_run(run, channels, language);
   if (!expected) {
     return failed(Verification::numbers,
                   "the run does not give what the certificate states: " + expected.error().message);

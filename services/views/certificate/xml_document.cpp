@@ -102,6 +102,12 @@ XmlElement& XmlElement::attribute(const char* name, std::string_view value) {
   return *this;
 }
 
+void XmlElement::remove() {
+  xmlUnlinkNode(node_);
+  xmlFreeNode(node_);
+  node_ = nullptr;
+}
+
 std::string XmlElement::name() const {
   return from_xml(node_->name);
 }

@@ -35,6 +35,7 @@ public:
   // The same with text in it.
   XmlElement add(std::string_view qualified_name, std::string_view text);
   XmlElement& attribute(const char* name, std::string_view value); // none of an empty value
+  void remove(); // with all that is in it: not to be used any more
 
   [[nodiscard]] std::string name() const; // without its prefix
   [[nodiscard]] bool is(std::string_view name, std::string_view of_namespace) const;

@@ -11,6 +11,8 @@
 
 #include "analysis/response/comparison.hpp"
 #include "services/views/conformity/stated_conformity.hpp"
+#include "services/views/language/conformity_sentences.hpp"
+#include "services/views/language/flag_text.hpp"
 #include "services/views/objections/refusing_flags.hpp"
 #include "services/views/report/result_file.hpp"
 
@@ -36,6 +38,19 @@ bool covers(const ToleranceRow& row, const std::string& channel, double frequenc
          is_between(frequency_hz, row.from_hz, row.to_hz) &&
          is_between(level_m_s2, row.from_level_m_s2.value_or(level_m_s2),
                     row.to_level_m_s2.value_or(level_m_s2));
+}
+
+TranslatedText doubt_about(const StoredResult& result, const StoredValue& value, bool of_phase) {
+  const std::string name = doubting_flag(result, value, of_phase);
+  if (name.empty()) {
+    return {};
+  }
+  const ResultFlag flag = parse_flag_name(name);
+  return in_all_languages([&](Language language) {
+    return sentences::flag_says(language, name,
+                                language == Language::german ? german_meaning_of(flag)
+                                                             : verdict_on(flag).reason);
+  });
 }
 
 // Of that frequency, and of the same level and axis if there are several.
@@ -125,14 +140,14 @@ void decide(const Tolerances& tolerances, const StoredValue& value, const Stored
                                   deviation ? deviation->of_value : CombinedUncertainty{}, limits,
                                   tolerances.rule, tolerances.guard_factor);
   if (!conformity) {
-    judged.reason = "the result has no value with a usable U";
+    judged.reason = sentences::no_usable_u.translated();
     return;
   }
   state_deviation(*deviation, row, judged);
   judged.statement = conformity->statement;
   judged.probability = conformity->probability;
   if (2.0 * conformity->guard_band > limits.upper - limits.lower) {
-    judged.reason = "the guard band is wider than half the tolerance: nothing could pass";
+    judged.reason = sentences::guard_band_too_wide.translated();
   }
 }
 
@@ -150,16 +165,21 @@ JudgedValue judged_value(const StoredResult& result, const std::vector<StoredVal
   if (relative_to_hz) {
     reference = value_at(values, *relative_to_hz, value);
     if (reference == nullptr) {
-      judged.reason = fmt::format("there is no value at the reference frequency of {} Hz and this "
-                                  "level",
-                                  *relative_to_hz);
+      judged.reason = in_all_languages([&](Language language) {
+        return sentences::no_reference_value(language,
+                                             decimal(language, fmt::format("{}", *relative_to_hz)));
+      });
       return judged;
     }
   }
-  std::string doubt = doubt_about(result, value, row.is_of_phase());
+  TranslatedText doubt = doubt_about(result, value, row.is_of_phase());
   if (doubt.empty() && reference != nullptr) {
     doubt = doubt_about(result, *reference, row.is_of_phase());
-    doubt = doubt.empty() ? "" : "at the reference frequency: " + doubt;
+    if (!doubt.empty()) {
+      doubt = in_all_languages([&](Language language) {
+        return sentences::at_reference_frequency(language, doubt.in(language));
+      });
+    }
   }
   decide(tolerances, value, reference, judged);
   if (!doubt.empty()) {
@@ -186,7 +206,7 @@ void add_not_measured(const StoredResult& result, const std::vector<StoredValue>
                         .frequency_hz = step.frequency_hz,
                         .level_m_s2 = step.level_m_s2,
                         .row = number,
-                        .reason = "planned, but there is no value"});
+                        .reason = sentences::planned_without_value.translated()});
     }
   }
 }
@@ -215,9 +235,10 @@ void note_limits_without_value(ConformityReport& report) {
     if (!is_measured) {
       report.all_limits_measured = false;
       const ToleranceRow& row = report.tolerances.rows[number];
-      report.notes.push_back(fmt::format("limit {} ({}{}): no value was measured within it",
-                                         number + 1, range_text(row),
-                                         row.channel.empty() ? "" : ", " + row.channel));
+      report.notes.push_back(in_all_languages([&](Language language) {
+        return sentences::limit_not_measured(language, number + 1, range_text(row, language),
+                                             row.channel.empty() ? "" : ", " + row.channel);
+      }));
     }
   }
 }
@@ -240,8 +261,12 @@ void note_values_without_limit(const StoredResult& result, const std::string& ch
     }
   }
   if (std::ranges::any_of(rows, is_for) && !places.empty()) {
-    report.notes.push_back(fmt::format("{}: no limit of the {} applies at {}", channel,
-                                       of_phase ? "phase" : "magnitude", fmt::join(places, "; ")));
+    report.notes.push_back(in_all_languages([&](Language language) {
+      return sentences::no_limit_applies(
+          language, channel,
+          (of_phase ? sentences::of_phase : sentences::of_magnitude).in(language),
+          decimal(language, fmt::format("{}", fmt::join(places, "; "))));
+    }));
   }
 }
 
@@ -270,7 +295,8 @@ ConformityReport judge_conformity(const StoredResult& result,
       return row.channel.empty() || row.channel == channel;
     });
     if (!is_named) {
-      report.notes.push_back(fmt::format("{}: no limit is for this channel", channel));
+      report.notes.push_back(in_all_languages(
+          [&](Language language) { return sentences::no_limit_for_channel(language, channel); }));
     }
   }
   return report;

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "services/views/lab_file/tolerance_table.hpp"
+#include "services/views/language/sentence.hpp"
 #include "services/views/report/stored_result.hpp"
 
 namespace dyncal::inline views {
@@ -37,13 +38,13 @@ struct JudgedValue {
   double expanded = nan_value;  // U of it
   double k = nan_value;
   double probability = nan_value; // of conformity
-  std::string reason{};           // why it is undecided, or what else is to be known
+  TranslatedText reason{};        // why it is undecided, or what else is to be known
 };
 
 struct ConformityReport {
   Tolerances tolerances{};
   std::vector<JudgedValue> values{}; // by channel, row, frequency
-  std::vector<std::string> notes{};
+  std::vector<TranslatedText> notes{};
   bool all_limits_measured = true;
 
   // Of all together: the worst of its values.

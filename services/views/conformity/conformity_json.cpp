@@ -24,7 +24,7 @@ Json value_json(const JudgedValue& value, const ToleranceRow& row) {
           {"upper_limit", row.upper},
           {"statement", analysis::to_string(value.statement)},
           {"probability", json_number(value.probability)},
-          {"reason", value.reason},
+          {"reason", value.reason.english},
           {"text",
            {{"deviation", stated.value},
             {"U_deviation", stated.expanded},
@@ -46,7 +46,10 @@ Json conformity_json(const ConformityReport& report, const StoredResult& result)
             {"verdict", verdict_text(report)},
             {"limits", Json::array()},
             {"values", Json::array()},
-            {"notes", report.notes}};
+            {"notes", Json::array()}};
+  for (const TranslatedText& note : report.notes) {
+    json["notes"].push_back(note.english);
+  }
   for (const ToleranceRow& row : tolerances.rows) {
     json["limits"].push_back(row_text(row));
   }

@@ -16,7 +16,7 @@ std::string value_line(const JudgedValue& value, const std::string& level) {
   return fmt::format("  {:>10}{} {:>12} {:>10} {:>9}  {}{}\n", one_line(value.frequency_text_hz),
                      level, stated.value, stated.expanded, probability_text(value),
                      analysis::to_string(value.statement),
-                     value.reason.empty() ? "" : ": " + one_line(value.reason));
+                     value.reason.empty() ? "" : ": " + one_line(value.reason.english));
 }
 
 // The values of one channel and row that begin there.
@@ -48,8 +48,8 @@ std::string conformity_table(const ConformityReport& report) {
     text += row_section(report, place, with_level);
   }
   text += "\n";
-  for (const std::string& note : report.notes) {
-    text += one_line(note) + "\n";
+  for (const TranslatedText& note : report.notes) {
+    text += one_line(note.english) + "\n";
   }
   return text + one_line(verdict_text(report)) + "\n";
 }

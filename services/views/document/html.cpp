@@ -10,6 +10,20 @@ std::string element(std::string_view name, std::string_view text, std::string_vi
              : fmt::format("<{0} class=\"{2}\">{1}</{0}>\n", name, escaped(text), css_class);
 }
 
+std::string element(std::string_view name, const Sentence& text, Language language,
+                    std::string_view css_class) {
+  return element(name, text.in(language), css_class);
+}
+
+std::vector<std::string> head_of(Language language, const std::vector<Sentence>& texts) {
+  std::vector<std::string> head;
+  head.reserve(texts.size());
+  for (const Sentence& text : texts) {
+    head.emplace_back(text.in(language));
+  }
+  return head;
+}
+
 HtmlTable::HtmlTable(std::string css_class, std::vector<std::string> head)
     : css_class_(std::move(css_class)), head_(std::move(head)) {}
 

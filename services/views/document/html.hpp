@@ -7,12 +7,20 @@
 #include <vector>
 
 #include "services/views/figures/markup.hpp" // escaped(), for those who compose HTML
+#include "services/views/language/sentence.hpp"
 
 namespace dyncal::inline views {
 
 // "<h2>text</h2>" and the like, with its text escaped.
 [[nodiscard]] std::string element(std::string_view name, std::string_view text,
                                   std::string_view css_class = {});
+
+// The same of a text of documents.
+[[nodiscard]] std::string element(std::string_view name, const Sentence& text, Language language,
+                                  std::string_view css_class = {});
+// Cells of a table's head.
+[[nodiscard]] std::vector<std::string> head_of(Language language,
+                                               const std::vector<Sentence>& texts);
 
 // A table whose head is repeated on every page that it reaches.
 class HtmlTable {
@@ -35,12 +43,16 @@ private:
 // Names and what they stand for, in two columns; entries with an empty text are left out.
 class DefinitionTable {
 public:
+  explicit DefinitionTable(Language language = Language::english) : language_(language) {}
+
   void add(std::string_view name, std::string_view text);
+  void add(const Sentence& name, std::string_view text) { add(name.in(language_), text); }
   // The same with text that is HTML already.
   void add_html(std::string_view name, std::string_view html);
   [[nodiscard]] std::string finish() const;
 
 private:
+  Language language_;
   std::string body_;
 };
 

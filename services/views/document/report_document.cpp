@@ -10,6 +10,7 @@
 #include "services/base/version.hpp"
 #include "services/views/conformity/asked_conformity.hpp"
 #include "services/views/document/html.hpp"
+#include "services/views/language/report_sentences.hpp"
 #include "services/views/objections/objections.hpp"
 #include "services/views/objections/subject_objections.hpp"
 #include "services/views/report/stated_value.hpp"
@@ -123,30 +124,47 @@ Expected<void> check_issue(const ReportRequest& request, ReportContents& content
 
 // Texts that stand at the edges of every page.
 std::string running_texts(const ReportContents& contents) {
+  const Language language = contents.language;
   const std::string foot =
       contents.laboratory && !contents.laboratory->letterhead.footer.empty()
           ? contents.laboratory->letterhead.footer
-          : fmt::format("result file {}...", contents.result.sha256.substr(0, 16));
+          : sentences::result_file_mark(language, contents.result.sha256.substr(0, 16));
   return element("div", issuer_of(contents), "running issuer-text") +
          element("div", fmt::format("{} {}", title_of(contents), mark_of(contents)),
                  "running subject-text") +
-         element("div", foot, "running foot-text");
+         element("div", foot, "running foot-text") +
+         element("div", sentences::page, language, "running page-text") +
+         element("div", sentences::of_pages, language, "running of-text");
 }
 
-std::string body_of(const ReportContents& contents) {
-  std::string html = contents.is_draft ? element("div", "DRAFT", "draft") : "";
+// In one language; `first_figure` numbers the SVG of the document.
+std::string part_of(const ReportContents& contents, std::size_t first_figure) {
+  const Language language = contents.language;
+  std::string html = fmt::format("<div class=\"part\" lang=\"{}\">\n", code_of(language));
+  html += contents.is_draft ? element("div", sentences::draft, language, "draft") : "";
   html += running_texts(contents) + letterhead(contents) + warnings(contents) + summary(contents);
   for (std::size_t i = 0; i < contents.channels.size(); ++i) {
-    html += channel_section(contents, contents.channels[i], i + 1);
+    html += channel_section(contents, contents.channels[i], first_figure + i);
   }
-  html += conformity_section(contents.conformity) + flag_section(contents) +
-          closures_section(contents) + conditions_section(contents) + equipment_section(contents) +
-          losses_section(contents) + clock_section(contents) + remarks(contents) +
-          signatures(contents);
+  html += conformity_section(contents) + flag_section(contents) + closures_section(contents) +
+          conditions_section(contents) + equipment_section(contents) + losses_section(contents) +
+          clock_section(contents) + remarks(contents) + signatures(contents);
   html += other_channels(contents) + devices_section(contents) + software_section(contents) +
-          single_results(contents) + recipe_section(contents);
+          budget_annex(contents) + single_results(contents) + recipe_section(contents);
   return html +
-         element("p", fmt::format("End of {} {}", title_of(contents), mark_of(contents)), "end");
+         element("p", sentences::end_of(language, title_of(contents), mark_of(contents)), "end") +
+         "</div>\n";
+}
+
+std::string body_of(ReportContents contents) {
+  std::string html;
+  std::size_t figure = 1;
+  for (const Language language : contents.languages) {
+    contents.language = language;
+    html += part_of(contents, figure);
+    figure += contents.channels.size();
+  }
+  return html;
 }
 
 } // namespace
@@ -169,6 +187,12 @@ Expected<ReportContents> gather_report(const ReportRequest& request) {
   contents.number = request.number.empty() && contents.sensor ? contents.sensor->certificate_number
                                                               : request.number;
   contents.replaces = request.replaces;
+  if (!request.languages.empty()) {
+    contents.languages = request.languages;
+  } else if (contents.laboratory) {
+    contents.languages = contents.laboratory->languages;
+  }
+  contents.language = contents.languages.front();
   DYNCAL_TRY(contents.conformity,
              asked_conformity(contents.result, contents.channels, request.tolerances,
                               contents.sensor ? contents.sensor->tolerances : std::nullopt));
@@ -183,16 +207,18 @@ Expected<ReportContents> gather_report(const ReportRequest& request) {
 
 std::string report_html(const ReportContents& contents) {
   // The policy forbids a browser to fetch or run anything, whatever a text might hold.
-  return fmt::format("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-                     "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
-                     "img-src data:; style-src 'unsafe-inline'\">\n"
-                     "<meta name=\"viewport\" content=\"width=device-width\">\n"
-                     "<meta name=\"author\" content=\"{}\">\n<meta name=\"generator\" "
-                     "content=\"{}\">\n<title>{}</title>\n<style>{}</style>\n</head>\n"
-                     "<body>\n<main>\n{}</main>\n</body>\n</html>\n",
-                     escaped(issuer_of(contents)), escaped(contents.software),
-                     escaped(title_of(contents) + ", run " + contents.result.run), report_style(),
-                     body_of(contents));
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"{}\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
+      "img-src data:; style-src 'unsafe-inline'\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width\">\n"
+      "<meta name=\"author\" content=\"{}\">\n<meta name=\"generator\" "
+      "content=\"{}\">\n<title>{}</title>\n<style>{}</style>\n</head>\n"
+      "<body>\n<main>\n{}</main>\n</body>\n</html>\n",
+      code_of(contents.language), escaped(issuer_of(contents)), escaped(contents.software),
+      escaped(fmt::format("{}, {}", title_of(contents),
+                          sentences::run_mark(contents.language, contents.result.run))),
+      report_style(), body_of(contents));
 }
 
 } // namespace dyncal::inline views

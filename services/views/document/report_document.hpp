@@ -4,7 +4,8 @@
 //
 // In order: letterhead and summary, values with U and k, figures, flags, uncertainty budget,
 // conditions, losses, sample clock, signatures; annexes: devices, corrections, software and hashes,
-// single results, recipe. Whatever comes from a file is escaped.
+// budgets, single results, recipe. In several languages they follow each other in one document,
+// each whole. Whatever comes from a file is escaped.
 //
 // Fails (bad_file) when the result file lacks a key; (bad_argument) when a channel that was asked
 // for has no value, when a closure of a channel is open and the report is not forced, and when
@@ -33,6 +34,7 @@ struct ReportRequest {
   bool is_draft = true;               // of the result as it is
   std::string number;                 // empty: that of the sensor file, if any
   std::string replaces;
+  std::vector<Language> languages; // empty: as the laboratory file says, else English
 };
 
 // Reads all files that a report is made of.

@@ -7,6 +7,8 @@
 
 #include "services/views/conformity/stated_conformity.hpp"
 #include "services/views/document/html.hpp"
+#include "services/views/language/report_sentences.hpp"
+#include "services/views/language/statement_sentences.hpp"
 #include "services/views/objections/subject_objections.hpp"
 #include "services/views/report/daily_check.hpp"
 #include "services/views/report/stated_value.hpp"
@@ -49,7 +51,9 @@ std::string joined_texts(const std::vector<std::string>& texts) {
 std::string described_sensor(const ReportContents& contents) {
   const auto source = described_source(contents.result, contents.channels.front());
   return source ? joined_texts(
-                      {source->device, source->serial.empty() ? "" : "serial " + source->serial})
+                      {source->device, source->serial.empty()
+                                           ? ""
+                                           : sentences::serial(contents.language, source->serial)})
                 : "";
 }
 
@@ -58,9 +62,11 @@ std::string sensor_text(const ReportContents& contents) {
     return described_sensor(contents);
   }
   const SensorFile& sensor = *contents.sensor;
-  return joined_texts({sensor.name, sensor.manufacturer, sensor.model, "serial " + sensor.serial,
-                       sensor.firmware.empty() ? "" : "firmware " + sensor.firmware,
-                       sensor.owner_identification});
+  const Language language = contents.language;
+  return joined_texts(
+      {sensor.name, sensor.manufacturer, sensor.model, sentences::serial(language, sensor.serial),
+       sensor.firmware.empty() ? "" : sentences::firmware(language, sensor.firmware),
+       sensor.owner_identification});
 }
 
 std::string customer_text(const ReportContents& contents) {
@@ -78,13 +84,16 @@ std::string customer_text(const ReportContents& contents) {
   return joined_texts(lines);
 }
 
-std::string certificate_text(const CalibratedDevice& device) {
-  return joined_texts({device.name, device.manufacturer, device.model,
-                       device.serial.empty() ? "" : "serial " + device.serial}) +
-         (device.certificate.empty()
-              ? ""
-              : fmt::format("; certificate {} of {}{}", device.certificate, device.issued_by,
-                            device.issued.empty() ? "" : ", " + device.issued));
+std::string certificate_text(const CalibratedDevice& device, Language language) {
+  const std::string of_device =
+      joined_texts({device.name, device.manufacturer, device.model,
+                    device.serial.empty() ? "" : sentences::serial(language, device.serial)});
+  const std::string day = device.issued.empty() ? "" : ", " + day_text(language, device.issued);
+  return device.certificate.empty()
+             ? of_device
+             : fmt::format(
+                   "{}; {}", of_device,
+                   sentences::certificate_of(language, device.certificate, device.issued_by, day));
 }
 
 std::string reference_text(const ReportContents& contents) {
@@ -94,20 +103,21 @@ std::string reference_text(const ReportContents& contents) {
   }
   std::string text;
   for (const CalibratedDevice& device : reference->devices) {
-    text += certificate_text(device) + ". ";
+    text += certificate_text(device, contents.language) + ". ";
   }
   return text + reference->traceability;
 }
 
 // How it came, and how it was set.
-void add_state(const SensorFile& sensor, DefinitionTable& table) {
-  table.add("Received", joined_texts({sensor.received, sensor.condition}));
+void add_state(const SensorFile& sensor, Language language, DefinitionTable& table) {
+  table.add(sentences::received,
+            joined_texts({day_text(language, sensor.received), sensor.condition}));
   std::vector<std::string> settings;
   for (const auto& [name, value] : sensor.settings) {
     settings.push_back(fmt::format("{}: {}", name, value));
   }
-  table.add("Settings", joined_texts(settings));
-  table.add("Positive direction", sensor.positive_direction);
+  table.add(sentences::settings, joined_texts(settings));
+  table.add(sentences::positive_direction, sensor.positive_direction);
 }
 
 std::string place_text(const ReportContents& contents) {
@@ -121,23 +131,20 @@ std::string place_text(const ReportContents& contents) {
 
 std::string method_text(const ReportContents& contents) {
   const std::string& method = contents.result.method;
+  const Language language = contents.language;
   std::string standard = reference_of(contents) ? reference_of(contents)->standard : "";
   if (!standard.empty()) {
-    standard += standard == "ISO 16063-11" ? ":1999 (by laser interferometry); "
-                                           : ":2003 (by comparison to a reference transducer); ";
+    standard = standard == "ISO 16063-11" ? sentences::by_interferometry(language, standard)
+                                          : sentences::by_comparison(language, standard);
   }
-  return standard + fmt::format("{}: {}", method, method_description(method));
+  return standard + fmt::format("{}: {}", method, method_description(method, language));
 }
 
-// "2026-03-01 12:00:05 UTC"
-std::string readable_instant(const std::string& utc) {
-  return utc.size() < 19 ? utc : fmt::format("{} {} UTC", utc.substr(0, 10), utc.substr(11, 8));
-}
-
-std::string period(const StoredResult& result) {
-  return result.began_utc.empty() ? std::string("not known: no stamps in UTC")
-                                  : fmt::format("{} to {}", readable_instant(result.began_utc),
-                                                readable_instant(result.ended_utc));
+std::string period(const StoredResult& result, Language language) {
+  return result.began_utc.empty()
+             ? sentences::measured_unknown(language)
+             : sentences::measured_from(language, instant_text(language, result.began_utc),
+                                        instant_text(language, result.ended_utc));
 }
 
 } // namespace
@@ -149,19 +156,21 @@ const ReferenceStandard* reference_of(const ReportContents& contents) {
 std::string title_of(const ReportContents& contents) {
   return contents.laboratory && !contents.laboratory->letterhead.title.empty()
              ? contents.laboratory->letterhead.title
-             : "Calibration report";
+             : sentences::calibration_report(contents.language);
 }
 
 std::string mark_of(const ReportContents& contents) {
-  return contents.number.empty() ? "run " + contents.result.run : "No. " + contents.number;
+  return contents.number.empty() ? sentences::run_mark(contents.language, contents.result.run)
+                                 : sentences::number_mark(contents.language, contents.number);
 }
 
 std::string issuer_of(const ReportContents& contents) {
   return contents.laboratory ? contents.laboratory->laboratory.name
-                             : "bench " + contents.result.bench;
+                             : sentences::bench_mark(contents.language, contents.result.bench);
 }
 
 std::string letterhead(const ReportContents& contents) {
+  const Language language = contents.language;
   std::string html = "<header>\n<div class=\"issuer\">\n";
   if (contents.laboratory) {
     const LaboratoryFile& file = *contents.laboratory;
@@ -174,93 +183,94 @@ std::string letterhead(const ReportContents& contents) {
     const std::vector<std::string> address = address_lines(file.laboratory);
     lines.insert(lines.end(), address.begin(), address.end());
     if (!file.accreditation.empty()) {
-      lines.push_back("Accreditation " + file.accreditation);
+      lines.push_back(sentences::accreditation(language, file.accreditation));
     }
     html += "<p class=\"address\">" + address_html(lines) + "</p>\n";
   }
   html += "</div>\n<div class=\"title\">\n" + element("h1", title_of(contents));
   std::vector<std::string> lines;
   if (!contents.number.empty()) {
-    lines.push_back("No. " + contents.number);
+    lines.push_back(sentences::number_mark(language, contents.number));
   }
   if (!contents.replaces.empty()) {
-    lines.push_back("Replaces no. " + contents.replaces);
+    lines.push_back(sentences::replaces_number(language, contents.replaces));
   }
-  lines.push_back("Run " + contents.result.run);
-  lines.push_back((contents.is_draft ? "Draft of " : "Issued ") + contents.issued);
+  lines.push_back(sentences::run_line(language, contents.result.run));
+  lines.push_back((contents.is_draft ? sentences::draft_of : sentences::issued_on)(
+      language, day_text(language, contents.issued)));
+  if (contents.languages.size() > 1) {
+    lines.push_back(sentences::holding_language(language));
+  }
   return html + "<p class=\"address\">" + address_html(lines) + "</p>\n</div>\n</header>\n";
 }
 
 std::string warnings(const ReportContents& contents) {
   const StoredResult& result = contents.result;
+  const Language language = contents.language;
   std::string html;
   if (!contents.objections.empty()) {
-    html += element("p", "THIS REPORT WAS FORCED: the software that evaluated the measurement "
-                         "refused it. The laboratory has issued it all the same. What spoke "
-                         "against it:");
+    html += element("p", sentences::forced, language);
   }
   for (const std::string& objection : contents.objections) {
     html += element("p", objection);
   }
   if (result.interrupted) {
-    html += element("p", "The run was interrupted: not every planned step was measured.");
+    html += element("p", sentences::interrupted, language);
   }
   if (!result.problem.empty()) {
-    html += element("p", "The run ended early: " + result.problem);
+    html += element("p", sentences::ended_early(language, result.problem));
   }
   for (const std::string& open : result.open_closures(contents.channels)) {
-    html += element("p", "What must hold over the run does not: " + open);
+    html += element("p", sentences::does_not_hold(language, open));
   }
   const auto invalid = std::ranges::count_if(result.points, [&](const StoredPoint& point) {
     return !point.valid &&
            std::ranges::find(contents.channels, point.channel) != contents.channels.end();
   });
   if (invalid > 0) {
-    html += element("p", fmt::format("{} single results have no value; the reasons stand below "
-                                     "the tables.",
-                                     invalid));
+    html += element("p", sentences::without_value(language, invalid));
   }
-  if (!result.flags.empty()) {
+  if (const std::size_t flags = result.flags.size(); flags > 0) {
     html += element(
-        "p",
-        fmt::format("Some values have flags (F1{}), which are explained below.",
-                    result.flags.size() > 1 ? fmt::format(" to F{}", result.flags.size()) : ""));
+        "p", sentences::have_flags(language, flags > 1 ? sentences::to_flag(language, flags) : ""));
   }
   return html.empty() ? "" : "<aside>\n" + html + "</aside>\n";
 }
 
 std::string summary(const ReportContents& contents) {
   const StoredResult& result = contents.result;
-  DefinitionTable table;
-  table.add("Object", sensor_text(contents));
+  const Language language = contents.language;
+  DefinitionTable table(language);
+  table.add(sentences::object, sensor_text(contents));
   if (contents.sensor) {
-    add_state(*contents.sensor, table);
+    add_state(*contents.sensor, language, table);
   }
-  table.add("Channels", fmt::format("{}", fmt::join(contents.channels, ", ")));
-  table.add("Customer", customer_text(contents));
-  table.add("Measured", period(result));
-  table.add("Place", place_text(contents));
-  table.add("Bench, run", fmt::format("{}, {}", result.bench, result.run));
-  table.add("Excitation", fmt::format("sinusoidal, {}; {} steps planned",
-                                      frequency_range(result.values_of(contents.channels.front())),
-                                      result.planned_steps));
-  table.add("Method", method_text(contents));
-  table.add("Reference", reference_text(contents));
-  table.add("Check", result.check ? sentence_of(*result.check) : "");
-  table.add("Conformity", contents.conformity ? verdict_text(*contents.conformity) : "");
-  table.add("Phase", sign_convention());
-  table.add("Uncertainty", "JCGM 100:2008 (GUM). " + rounding_rule());
-  return "<h2>Summary</h2>\n" + table.finish() +
-         element("p", "The results relate only to the items calibrated, as they were received and "
-                      "in the conditions stated. What departs from the method, or is to be known "
-                      "with single values, stands under Flags.");
+  table.add(sentences::channels, fmt::format("{}", fmt::join(contents.channels, ", ")));
+  table.add(sentences::customer, customer_text(contents));
+  table.add(sentences::measured, period(result, language));
+  table.add(sentences::place, place_text(contents));
+  table.add(sentences::bench_and_run, fmt::format("{}, {}", result.bench, result.run));
+  table.add(sentences::excitation,
+            sentences::sinusoidal(
+                language, frequency_range(result.values_of(contents.channels.front()), language),
+                result.planned_steps));
+  table.add(sentences::method, method_text(contents));
+  table.add(sentences::reference, reference_text(contents));
+  table.add(sentences::check, result.check ? sentence_of(*result.check, language) : "");
+  table.add(sentences::conformity,
+            contents.conformity ? verdict_text(*contents.conformity, language) : "");
+  table.add(sentences::phase, sentences::sign_convention(language));
+  table.add(sentences::uncertainty, "JCGM 100:2008 (GUM). " + sentences::rounding_rule(language));
+  return element("h2", sentences::summary, language) + table.finish() +
+         element("p", fmt::format("{} {}", sentences::relates_only.in(language),
+                                  sentences::departures.in(language)));
 }
 
 std::string remarks(const ReportContents& contents) {
   if (!contents.laboratory || contents.laboratory->letterhead.remarks.empty()) {
     return "";
   }
-  std::string html = "<h2>Remarks</h2>\n";
+  std::string html = element("h2", sentences::remarks, contents.language);
   for (const std::string& text : contents.laboratory->letterhead.remarks) {
     html += element("p", text);
   }
@@ -268,16 +278,19 @@ std::string remarks(const ReportContents& contents) {
 }
 
 std::string signatures(const ReportContents& contents) {
+  const Language language = contents.language;
   std::vector<Person> persons;
   if (contents.laboratory) {
     persons = contents.laboratory->persons;
   }
   if (persons.empty()) {
-    persons.push_back({"", "Calibrated by", false});
+    persons.push_back({"", sentences::calibrated_by(language), false});
   }
   std::string html = "<section class=\"signatures\">\n";
-  html += element(
-      "p", contents.laboratory ? contents.laboratory->laboratory.city + ", " : "Date: ", "place");
+  html += element("p",
+                  contents.laboratory ? contents.laboratory->laboratory.city + ", "
+                                      : sentences::date(language),
+                  "place");
   html += "<div class=\"signers\">\n";
   for (const Person& person : persons) {
     html += fmt::format("<div class=\"signer\"><div class=\"line\"></div>{}{}</div>\n",

@@ -11,6 +11,7 @@
 #include "services/views/lab_file/embedded_picture.hpp"
 #include "services/views/lab_file/laboratory_file.hpp"
 #include "services/views/lab_file/sensor_file.hpp"
+#include "services/views/language/sentence.hpp"
 #include "services/views/report/stored_result.hpp"
 
 namespace dyncal::inline views {
@@ -26,14 +27,19 @@ struct ReportContents {
   std::string number;                         // empty: none
   std::string replaces;                       // number of the report whose place it takes
   bool is_draft = true;                       // not issued: every page says so
-  std::vector<std::string> provenance;        // what the result was held against
+  std::vector<TranslatedText> provenance;     // what the result was held against
   std::vector<std::string> objections;        // in spite of which it is issued
   std::string issued;                         // YYYY-MM-DD
   std::string software;                       // that makes the report
+  std::vector<Language> languages{Language::english};
+  Language language = Language::english; // of the part that is being made
 };
 
 // What the values are traceable to: as the run states it, else the laboratory file; null: neither.
 [[nodiscard]] const ReferenceStandard* reference_of(const ReportContents& contents);
+
+// "80", with the level where there are several.
+[[nodiscard]] std::string place_cell(const ReportContents& contents, const StoredPoint& point);
 
 // Whose it is and what it is about (report_front.cpp).
 [[nodiscard]] std::string letterhead(const ReportContents& contents);
@@ -58,8 +64,14 @@ struct ReportContents {
 [[nodiscard]] std::string flag_section(const ReportContents& contents);
 [[nodiscard]] std::string single_results(const ReportContents& contents);
 
+// What u is made of (report_budget.cpp): at one reference frequency, as a table of quantities; at
+// all of them, as a table of contributions over frequency. Empty without a budget.
+[[nodiscard]] std::string budget_section(const ReportContents& contents,
+                                         const std::string& channel);
+[[nodiscard]] std::string budget_annex(const ReportContents& contents);
+
 // What was decided of tolerances (report_conformity.cpp); empty without any.
-[[nodiscard]] std::string conformity_section(const std::optional<ConformityReport>& conformity);
+[[nodiscard]] std::string conformity_section(const ReportContents& contents);
 
 // What they were measured with (report_setup.cpp).
 [[nodiscard]] std::string conditions_section(const ReportContents& contents);

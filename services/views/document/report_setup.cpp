@@ -11,33 +11,42 @@
 #include "services/contract/unit.hpp"
 #include "services/evaluation/result/members.hpp"
 #include "services/views/document/html.hpp"
+#include "services/views/document/toml_comments.hpp"
+#include "services/views/language/closure_text.hpp"
+#include "services/views/language/report_sentences.hpp"
+#include "services/views/language/setup_sentences.hpp"
 #include "services/views/report/run_equipment.hpp"
 #include "services/views/report/stated_value.hpp"
 
 namespace dyncal::inline views {
 namespace {
 
-std::string with_uncertainty(const MeasuredCondition& condition, const std::string& unit) {
+std::string with_uncertainty(const MeasuredCondition& condition, const std::string& unit,
+                             Language language) {
   const RoundedValue rounded = round_by_uncertainty(condition.value, condition.expanded);
-  return fmt::format("{} {}, U = {} {} (k = 2)", rounded.value, unit, rounded.u, unit);
+  return sentences::with_expanded(language, decimal(language, rounded.value), unit,
+                                  decimal(language, rounded.u), unit);
 }
 
-void add_stated_conditions(const Conditions& conditions, DefinitionTable& table) {
+void add_stated_conditions(const Conditions& conditions, Language language,
+                           DefinitionTable& table) {
   if (conditions.temperature_degc) {
-    table.add("Ambient temperature", with_uncertainty(*conditions.temperature_degc, "°C"));
+    table.add(sentences::ambient_temperature,
+              with_uncertainty(*conditions.temperature_degc, "°C", language));
   }
   if (conditions.humidity_percent) {
-    table.add("Relative humidity", with_uncertainty(*conditions.humidity_percent, "%"));
+    table.add(sentences::relative_humidity,
+              with_uncertainty(*conditions.humidity_percent, "%", language));
   }
   if (conditions.pressure_hpa) {
-    table.add("Air pressure", with_uncertainty(*conditions.pressure_hpa, "hPa"));
+    table.add(sentences::air_pressure, with_uncertainty(*conditions.pressure_hpa, "hPa", language));
   }
-  table.add("Mounting", conditions.mounting);
-  table.add("Orientation", conditions.orientation);
+  table.add(sentences::mounting, conditions.mounting);
+  table.add(sentences::orientation, conditions.orientation);
 }
 
 // The largest deviation of the measured from the planned level, over all results.
-std::string level_deviation(const std::vector<StoredPoint>& points) {
+std::string level_deviation(const std::vector<StoredPoint>& points, Language language) {
   double largest = NAN;
   for (const StoredPoint& point : points) {
     if (std::isfinite(point.measured_level_m_s2) && point.level_m_s2 > 0.0) {
@@ -45,13 +54,16 @@ std::string level_deviation(const std::vector<StoredPoint>& points) {
       largest = std::isfinite(largest) ? std::max(largest, deviation) : deviation;
     }
   }
-  return std::isfinite(largest) ? fmt::format("{:.2g} %", 100.0 * largest) : "";
+  return std::isfinite(largest) ? decimal(language, fmt::format("{:.2g} %", 100.0 * largest)) : "";
 }
 
-std::string pauses_of(const StoredResult& result) {
-  HtmlTable table("legend", {"pause from", "to", "reason"});
-  for (const RunPause& pause : result.pauses) {
-    table.row({utc_text(pause.began_utc_ns), utc_text(pause.ended_utc_ns), pause.reason});
+std::string pauses_of(const ReportContents& contents) {
+  const Language language = contents.language;
+  HtmlTable table("legend", head_of(language, {sentences::pause_from, sentences::pause_to,
+                                               sentences::pause_reason}));
+  for (const RunPause& pause : contents.result.pauses) {
+    table.row({instant_text(language, utc_text(pause.began_utc_ns)),
+               instant_text(language, utc_text(pause.ended_utc_ns)), pause.reason});
   }
   return table.empty() ? "" : table.finish();
 }
@@ -74,61 +86,84 @@ std::map<std::string, SourceSamples> losses_of(const StoredResult& result,
   return losses;
 }
 
-std::string microseconds(double seconds, int decimals) {
-  return std::isfinite(seconds) ? fmt::format("{:.{}f} us", 1e6 * seconds, decimals) : "";
+std::string microseconds(double seconds, int decimals, Language language) {
+  return std::isfinite(seconds)
+             ? decimal(language, fmt::format("{:.{}f} µs", 1e6 * seconds, decimals))
+             : "";
 }
 
-std::string clock_facts(const analysis::SampleClockStatistics& clock) {
+std::string clock_facts(const analysis::SampleClockStatistics& clock, Language language) {
   const double u_interval_s = clock.u_mean_interval_s;
-  DefinitionTable table;
-  table.add(
-      "Mean sample rate",
-      std::isfinite(u_interval_s) && u_interval_s > 0.0 && clock.mean_interval_s > 0.0
-          ? stated_text(clock.mean_rate_hz, clock.of_mean_rate(), "Hz")
-          : fmt::format("{:.6g} Hz (nothing is known of its uncertainty)", clock.mean_rate_hz));
-  if (clock.nominal_rate_hz > 0.0 && std::isfinite(u_interval_s) && u_interval_s > 0.0) {
+  const bool has_u = std::isfinite(u_interval_s) && u_interval_s > 0.0;
+  DefinitionTable table(language);
+  table.add(sentences::mean_rate,
+            has_u && clock.mean_interval_s > 0.0
+                ? stated_text(clock.mean_rate_hz, clock.of_mean_rate(), "Hz", language)
+                : sentences::rate_without_uncertainty(
+                      language, decimal(language, fmt::format("{:.6g}", clock.mean_rate_hz))));
+  if (clock.nominal_rate_hz > 0.0 && has_u) {
     analysis::CombinedUncertainty of_deviation_ppm = clock.of_rate_deviation();
     of_deviation_ppm.u *= 1e6;
-    table.add("Deviation from the nominal rate",
-              stated_text(1e6 * clock.rate_deviation_rel(), of_deviation_ppm, "ppm"));
+    table.add(sentences::rate_deviation,
+              stated_text(1e6 * clock.rate_deviation_rel(), of_deviation_ppm, "ppm", language));
   }
-  table.add("Sample intervals", std::to_string(clock.intervals));
-  table.add("Median, smallest, largest",
-            fmt::format("{}, {}, {}", microseconds(clock.median_s, 3),
-                        microseconds(clock.minimum_s, 3), microseconds(clock.maximum_s, 3)));
-  table.add("Standard deviation", microseconds(clock.sd_s, 4));
-  table.add("Resolution of the stamps", microseconds(clock.tick_s, 5));
-  table.add("Events (steps, gaps, doubled samples)", std::to_string(clock.event_count));
-  table.add("Samples lost over the whole run", std::to_string(clock.lost));
+  table.add(sentences::intervals, std::to_string(clock.intervals));
+  table.add(sentences::median, fmt::format("{}; {}; {}", microseconds(clock.median_s, 3, language),
+                                           microseconds(clock.minimum_s, 3, language),
+                                           microseconds(clock.maximum_s, 3, language)));
+  table.add(sentences::standard_deviation, microseconds(clock.sd_s, 4, language));
+  table.add(sentences::tick, microseconds(clock.tick_s, 5, language));
+  table.add(sentences::events, std::to_string(clock.event_count));
+  table.add(sentences::lost_in_run, std::to_string(clock.lost));
   return table.finish();
 }
 
-std::string corrections_of(const StoredResult& result) {
-  if (!result.corrections) {
+// A delay of the recipe, with all its digits.
+std::string delay_text(double delay_s, Language language) {
+  return decimal(language, fmt::format("{:g}", 1e6 * delay_s));
+}
+
+std::string corrections_of(const ReportContents& contents) {
+  if (!contents.result.corrections) {
     return "";
   }
-  const StoredCorrections& corrections = *result.corrections;
-  DefinitionTable table;
-  table.add("Delay of the reference", corrections.reference_delay_s != 0.0
-                                          ? fmt::format("{:g} s", corrections.reference_delay_s)
-                                          : std::string("none"));
+  const Language language = contents.language;
+  const StoredCorrections& corrections = *contents.result.corrections;
+  DefinitionTable table(language);
+  table.add(sentences::reference_delay,
+            corrections.reference_delay_s != 0.0
+                ? delay_text(corrections.reference_delay_s, language) + " µs"
+                : sentences::none(language));
   if (corrections.adc_calibration) {
     const std::size_t points = corrections.adc_calibration->size();
-    table.add("Sync ADC of the acquisition unit",
-              points == 0 ? std::string("not corrected")
-                          : fmt::format("calibrated at {} frequencies", points));
+    table.add(sentences::sync_adc, points == 0 ? sentences::not_corrected(language)
+                                               : sentences::calibrated_at(language, points));
   }
   if (corrections.dso_delay_s) {
-    table.add(
-        "Delay of the oscilloscope's trigger",
-        fmt::format("{:g} s, u = {:g} s", *corrections.dso_delay_s, corrections.u_dso_delay_s));
+    table.add(sentences::trigger_delay,
+              sentences::delay_with_u(language, delay_text(*corrections.dso_delay_s, language),
+                                      delay_text(corrections.u_dso_delay_s, language)));
   }
-  return "<h3>Corrections</h3>\n" + table.finish();
+  return element("h3", sentences::corrections, language) + table.finish();
+}
+
+std::string correction_name(const std::string& name, Language language) {
+  const std::pair<std::string_view, Sentence> known[] = {
+      {"reference_response", sentences::reference_response},
+      {"reference_delay", sentences::reference_delay},
+      {"adc_phase_lag", sentences::adc_phase_lag},
+      {"dso_delay", sentences::trigger_delay}};
+  for (const auto& [identifier, sentence] : known) {
+    if (name == identifier) {
+      return sentence(language);
+    }
+  }
+  return name;
 }
 
 // Each correction of the steps by name, with the range of what it does to the phase: of angles, so
 // that 179.9 and -179.9 degrees are 0.2 degrees apart.
-std::string applied_corrections(const StoredResult& result) {
+std::string applied_corrections(const ReportContents& contents) {
   constexpr double turn = 360.0;
   struct Range {
     double low = INFINITY;
@@ -136,7 +171,7 @@ std::string applied_corrections(const StoredResult& result) {
     double u = 0.0;
   };
   std::map<std::string, Range> ranges;
-  for (const StoredStep& step : result.steps) {
+  for (const StoredStep& step : contents.result.steps) {
     for (const StoredCorrection& correction : step.corrections) {
       Range& range = ranges[correction.name];
       const double stated = degrees_of(correction.phase_rad);
@@ -147,10 +182,14 @@ std::string applied_corrections(const StoredResult& result) {
       range.u = std::max(range.u, correction.u_phase_rad);
     }
   }
-  HtmlTable table("legend", {"applied", "to the phase / °", "largest <i>u</i> / °"});
+  const Language language = contents.language;
+  const auto number = [&](double value) { return decimal(language, fmt::format("{:.4g}", value)); };
+  HtmlTable table("legend", head_of(language, {sentences::applied, sentences::to_the_phase,
+                                               sentences::largest_u}));
   for (const auto& [name, range] : ranges) {
-    table.row({name, fmt::format("{:.4g} to {:.4g}", range.low, range.high),
-               rounded_uncertainty(range.u * 180.0 / M_PI)});
+    table.row({correction_name(name, language),
+               sentences::from_to(language, number(range.low), number(range.high)),
+               decimal(language, rounded_uncertainty(range.u * 180.0 / M_PI))});
   }
   return table.empty() ? "" : table.finish();
 }
@@ -158,81 +197,104 @@ std::string applied_corrections(const StoredResult& result) {
 } // namespace
 
 std::string conditions_section(const ReportContents& contents) {
-  DefinitionTable table;
+  const Language language = contents.language;
+  DefinitionTable table(language);
   if (contents.sensor && !contents.sensor->conditions.empty()) {
-    add_stated_conditions(contents.sensor->conditions, table);
+    add_stated_conditions(contents.sensor->conditions, language, table);
   } else if (contents.laboratory) {
-    add_stated_conditions(contents.laboratory->conditions, table);
+    add_stated_conditions(contents.laboratory->conditions, language, table);
   }
   const std::vector<StoredPoint> points = contents.result.points_of(contents.channels);
-  const std::string temperature = temperature_range(points);
-  table.add("Temperature of the sensor, measured by itself",
-            temperature.empty() ? "" : temperature + " °C");
-  const std::string level = level_range(points);
-  table.add("Excited axis", points.empty() ? "" : points.front().excited_axis);
-  table.add("Amplitude of the excitation, measured", level.empty() ? "" : level + " m/s²");
-  table.add("Largest deviation from the planned amplitude", level_deviation(points));
-  return "<h2>Conditions</h2>\n" + table.finish() + pauses_of(contents.result);
+  const std::string temperature = temperature_range(points, language);
+  table.add(sentences::own_temperature, temperature.empty() ? "" : temperature + " °C");
+  const std::string level = level_range(points, language);
+  table.add(sentences::excited_axis, points.empty() ? "" : points.front().excited_axis);
+  table.add(sentences::measured_excitation, level.empty() ? "" : level + " m/s²");
+  table.add(sentences::level_deviation, level_deviation(points, language));
+  return element("h2", sentences::conditions, language) + table.finish() + pauses_of(contents);
 }
 
 std::string losses_section(const ReportContents& contents) {
-  HtmlTable table("legend", {"source", "samples used", "did not come", "came unusable",
-                             "dropped by a full buffer", "stamp not trusted", "not measured"});
+  const Language language = contents.language;
+  HtmlTable table("legend", head_of(language, {sentences::source, sentences::samples_used,
+                                               sentences::did_not_come, sentences::came_unusable,
+                                               sentences::dropped, sentences::not_trusted,
+                                               sentences::not_measured}));
   for (const auto& [source, sum] : losses_of(contents.result, contents.channels.front())) {
     table.row({source, std::to_string(sum.used), std::to_string(sum.lost),
                std::to_string(sum.unusable), std::to_string(sum.overflowed),
                std::to_string(sum.not_trusted), std::to_string(sum.not_measured)});
   }
-  return "<h2>Losses within the evaluated steps</h2>\n" + table.finish();
+  return element("h2", sentences::losses, language) + table.finish();
 }
 
 std::string closures_section(const ReportContents& contents) {
+  const Language language = contents.language;
   std::string html;
   for (const std::string& channel : contents.channels) {
-    HtmlTable table("legend", {"what must hold", "", "value", "limit", "found"});
+    std::vector<std::string> head{sentences::must_hold(language), "", sentences::value(language),
+                                  sentences::limit(language)};
+    if (language == Language::english) { // the language of what evaluation says
+      head.push_back(sentences::found(language));
+    }
+    HtmlTable table("legend", head);
     for (const Closure& closure : contents.result.closures_of(channel)) {
+      const bool is_possible = closure.verdict != Verdict::not_possible;
       const auto number = [&](double value) {
-        return closure.verdict == Verdict::not_possible
-                   ? std::string()
-                   : fmt::format("{:.3g}{}", value, closure.unit == "1" ? "" : " " + closure.unit);
+        return is_possible ? decimal(language, fmt::format("{:.3g}", value)) +
+                                 (closure.unit == "1" ? "" : " " + closure.unit)
+                           : std::string();
       };
-      table.row({std::string(title_of(closure.kind)),
-                 closure.verdict == Verdict::not_possible ? "not possible"
-                                                          : std::string(to_string(closure.verdict)),
-                 number(closure.value), number(closure.limit), closure.sentence});
+      std::vector<std::string> cells{std::string(closure_title(closure.kind, language)),
+                                     std::string(verdict_text(closure.verdict, language)),
+                                     number(closure.value), number(closure.limit)};
+      if (language == Language::english) {
+        cells.push_back(closure.sentence);
+      }
+      table.row(cells);
     }
     if (!table.empty()) {
-      html += element("h2", "Closures of " + channel) + table.finish();
+      html += element("h2", sentences::closures_of(language, channel)) + table.finish();
     }
   }
   return html;
 }
 
 std::string clock_section(const ReportContents& contents) {
+  const Language language = contents.language;
   std::string html;
   for (const ClockReport& report : contents.result.clocks) {
-    html += fmt::format("<h2>Sample clock of {}</h2>\n", escaped(report.source)) +
-            clock_facts(report.clock);
+    html += element("h2", sentences::clock_of(language, report.source)) +
+            clock_facts(report.clock, language);
+  }
+  if (language != Language::english && !contents.pictures.empty()) {
+    return html + element("p", sentences::clock_figures, language); // they are drawn in English
   }
   for (const EmbeddedPicture& picture : contents.pictures) {
     html += fmt::format("<figure><img src=\"{}\" alt=\"{}\"></figure>\n",
                         escaped(picture.data_uri()), escaped(picture.file_name));
   }
   for (const std::string& reason : contents.left_out) {
-    html += element("p", "A figure of the run folder is left out: " + reason, "warning");
+    html += element("p", sentences::figure_left_out(language, reason), "warning");
   }
   return html;
 }
 
 std::string equipment_section(const ReportContents& contents) {
-  HtmlTable table("legend", {"equipment", "serial", "certificate", "calibrated by", "from, until"});
+  const Language language = contents.language;
+  HtmlTable table("legend",
+                  head_of(language, {sentences::equipment_name, sentences::equipment_serial,
+                                     sentences::equipment_certificate, sentences::equipment_issuer,
+                                     sentences::equipment_days}));
   const auto add = [&](const CalibratedDevice& device) {
     std::string name = device.name;
     for (const std::string& text : {device.manufacturer, device.model}) {
       name += text.empty() ? "" : ", " + text;
     }
+    const std::string until =
+        device.valid_until.empty() ? "" : ", " + day_text(language, device.valid_until);
     table.row({name, device.serial, device.certificate, device.issued_by,
-               device.issued + (device.valid_until.empty() ? "" : ", " + device.valid_until)});
+               day_text(language, device.issued) + until});
   };
   if (const ReferenceStandard* reference = reference_of(contents)) {
     std::ranges::for_each(reference->devices, add);
@@ -240,49 +302,58 @@ std::string equipment_section(const ReportContents& contents) {
   if (contents.laboratory) {
     std::ranges::for_each(contents.laboratory->equipment, add);
   }
-  for (const CalibratedDevice& device : run_equipment(contents.result, contents.channels.front())) {
-    add(device);
-  }
-  return table.empty() ? "" : "<h2>Equipment</h2>\n" + table.finish();
+  std::ranges::for_each(run_equipment(contents.result, contents.channels.front(), language), add);
+  return table.empty() ? "" : element("h2", sentences::equipment, language) + table.finish();
 }
 
 std::string devices_section(const ReportContents& contents) {
-  HtmlTable table("legend", {"source", "device", "serial", "firmware", "nominal rate / Hz",
-                             "time base", "software"});
+  const Language language = contents.language;
+  HtmlTable table("legend", head_of(language, {sentences::source, sentences::device,
+                                               sentences::equipment_serial,
+                                               sentences::device_firmware, sentences::nominal_rate,
+                                               sentences::time_base, sentences::software_column}));
   for (const RunSource& source : contents.result.sources) {
     const drivers::SourceDescription& description = source.description;
     table.row(
         {source.source, description.device, description.serial, description.firmware,
-         description.nominal_rate_hz > 0.0 ? fmt::format("{:g}", description.nominal_rate_hz) : "",
-         to_string(description.time_base), source.software});
+         description.nominal_rate_hz > 0.0
+             ? decimal(language, fmt::format("{:g}", description.nominal_rate_hz))
+             : "",
+         description.time_base == drivers::TimeBase::utc ? "UTC" : sentences::local_time(language),
+         source.software});
   }
-  return "<h2>Annex: devices and corrections</h2>\n" + table.finish() +
-         corrections_of(contents.result) + applied_corrections(contents.result);
+  return element("h2", sentences::devices, language) + table.finish() + corrections_of(contents) +
+         applied_corrections(contents);
 }
 
 std::string software_section(const ReportContents& contents) {
+  const Language language = contents.language;
   const StoredResult& result = contents.result;
-  DefinitionTable table;
-  table.add("Run conducted with", result.software);
-  table.add("Evaluated by", result.analysis_software);
-  table.add("on host", result.analysis_host);
-  table.add("DDS implementation of the analysis", result.analysis_dds);
-  table.add("Report made by", contents.software);
-  table.add("Held against", fmt::format("{}", fmt::join(contents.provenance, " ")));
-  const auto hash = [](const std::string& text) {
-    return fmt::format("<code>{}</code>", escaped(text));
+  std::vector<std::string> provenance;
+  for (const TranslatedText& statement : contents.provenance) {
+    provenance.push_back(statement.in(language));
+  }
+  DefinitionTable table(language);
+  table.add(sentences::conducted_with, result.software);
+  table.add(sentences::evaluated_by, result.analysis_software);
+  table.add(sentences::on_host, result.analysis_host);
+  table.add(sentences::dds_of_analysis, result.analysis_dds);
+  table.add(sentences::made_by, contents.software);
+  table.add(sentences::held_against, fmt::format("{}", fmt::join(provenance, " ")));
+  const auto add_hash = [&](const Sentence& name, const std::string& hash) {
+    table.add_html(name.in(language), fmt::format("<code>{}</code>", escaped(hash)));
   };
-  table.add_html("Result file", escaped(result.file.filename().string()));
-  table.add_html("its SHA-256", hash(result.sha256));
-  table.add_html("SHA-256 of the recipe", hash(result.recipe_sha256));
-  return "<h2>Annex: software and hashes</h2>\n" + table.finish();
+  table.add(sentences::result_file, result.file.filename().string());
+  add_hash(sentences::its_hash, result.sha256);
+  add_hash(sentences::recipe_hash, result.recipe_sha256);
+  return element("h2", sentences::software, language) + table.finish();
 }
 
 std::string recipe_section(const ReportContents& contents) {
-  const std::string& recipe = contents.result.recipe;
-  return recipe.empty()
-             ? ""
-             : "<h2>Annex: recipe (bench file)</h2>\n<pre>" + escaped(recipe) + "</pre>\n";
+  const std::string recipe = without_comments(contents.result.recipe);
+  return recipe.empty() ? ""
+                        : element("h2", sentences::recipe, contents.language) + "<pre>" +
+                              escaped(recipe) + "</pre>\n";
 }
 
 } // namespace dyncal::inline views

@@ -9,13 +9,16 @@ constexpr std::string_view style = R"(
   @top-left { content: string(issuer); font-size: 7.5pt; color: #5a6672; }
   @top-right { content: string(subject); font-size: 7.5pt; color: #5a6672; }
   @bottom-left { content: string(foot); font-size: 7.5pt; color: #5a6672; }
-  @bottom-right { content: "page " counter(page) " of " counter(pages);
+  @bottom-right { content: string(page) " " counter(page) " " string(of) " " counter(pages);
     font-size: 7.5pt; color: #5a6672; }
 }
 @page :first { margin-top: 15mm; @top-left { content: none; } @top-right { content: none; } }
 .issuer-text { string-set: issuer content(); }
 .subject-text { string-set: subject content(); }
 .foot-text { string-set: foot content(); }
+.page-text { string-set: page content(); }
+.of-text { string-set: of content(); }
+.part + .part { break-before: page; }
 .running { position: absolute; width: 1px; height: 1px; overflow: hidden; color: transparent;
   font-size: 1px; }
 .draft { position: fixed; top: 95mm; left: 0; right: 0; text-align: center; font-size: 90pt;
@@ -59,6 +62,13 @@ tr { break-inside: avoid; }
 .values th, .budget th, .single th { text-align: right; }
 .values td:first-child, .budget td:first-child { font-weight: bold; }
 .budget, .single { font-size: 7.2pt; }
+.model { font-size: 7.4pt; }
+.model th { background: #eef3f7; text-align: left; vertical-align: bottom; padding: 1mm 1.2mm;
+  border-top: 0.6pt solid #14507a; border-bottom: 0.6pt solid #14507a; }
+.model td { padding: 0.6mm 1.2mm; border-bottom: 0.3pt solid #dde5eb; vertical-align: top; }
+.model td + td, .model th + th { text-align: right; }
+.model td:first-child { width: 58mm; }
+.model tr.sum td { border-top: 0.6pt solid #14507a; font-weight: bold; }
 .legend { font-size: 8pt; }
 .legend th { text-align: left; }
 .legend td { padding: 0.7mm 1.4mm; vertical-align: top; border-bottom: 0.3pt solid #dde5eb;

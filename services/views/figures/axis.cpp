@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -159,6 +160,25 @@ Axis make_axis(const Range& range, int ticks) {
     add_linear_ticks(axis, ticks);
   } else {
     add_logarithmic_ticks(axis, ticks);
+  }
+  return axis;
+}
+
+Axis make_axis(const Range& range, std::span<const double> ticks, double character) {
+  Axis axis = make_axis(range, 1);
+  axis.ticks.clear();
+  axis.factor.clear();
+  double labelled_to = -1.0;
+  for (const double value : ticks) {
+    if (!axis.can_show(value) || value < axis.low || value > axis.high) {
+      continue;
+    }
+    std::string label = fmt::format("{:.4g}", value);
+    const double half_width = 0.5 * character * static_cast<double>(label.size());
+    const double position = axis.position(value);
+    const bool has_room = position - half_width >= labelled_to + character;
+    labelled_to = has_room ? position + half_width : labelled_to;
+    axis.ticks.push_back({value, has_room ? std::move(label) : std::string()});
   }
   return axis;
 }

@@ -56,6 +56,10 @@ private:
 // padded first.
 [[nodiscard]] Axis make_axis(const Range& range, int ticks);
 
+// The same with ticks at these values, rising, as far as they are in the range; those have labels
+// that are one character apart at least. `character` is its width as a part of the axis.
+[[nodiscard]] Axis make_axis(const Range& range, std::span<const double> ticks, double character);
+
 // "10⁻⁴"
 [[nodiscard]] std::string power_of_ten(int exponent);
 

@@ -10,6 +10,8 @@
 
 #include <fmt/format.h>
 
+#include "services/views/language/figure_sentences.hpp"
+
 namespace dyncal::inline views::figures {
 namespace {
 
@@ -82,9 +84,11 @@ Panel panel_of(const TransferFunctionData& data,
     points.push_back(deviation ? std::optional(quantity(*deviation)) : std::nullopt);
   }
   Panel panel;
-  panel.x_label = "frequency in Hz";
+  panel.language = data.language;
+  panel.x_label = sentences::frequency_axis.in(data.language);
   panel.y_label = std::move(y_label);
   panel.x_scale = Scale::logarithmic;
+  panel.x_ticks = measured_frequencies(data);
   panel.x_tick_labels = false;
   panel.colour = "#cccccc";
   for (MarkerGroup& group : marker_groups(data, points, bars)) {
@@ -103,8 +107,9 @@ void add_mean(Panel& panel, const TransferFunctionData& data,
   if (data.means_are_plain || data.error_bars == ErrorBars::none) {
     return;
   }
-  panel.band_label = fmt::format("± {} of the mean{}", symbol_of(data.error_bars),
-                                 told_levels(data).empty() ? "" : ", the largest of all levels");
+  panel.band_label = sentences::band_of_mean_label(
+      data.language, symbol_of(data.error_bars),
+      told_levels(data).empty() ? "" : sentences::largest_of_levels.in(data.language));
   std::map<double, double> half_by_frequency;
   for (const ValueOverFrequency& mean : data.mean) {
     double& half = half_by_frequency[mean.frequency_hz];
@@ -152,16 +157,18 @@ std::string csv_of(const TransferFunctionData& data,
 Figure deviation_figure(const TransferFunctionData& data, const std::string& name) {
   const auto deviations = deviations_of(data);
   const ErrorBars bars = bars_of(data);
-  Picture picture{.title = {data.title + ": repetitions less their mean", data.subtitle},
+  Picture picture{.title = {sentences::deviation_title(data.language, data.title), data.subtitle},
                   .panel_height = 190};
-  picture.panels = {panel_of(data, deviations, bars, magnitude, "magnitude in %"),
-                    panel_of(data, deviations, bars, phase, "phase in degrees")};
+  picture.panels = {
+      panel_of(data, deviations, bars, magnitude,
+               sentences::magnitude_deviation_axis(data.language)),
+      panel_of(data, deviations, bars, phase, sentences::phase_deviation_axis(data.language))};
   add_mean(picture.panels[0], data, magnitude_half_width);
   add_mean(picture.panels[1], data, phase_half_width);
   if (std::any_of(deviations.begin(), deviations.end(),
                   [](const auto& one) { return one && std::isfinite(one->residual_rel); })) {
-    Panel residuals =
-        panel_of(data, deviations, ErrorBars::none, residual, "residual of the fit in %");
+    Panel residuals = panel_of(data, deviations, ErrorBars::none, residual,
+                               sentences::residual_axis(data.language));
     for (Series& series : residuals.series) {
       series.label.clear(); // those of the other panels, without the bars
     }

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
+
+#include "services/views/language/figure_sentences.hpp"
 
 namespace dyncal::inline views::figures {
 namespace {
@@ -49,6 +52,20 @@ Range y_range(const Panel& panel) {
     }
   }
   return range;
+}
+
+Axis x_axis(const Panel& panel, const Range& range, double width) {
+  if (panel.x_ticks.empty()) {
+    return make_axis(range, std::max(2, static_cast<int>(width / (5.5 * panel.font_size))));
+  }
+  return make_axis(range, panel.x_ticks, text_width("0", panel.font_size) / width);
+}
+
+Axis in_language(Axis axis, Language language) {
+  for (Tick& tick : axis.ticks) {
+    tick.label = decimal(language, std::move(tick.label));
+  }
+  return axis;
 }
 
 double max_label(const Axis& axis, double font_size) {
@@ -261,9 +278,9 @@ Axes axes_of(const Panel& panel, const Box& area) {
           ? 0.0
           : 0.04;
   const Range y = panel.y_range.value_or(y_range(panel).padded(0.07));
-  const int x_ticks = std::max(2, static_cast<int>(area.width / (5.5 * panel.font_size)));
   const int y_ticks = std::max(3, static_cast<int>(area.height / (3 * panel.font_size)));
-  return {make_axis(x_range(panel).padded(x_room), x_ticks), make_axis(y, y_ticks), area};
+  return {in_language(x_axis(panel, x_range(panel).padded(x_room), area.width), panel.language),
+          in_language(make_axis(y, y_ticks), panel.language), area};
 }
 
 bool has_data(const Panel& panel) {
@@ -274,7 +291,8 @@ void draw(Svg& svg, const Panel& panel, const Box& area) {
   const auto axes = axes_of(panel, area);
   svg.rectangle(area, "#fdfdfd", {.colour = "none", .width = 0});
   if (!has_data(panel)) {
-    svg.text({area.left + area.width / 2, area.top + area.height / 2}, "no data",
+    svg.text({area.left + area.width / 2, area.top + area.height / 2},
+             std::string(sentences::no_data.in(panel.language)),
              {.size = panel.font_size + 4, .anchor = Anchor::middle, .colour = "#888888"});
     svg.rectangle(area, "none", frame_stroke);
     return;

@@ -11,6 +11,7 @@
 
 #include "services/views/figures/axis.hpp"
 #include "services/views/figures/svg.hpp"
+#include "services/views/language/language.hpp"
 
 namespace dyncal::inline views::figures {
 
@@ -59,10 +60,13 @@ struct Panel {
   std::string band_label{};       // in the legend; empty: not there
   std::string dots_label{};
   std::optional<Range> y_range{}; // in place of the range of the data
+  // Where the x axis has ticks, rising, with labels as far as there is room; empty: round numbers.
+  std::vector<double> x_ticks{};
   bool x_tick_labels = true;
   bool fills_x = false;        // the data reach from edge to edge
   bool enlarges_low_x = false; // in a free corner (enlargement.hpp)
   double font_size = 12;
+  Language language = Language::english; // of its numbers
 };
 
 struct Axes {

@@ -12,6 +12,7 @@
 
 #include "services/base/per_enumerator.hpp"
 #include "services/base/rounding.hpp"
+#include "services/views/language/figure_sentences.hpp"
 
 namespace dyncal::inline views::figures {
 namespace {
@@ -60,10 +61,11 @@ std::vector<Series> repetition_series(const TransferFunctionData& data, Quantity
 
 std::string mean_label(const TransferFunctionData& data) {
   if (data.means_are_plain) {
-    return "mean so far";
+    return sentences::mean_so_far_label(data.language);
   }
-  return data.error_bars == ErrorBars::none ? "mean"
-                                            : fmt::format("mean ± {}", symbol_of(data.error_bars));
+  return data.error_bars == ErrorBars::none
+             ? sentences::mean_label(data.language)
+             : sentences::mean_with_bar_label(data.language, symbol_of(data.error_bars));
 }
 
 // Of one level; nothing: of all.
@@ -105,8 +107,10 @@ std::vector<Series> mean_series(const TransferFunctionData& data, Quantity quant
 
 // A ring around every mean that has a flag.
 Series flagged_series(const TransferFunctionData& data, Quantity quantity) {
-  Series series{
-      .label = "flagged, see below", .colour = "#CC0000", .marker = Marker::circle, .radius = 9};
+  Series series{.label = sentences::flagged_label(data.language),
+                .colour = "#CC0000",
+                .marker = Marker::circle,
+                .radius = 9};
   for (const auto& point : data.mean) {
     if (!point.flags.empty()) {
       series.points.push_back(quantity(point, ErrorBars::none));
@@ -121,11 +125,13 @@ Series group_delay_series(const TransferFunctionData& data, const analysis::Grou
   for (const auto& point : data.mean) {
     frequencies.include(point.frequency_hz);
   }
-  Series series{.label = fmt::format("group delay {:.4g} ms", 1e3 * delay.delay_s),
-                .colour = "#999999",
-                .joined = true,
-                .dashes = "6 4",
-                .in_enlargement = false};
+  Series series{
+      .label = sentences::delay_label(
+          data.language, decimal(data.language, fmt::format("{:.4g}", 1e3 * delay.delay_s))),
+      .colour = "#999999",
+      .joined = true,
+      .dashes = "6 4",
+      .in_enlargement = false};
   constexpr int steps = 100;
   for (int i = 0; i <= steps && !frequencies.empty(); ++i) {
     const double frequency = frequencies.low() * std::pow(frequencies.high() / frequencies.low(),
@@ -136,16 +142,57 @@ Series group_delay_series(const TransferFunctionData& data, const analysis::Grou
   return series;
 }
 
+// With what the delay leaves of every phase, next to the intercept of the group delay.
+TransferFunctionData without_delay(TransferFunctionData data) {
+  const double delay_s = data.group_delay->delay_s;
+  const double intercept_rad = data.group_delay->intercept_rad;
+  const auto remove = [&](ValueOverFrequency& point) {
+    constexpr double turn = 2 * std::numbers::pi;
+    const double left_rad = point.value.phase_rad + turn * point.frequency_hz * delay_s;
+    point.value.phase_rad = intercept_rad + std::remainder(left_rad - intercept_rad, turn);
+  };
+  std::for_each(data.mean.begin(), data.mean.end(), remove);
+  for (RepetitionPoint& one : data.repetitions) {
+    remove(one.point);
+  }
+  return data;
+}
+
 Panel quantity_panel(const TransferFunctionData& data, Quantity quantity) {
   Panel panel;
-  panel.x_label = "frequency in Hz";
+  panel.language = data.language;
+  panel.x_label = sentences::frequency_axis.in(data.language);
   panel.x_scale = Scale::logarithmic;
+  panel.x_ticks = measured_frequencies(data);
   panel.enlarges_low_x = true;
   panel.series = mean_series(data, quantity);
   std::vector<Series> repetitions = repetition_series(data, quantity);
   std::move(repetitions.begin(), repetitions.end(), std::back_inserter(panel.series));
   if (Series flagged = flagged_series(data, quantity); !flagged.points.empty()) {
     panel.series.push_back(std::move(flagged));
+  }
+  return panel;
+}
+
+std::string magnitude_label(const TransferFunctionData& data) {
+  if (data.unit.empty()) {
+    return sentences::magnitude_unknown_axis(data.language);
+  }
+  return data.unit == "1" ? sentences::magnitude_axis(data.language)
+                          : sentences::magnitude_in_axis(data.language, data.unit);
+}
+
+Panel phase_panel(const TransferFunctionData& data) {
+  if (data.group_delay && data.removes_delay) {
+    Panel panel = quantity_panel(without_delay(data), phase);
+    panel.y_label = sentences::rest_of_phase_axis.in(data.language);
+    panel.enlarges_low_x = false;
+    return panel;
+  }
+  Panel panel = quantity_panel(data, phase);
+  panel.y_label = sentences::phase_axis.in(data.language);
+  if (data.group_delay) {
+    panel.series.insert(panel.series.begin(), group_delay_series(data, *data.group_delay));
   }
   return panel;
 }
@@ -234,6 +281,17 @@ std::vector<double> told_levels(const TransferFunctionData& data) {
                                              : std::vector<double>{};
 }
 
+std::vector<double> measured_frequencies(const TransferFunctionData& data) {
+  std::set<double> frequencies;
+  for (const ValueOverFrequency& point : data.mean) {
+    frequencies.insert(point.frequency_hz);
+  }
+  for (const RepetitionPoint& one : data.repetitions) {
+    frequencies.insert(one.point.frequency_hz);
+  }
+  return {frequencies.begin(), frequencies.end()};
+}
+
 std::vector<MarkerGroup> marker_groups(const TransferFunctionData& data,
                                        const std::vector<std::optional<Point>>& points,
                                        ErrorBars bars) {
@@ -269,18 +327,12 @@ const ValueOverFrequency* mean_of(const ValueOverFrequency& repetition,
 
 Figure transfer_function_figure(const TransferFunctionData& data, const std::string& name) {
   Picture picture{.title = {data.title, data.subtitle},
-                  .panels = {quantity_panel(data, magnitude), quantity_panel(data, phase)},
+                  .panels = {quantity_panel(data, magnitude), phase_panel(data)},
                   .below = data.flag_sentences,
                   .panel_height = panel_height};
   Panel& magnitudes = picture.panels.front();
-  magnitudes.y_label =
-      data.unit.empty() ? "magnitude (unit not known)" : "magnitude in " + data.unit;
+  magnitudes.y_label = magnitude_label(data);
   magnitudes.x_tick_labels = false;
-  Panel& phases = picture.panels.back();
-  phases.y_label = "phase (lead) in rad";
-  if (data.group_delay) {
-    phases.series.insert(phases.series.begin(), group_delay_series(data, *data.group_delay));
-  }
   return {name, std::move(picture), csv_of(data)};
 }
 

@@ -8,6 +8,9 @@
 // Means with a flag have a ring around them, and sentences below the panels explain each flag.
 // Points of repetitions carry their step.
 //
+// Its ticks are the frequencies measured. Without its delay, the phase is drawn as what the group
+// delay leaves of it, near its intercept, so that bars can be seen; the caption says the delay.
+//
 // Phase is lead in radians (ISO 2041): a delay has negative phase and falls with frequency.
 // Repetitions may be given in (-pi, pi]; they are drawn in the turn of the mean at the same
 // frequency.
@@ -67,6 +70,8 @@ struct TransferFunctionData {
   std::vector<RepetitionPoint> repetitions{};
   std::vector<ValueOverFrequency> mean{}; // unwrapped phase
   std::optional<analysis::GroupDelay> group_delay{};
+  Language language = Language::english;
+  bool removes_delay = false; // from the phase that is drawn, where there is a group delay
   std::vector<std::string> flag_sentences{}; // below the panels
   ErrorBars error_bars = ErrorBars::standard;
   // The run lasts: the means are plain ones of what there is, without uncertainty, and the bars are
@@ -80,6 +85,9 @@ struct TransferFunctionData {
 
 // All levels, ascending, if there is a frequency that has several; else empty.
 [[nodiscard]] std::vector<double> told_levels(const TransferFunctionData& data);
+
+// All frequencies, rising.
+[[nodiscard]] std::vector<double> measured_frequencies(const TransferFunctionData& data);
 
 // Markers of one colour: of a repetition, or of a level where those are told apart.
 struct MarkerGroup {

@@ -58,6 +58,18 @@ void read_laboratory(TomlTable& root, ReadTables& read) {
   laboratory->finish();
 }
 
+void read_languages(TomlTable& root, LaboratoryFile& file) {
+  const std::string codes = line_of(root, "language");
+  if (codes.empty()) {
+    return;
+  }
+  if (auto languages = parse_languages(codes)) {
+    file.languages = std::move(*languages);
+  } else {
+    root.refuse("language", languages.error().message);
+  }
+}
+
 ReadTables read_tables(const toml::table& parsed, const std::filesystem::path& path,
                        BenchProblems& problems) {
   ReadTables read;
@@ -72,6 +84,7 @@ ReadTables read_tables(const toml::table& parsed, const std::filesystem::path& p
   read.file.equipment =
       read_tables_of(root, "equipment", path.string(), problems, read_calibrated_device);
   read.file.statements = lines_of(root, "statements");
+  read_languages(root, read.file);
   root.finish();
   return read;
 }

@@ -2,6 +2,8 @@
 // there for what uses them: `[letterhead]`, `[[person]]`, `[customer]`, `[reference]`,
 // `[[equipment]]`, `[conditions]`.
 //
+// `language`, "de" or "de,en", is that of the documents where none is asked for; English else.
+//
 // Paths in the file are relative to it. Keys that are not known are refused, so that a misspelt one
 // does not vanish from a certificate.
 //
@@ -18,6 +20,7 @@
 #include "services/contract/reference_standard.hpp"
 #include "services/views/lab_file/contact_table.hpp"
 #include "services/views/lab_file/embedded_picture.hpp"
+#include "services/views/language/language.hpp"
 
 namespace dyncal::inline views {
 
@@ -46,7 +49,8 @@ struct LaboratoryFile {
   std::optional<ReferenceStandard> reference; // where the run does not state its own
   std::vector<CalibratedDevice> equipment;
   Conditions conditions;
-  std::vector<std::string> statements; // of the certificate
+  std::vector<std::string> statements;                // of the certificate
+  std::vector<Language> languages{Language::english}; // of documents
 };
 
 [[nodiscard]] Expected<LaboratoryFile> read_laboratory_file(const std::filesystem::path& path);

@@ -28,6 +28,13 @@ std::string left_out(const StoredValue& value, const std::string& reason) {
                      value.frequency_text_hz, value.level_m_s2, reason);
 }
 
+// A delay that is not stated shifts the phases of all levels alike.
+std::string doubt_about(const StoredResult& result, const StoredValue& value) {
+  const std::string name = doubting_flag(result, value, false);
+  return name.empty() ? ""
+                      : fmt::format("flag {}: {}", name, verdict_on(parse_flag_name(name)).reason);
+}
+
 using LineKey = std::tuple<std::string, double, std::string>; // channel, frequency, axis
 
 std::map<LineKey, LevelledValues> lines_of(const StoredResult& result,
@@ -48,8 +55,7 @@ std::map<LineKey, LevelledValues> lines_of(const StoredResult& result,
   for (auto& [key, line] : lines) {
     std::ranges::stable_sort(line.values, {}, &StoredValue::level_m_s2);
     for (const StoredValue* value : line.values) {
-      // A delay that is not stated shifts the phases of all levels alike.
-      line.doubts.push_back(doubt_about(result, *value, false));
+      line.doubts.push_back(doubt_about(result, *value));
     }
   }
   return lines;

@@ -5,14 +5,15 @@
 #include <string>
 #include <vector>
 
+#include "services/views/language/sentence.hpp"
 #include "services/views/report/stored_result.hpp"
 
 namespace dyncal::inline views {
 
 struct HeldResult {
   StoredResult result;
-  std::vector<std::string> statements{}; // for the document: what the result was held against
-  std::vector<std::string> objections{}; // why it may not be believed
+  std::vector<TranslatedText> statements{}; // for the document: what the result was held against
+  std::vector<std::string> objections{};    // why it may not be believed
 };
 
 } // namespace dyncal::inline views

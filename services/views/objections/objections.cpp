@@ -9,6 +9,8 @@
 #include <fmt/ranges.h>
 
 #include "services/bench/file/check_table.hpp"
+#include "services/views/language/certificate_sentences.hpp"
+#include "services/views/language/flag_text.hpp"
 #include "services/views/objections/axis_objections.hpp"
 #include "services/views/objections/refusing_flags.hpp"
 #include "services/views/report/daily_check.hpp"
@@ -40,7 +42,8 @@ FlagPlaces flag_places(const StoredResult& result, const std::string& channel) {
   FlagPlaces places;
   for (const StoredChannel& one : result.channels) {
     if (one.channel == channel) {
-      add_place(places, one.flag_names, "all frequencies");
+      add_place(places, one.flag_names,
+                std::string(sentences::at_all_frequencies.in(Language::english)));
     }
   }
   const auto is_of_all = [&](const std::string& flag) { return places.contains(flag); };
@@ -61,9 +64,23 @@ FlagPlaces flag_places(const StoredResult& result, const std::string& channel) {
   return places;
 }
 
-std::vector<std::string> flags_by_verdict(const StoredResult& result, const std::string& channel,
-                                          bool forbidding) {
-  std::vector<std::string> sentences;
+// A flag of a channel, where it is and what to think of it.
+TranslatedText flag_sentence(const std::string& channel, const std::string& flag,
+                             const std::vector<std::string>& places, std::string_view reason) {
+  return in_all_languages([&](Language language) {
+    const bool is_english = language == Language::english;
+    const std::string where = decimal(language, fmt::format("{}", fmt::join(places, ", ")));
+    return sentences::flag_at(language, channel,
+                              where == sentences::at_all_frequencies.in(Language::english)
+                                  ? sentences::at_all_frequencies(language)
+                                  : where,
+                              flag, is_english ? reason : german_meaning_of(parse_flag_name(flag)));
+  });
+}
+
+std::vector<TranslatedText> flags_by_verdict(const StoredResult& result, const std::string& channel,
+                                             bool forbidding) {
+  std::vector<TranslatedText> texts;
   const bool names_closures = !result.open_closures({channel}).empty();
   for (const auto& [flag, places] : flag_places(result, channel)) {
     const ResultFlag kind = parse_flag_name(flag);
@@ -72,11 +89,10 @@ std::vector<std::string> flags_by_verdict(const StoredResult& result, const std:
     }
     const FlagVerdict verdict = verdict_on(kind);
     if (verdict.forbids == forbidding) {
-      sentences.push_back(fmt::format("{} at {}: flag {}: {}", channel, fmt::join(places, ", "),
-                                      flag, verdict.reason));
+      texts.push_back(flag_sentence(channel, flag, places, verdict.reason));
     }
   }
-  return sentences;
+  return texts;
 }
 
 void add_missing_values(const StoredResult& result, const std::string& channel,
@@ -152,22 +168,20 @@ std::vector<std::string> objections_to(const StoredResult& result,
   for (const std::string& channel : channels) {
     add_missing_values(result, channel, objections);
     add_losses(result, channel, objections);
-    for (std::string& sentence : flags_by_verdict(result, channel, true)) {
-      objections.push_back(std::move(sentence));
+    for (TranslatedText& text : flags_by_verdict(result, channel, true)) {
+      objections.push_back(std::move(text.english));
     }
   }
   return objections;
 }
 
-std::vector<std::string> stated_flags(const StoredResult& result,
-                                      const std::vector<std::string>& channels) {
-  std::vector<std::string> sentences;
+std::vector<TranslatedText> stated_flags(const StoredResult& result,
+                                         const std::vector<std::string>& channels) {
+  std::vector<TranslatedText> texts;
   for (const std::string& channel : channels) {
-    for (std::string& sentence : flags_by_verdict(result, channel, false)) {
-      sentences.push_back(std::move(sentence));
-    }
+    std::ranges::move(flags_by_verdict(result, channel, false), std::back_inserter(texts));
   }
-  return sentences;
+  return texts;
 }
 
 } // namespace dyncal::inline views

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "services/views/language/sentence.hpp"
 #include "services/views/report/stored_result.hpp"
 
 namespace dyncal::inline views {
@@ -16,7 +17,7 @@ namespace dyncal::inline views {
                                                      const std::vector<std::string>& channels);
 
 // Flags of these channels that do not forbid a certificate, with what to state of them.
-[[nodiscard]] std::vector<std::string> stated_flags(const StoredResult& result,
-                                                    const std::vector<std::string>& channels);
+[[nodiscard]] std::vector<TranslatedText> stated_flags(const StoredResult& result,
+                                                       const std::vector<std::string>& channels);
 
 } // namespace dyncal::inline views

@@ -3,8 +3,6 @@
 #include <array>
 #include <vector>
 
-#include <fmt/format.h>
-
 #include "services/evaluation/result/point_identity.hpp"
 #include "services/views/report/result_file.hpp"
 
@@ -109,7 +107,7 @@ FlagVerdict verdict_on(ResultFlag flag) {
   return {row.forbids, row.reason, row.of_phase_alone};
 }
 
-std::string doubt_about(const StoredResult& result, const StoredValue& value, bool of_phase) {
+std::string doubting_flag(const StoredResult& result, const StoredValue& value, bool of_phase) {
   std::vector<std::string> names = value.flag_names;
   for (const StoredChannel& channel : result.channels) {
     if (channel.channel == value.channel) {
@@ -124,7 +122,7 @@ std::string doubt_about(const StoredResult& result, const StoredValue& value, bo
   for (const std::string& name : names) {
     const FlagVerdict verdict = verdict_on(parse_flag_name(name));
     if (verdict.forbids && (of_phase || !verdict.of_phase_alone)) {
-      return fmt::format("flag {}: {}", name, verdict.reason);
+      return name;
     }
   }
   return "";

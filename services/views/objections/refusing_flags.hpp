@@ -20,9 +20,9 @@ struct FlagVerdict {
 };
 
 [[nodiscard]] FlagVerdict verdict_on(ResultFlag flag);
-// The first such flag of the magnitude or phase of a mean, of its channel or of its repetitions,
-// and why; empty: none.
-[[nodiscard]] std::string doubt_about(const StoredResult& result, const StoredValue& value,
-                                      bool of_phase);
+// The name of the first such flag of the magnitude or phase of a mean, of its channel or of its
+// repetitions; empty: none.
+[[nodiscard]] std::string doubting_flag(const StoredResult& result, const StoredValue& value,
+                                        bool of_phase);
 
 } // namespace dyncal::inline views

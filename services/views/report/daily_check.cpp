@@ -1,19 +1,34 @@
 #include "services/views/report/daily_check.hpp"
 
-#include <fmt/core.h>
+#include "services/views/language/statement_sentences.hpp"
 
 namespace dyncal::inline views {
 
-std::string sentence_of(const DailyCheck& check) {
+namespace {
+
+std::string state_text(const std::string& state, Language language) {
+  for (const Sentence& known :
+       {sentences::in_control, sentences::warning, sentences::action, sentences::too_few_results}) {
+    if (state == known.in(Language::english)) {
+      return known(language);
+    }
+  }
+  return state;
+}
+
+} // namespace
+
+std::string sentence_of(const DailyCheck& check, Language language) {
   if (!check.left_out.empty()) {
-    return fmt::format("The daily check of the bench with sensor {} was left out: {}", check.sensor,
-                       check.left_out);
+    return sentences::check_left_out(language, check.sensor, check.left_out);
   }
   if (check.run.empty()) {
-    return fmt::format("This run is of the check sensor of the bench, {}", check.sensor);
+    return sentences::check_itself(language, check.sensor);
   }
-  return fmt::format("Daily check of the bench with sensor {}, run {} of {}: {}", check.sensor,
-                     check.run, check.began_utc, check.state);
+  return sentences::check_result(
+      language, check.sensor, check.run,
+      language == Language::english ? check.began_utc : instant_text(language, check.began_utc),
+      state_text(check.state, language));
 }
 
 } // namespace dyncal::inline views

@@ -5,6 +5,8 @@
 
 #include <string>
 
+#include "services/views/language/language.hpp"
+
 namespace dyncal::inline views {
 
 struct DailyCheck {
@@ -16,6 +18,7 @@ struct DailyCheck {
 };
 
 // For tables and documents.
-[[nodiscard]] std::string sentence_of(const DailyCheck& check);
+[[nodiscard]] std::string sentence_of(const DailyCheck& check,
+                                      Language language = Language::english);
 
 } // namespace dyncal::inline views

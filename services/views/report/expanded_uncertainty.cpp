@@ -6,6 +6,7 @@
 #include <fmt/core.h>
 
 #include "analysis/uncertainty/coverage.hpp"
+#include "services/views/language/statement_sentences.hpp"
 
 namespace dyncal::inline views {
 namespace {
@@ -55,10 +56,8 @@ std::string notable_k_text(double k) {
   return k > notable_k ? fmt::format(", k = {:.2f}", k) : "";
 }
 
-std::string advice_on_repetitions(double largest_k) {
-  return largest_k > large_k ? "So few repetitions hardly show how much they scatter, which makes "
-                               "k large: repeat more often, five times or more."
-                             : "";
+std::string advice_on_repetitions(double largest_k, Language language) {
+  return largest_k > large_k ? sentences::repeat_more(language) : "";
 }
 
 } // namespace dyncal::inline views

@@ -11,6 +11,7 @@
 
 #include "services/evaluation/result/step_result.hpp"
 #include "services/evaluation/result/transfer_function.hpp"
+#include "services/views/language/language.hpp"
 
 namespace dyncal::inline views {
 
@@ -34,6 +35,7 @@ inline constexpr double notable_k = 2.05;
 
 // Of means whose largest coverage factor is `largest_k`: one sentence on what makes it large, and
 // what to do; empty where it is not. The same words in table, page, report and certificate.
-[[nodiscard]] std::string advice_on_repetitions(double largest_k);
+[[nodiscard]] std::string advice_on_repetitions(double largest_k,
+                                                Language language = Language::english);
 
 } // namespace dyncal::inline views

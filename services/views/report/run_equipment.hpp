@@ -7,11 +7,12 @@
 #include <vector>
 
 #include "services/contract/reference_standard.hpp"
+#include "services/views/language/language.hpp"
 #include "services/views/report/stored_result.hpp"
 
 namespace dyncal::inline views {
 
-[[nodiscard]] std::vector<CalibratedDevice> run_equipment(const StoredResult& result,
-                                                          const std::string& channel);
+[[nodiscard]] std::vector<CalibratedDevice>
+run_equipment(const StoredResult& result, const std::string& channel, Language language);
 
 } // namespace dyncal::inline views

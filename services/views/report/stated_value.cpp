@@ -9,6 +9,7 @@
 #include "services/base/per_enumerator.hpp"
 #include "services/base/rounding.hpp"
 #include "services/contract/evaluation_method.hpp"
+#include "services/views/language/statement_sentences.hpp"
 
 namespace dyncal::inline views {
 namespace {
@@ -22,7 +23,8 @@ RoundedPhase rounded_phase(const StoredValue& value) {
 }
 
 template <class ValueOf>
-std::string range_of(const std::vector<StoredPoint>& points, int decimals, ValueOf value_of) {
+std::string range_of(const std::vector<StoredPoint>& points, int decimals, Language language,
+                     ValueOf value_of) {
   double low = std::numeric_limits<double>::infinity();
   double high = -low;
   for (const StoredPoint& point : points) {
@@ -31,7 +33,10 @@ std::string range_of(const std::vector<StoredPoint>& points, int decimals, Value
       high = std::max(high, value);
     }
   }
-  return low > high ? "" : fmt::format("{:.{}f} to {:.{}f}", low, decimals, high, decimals);
+  const auto text = [&](double value) {
+    return decimal(language, fmt::format("{:.{}f}", value, decimals));
+  };
+  return low > high ? "" : sentences::range(language, text(low), text(high));
 }
 
 bool is_usable(double value, const ExpandedUncertainty& uncertainty) {
@@ -55,10 +60,11 @@ StatedValue stated_phase_deg(const StoredValue& value) {
 }
 
 std::string stated_text(double value, const analysis::CombinedUncertainty& of_value,
-                        const std::string& unit) {
+                        const std::string& unit, Language language) {
   const RoundedValue rounded = round_by_uncertainty(value, of_value.expanded());
-  return fmt::format("{} {}, U = {} {} (k = {:.2f})", rounded.value, unit, rounded.u, unit,
-                     of_value.k);
+  return sentences::value_with_u(language, decimal(language, rounded.value), unit,
+                                 decimal(language, rounded.u), unit,
+                                 decimal(language, fmt::format("{:.2f}", of_value.k)));
 }
 
 bool can_be_stated(const StoredValue& value) {
@@ -67,22 +73,23 @@ bool can_be_stated(const StoredValue& value) {
          value.coverage_probability < 1.0;
 }
 
-std::string advice_on_repetitions(const std::vector<StoredValue>& values) {
+std::string advice_on_repetitions(const std::vector<StoredValue>& values, Language language) {
   double largest_k = 0.0;
   for (const StoredValue& value : values) {
     largest_k = std::max({largest_k, value.of_magnitude.k, value.of_phase.k});
   }
-  return advice_on_repetitions(largest_k);
+  return advice_on_repetitions(largest_k, language);
 }
 
-std::string temperature_range(const std::vector<StoredPoint>& points) {
-  return range_of(points, 1, [](const StoredPoint& point) {
+std::string temperature_range(const std::vector<StoredPoint>& points, Language language) {
+  return range_of(points, 1, language, [](const StoredPoint& point) {
     return point.temperature_degc.value_or(StoredPoint::nan_value);
   });
 }
 
-std::string level_range(const std::vector<StoredPoint>& points) {
-  return range_of(points, 3, [](const StoredPoint& point) { return point.measured_level_m_s2; });
+std::string level_range(const std::vector<StoredPoint>& points, Language language) {
+  return range_of(points, 3, language,
+                  [](const StoredPoint& point) { return point.measured_level_m_s2; });
 }
 
 double measured_level_m_s2(const StoredResult& result, const StoredValue& value) {
@@ -124,57 +131,40 @@ std::vector<std::string> first_of(std::vector<std::string> texts, std::size_t mo
   return texts;
 }
 
-std::string coverage_percent(double probability) {
-  return fmt::format("{:.2f} %", 100.0 * probability);
+std::string coverage_percent(double probability, Language language) {
+  return decimal(language, fmt::format("{:.2f} %", 100.0 * probability));
 }
 
-std::string sign_convention() {
-  return "The transfer function H is the complex ratio of the sensor's output to the reference "
-         "quantity. Its phase arg H is the phase of the output minus the phase of the reference "
-         "quantity, both of the form cos(2 pi f t + phase) (ISO 2041): positive if the output "
-         "leads, negative if it is delayed. It is stated within (-pi, pi], that is "
-         "(-180 deg, 180 deg].";
-}
-
-std::string rounding_rule() {
-  return "Expanded uncertainties have two significant digits; each value is rounded to the "
-         "decimal place of its expanded uncertainty (JCGM 100:2008, 7.2.6).";
-}
-
-std::string method_description(const std::string& method) {
+std::string method_description(const std::string& method, Language language) {
   const auto known = parse_enumerator<EvaluationMethod>(method);
   if (!known) {
     return method;
   }
   switch (*known) {
   case EvaluationMethod::analogue:
-    return "Sensor and reference are channels of one recording system with a common clock; "
-           "magnitude and phase follow from sine approximation of both.";
+    return sentences::analogue(language);
   case EvaluationMethod::sample_timestamping:
-    return "Every sample of the digital sensor has a time stamp; a synchronisation signal that "
-           "both the sensor's acquisition unit and the reference system record links their "
-           "clocks; magnitude and phase follow from sine approximation over the stamped samples.";
+    return sentences::sample_timestamping(language);
   case EvaluationMethod::series_timestamping:
-    return "The digital sensor records a series of samples after a trigger; an oscilloscope "
-           "records the synchronisation signal and the trigger; magnitude and phase follow from "
-           "sine approximation over all series.";
+    return sentences::series_timestamping(language);
   case EvaluationMethod::absolute_time:
-    return "The samples of sensor and reference both have time stamps in UTC; magnitude and phase "
-           "follow from sine approximation over the stamped samples.";
+    return sentences::absolute_time(language);
   }
   return method;
 }
 
-std::string frequency_range(const std::vector<StoredValue>& values) {
+std::string frequency_range(const std::vector<StoredValue>& values, Language language) {
   if (values.empty()) {
-    return "no frequency";
+    return sentences::no_frequency(language);
   }
   const auto [low, high] = std::minmax_element(
       values.begin(), values.end(),
       [](const StoredValue& a, const StoredValue& b) { return a.frequency_hz < b.frequency_hz; });
-  return values.size() == 1 ? fmt::format("{} Hz", low->frequency_text_hz)
-                            : fmt::format("{} values from {} Hz to {} Hz", values.size(),
-                                          low->frequency_text_hz, high->frequency_text_hz);
+  const std::string lowest = decimal(language, low->frequency_text_hz);
+  return values.size() == 1
+             ? sentences::one_frequency(language, lowest)
+             : sentences::frequency_range(language, values.size(), lowest,
+                                          decimal(language, high->frequency_text_hz));
 }
 
 } // namespace dyncal::inline views

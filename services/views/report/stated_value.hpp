@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "services/views/language/language.hpp"
 #include "services/views/report/stored_result.hpp"
 
 namespace dyncal::inline views {
@@ -27,17 +28,20 @@ struct StatedValue {
 [[nodiscard]] StatedValue stated_phase_deg(const StoredValue& value);
 // A derived number, as a group delay or a rate: "8.100 ms, U = 0.012 ms (k = 2.00)".
 [[nodiscard]] std::string stated_text(double value, const analysis::CombinedUncertainty& of_value,
-                                      const std::string& unit);
+                                      const std::string& unit,
+                                      Language language = Language::english);
 // Value and U are finite, and U and k are above 0: without these there is nothing to state.
 [[nodiscard]] bool can_be_stated(const StoredValue& value);
 
 // That of expanded_uncertainty.hpp, for the largest k of the values; empty where none is large.
-[[nodiscard]] std::string advice_on_repetitions(const std::vector<StoredValue>& values);
+[[nodiscard]] std::string advice_on_repetitions(const std::vector<StoredValue>& values,
+                                                Language language = Language::english);
 
 // What the sensor measured of its own temperature, in degrees Celsius, and the reference of the
 // excitation, in m/s^2: "27.3 to 28.9"; empty where nothing is known.
-[[nodiscard]] std::string temperature_range(const std::vector<StoredPoint>& points);
-[[nodiscard]] std::string level_range(const std::vector<StoredPoint>& points);
+[[nodiscard]] std::string temperature_range(const std::vector<StoredPoint>& points,
+                                            Language language);
+[[nodiscard]] std::string level_range(const std::vector<StoredPoint>& points, Language language);
 // What the reference measured of it at a value, the mean of the repetitions; NaN: not known.
 [[nodiscard]] double measured_level_m_s2(const StoredResult& result, const StoredValue& value);
 
@@ -50,14 +54,12 @@ described_source(const StoredResult& result, const std::string& channel);
 [[nodiscard]] std::vector<std::string> first_of(std::vector<std::string> texts, std::size_t most);
 
 // "95.45 %"
-[[nodiscard]] std::string coverage_percent(double probability);
+[[nodiscard]] std::string coverage_percent(double probability, Language language);
 
-// Sentences that every document has.
-[[nodiscard]] std::string sign_convention();
-[[nodiscard]] std::string rounding_rule();
 // How a method links the sensor to the reference; the name itself for one that is not known.
-[[nodiscard]] std::string method_description(const std::string& method);
+[[nodiscard]] std::string method_description(const std::string& method, Language language);
 // What the whole run was excited with: "17 frequencies from 10 Hz to 200 Hz".
-[[nodiscard]] std::string frequency_range(const std::vector<StoredValue>& values);
+[[nodiscard]] std::string frequency_range(const std::vector<StoredValue>& values,
+                                          Language language);
 
 } // namespace dyncal::inline views

@@ -40,7 +40,7 @@ ConformityReport example() {
                     .frequency_hz = 80,
                     .level_m_s2 = 10,
                     .row = 1,
-                    .reason = "flag over_range: \x1b[2J"}};
+                    .reason = {"flag over_range: \x1b[2J", "Kennzeichnung over_range"}}};
   return report;
 }
 
@@ -50,6 +50,16 @@ TEST(StatedConformity, SaysRangesAndLimits) {
   EXPECT_EQ(row_text(report.tolerances.rows[1]),
             "phase, 80 Hz, 2 m/s^2 to 15 m/s^2: -2 deg to 2 deg from 0 deg - 360 deg f x 0.0081 s");
   EXPECT_EQ(verdict_text(report), "data sheet: undecided (1 pass, 1 undecided)");
+}
+
+TEST(StatedConformity, SaysItInGerman) {
+  const ConformityReport report = example();
+  EXPECT_EQ(row_text(report.tolerances.rows[1], Language::german),
+            "Phasenverschiebung, 80 Hz, 2 m/s^2 bis 15 m/s^2: -2 deg bis 2 deg von 0 deg - 360 deg "
+            "f x 0,0081 s");
+  EXPECT_EQ(verdict_text(report, Language::german),
+            "data sheet: nicht entschieden (1 konform, 1 nicht entschieden)");
+  EXPECT_EQ(probability_text({.probability = 0.8413}, Language::german), "84,1 %");
 }
 
 TEST(StatedConformity, RoundsByU) {

@@ -75,6 +75,17 @@ TEST(LogarithmicAxis, FallsBackToEvenTicksInLessThanHalfADecade) {
               ElementsAre("80", "90", "100", "110", "120"));
 }
 
+TEST(LogarithmicAxis, LabelsGivenTicksAsFarAsThereIsRoom) {
+  const std::vector<double> thirds{10, 12.5, 16, 20, 25, 31.5, 40, 50, 63, 80, 100, 500};
+  const auto wide = make_axis(range(Scale::logarithmic, 9, 110), thirds, 0.012);
+  EXPECT_EQ(wide.ticks.size(), 11U); // 500 is not in the range
+  EXPECT_THAT(labels(wide),
+              ElementsAre("10", "12.5", "16", "20", "25", "31.5", "40", "50", "63", "80", "100"));
+  const auto narrow = make_axis(range(Scale::logarithmic, 9, 110), thirds, 0.04);
+  EXPECT_EQ(narrow.ticks.size(), 11U);
+  EXPECT_THAT(labels(narrow), ElementsAre("10", "16", "25", "40", "63", "100"));
+}
+
 TEST(LogarithmicAxis, PutsTheGeometricMeanInTheMiddle) {
   EXPECT_NEAR(make_axis(range(Scale::logarithmic, 1, 100), 3).position(10), 0.5, 1e-12);
 }

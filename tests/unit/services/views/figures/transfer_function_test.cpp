@@ -88,9 +88,31 @@ TEST(TransferFunctionFigure, NamesAxesUnitsRepetitionsAndGroupDelay) {
   const auto texts = texts_of(transfer_function_figure(data, "tf").svg());
   for (const auto* text : {"acc-1: dau/acceleration_z", "frequency in Hz",
                            "magnitude in (rad/s)/(m/s²)", "phase (lead) in rad", "#1", "#2", "#3",
-                           "group delay 8.1 ms", "10", "20", "50", "100", "200"}) {
+                           "group delay 8.1 ms", "10", "12.59", "15.85", "199.5"}) {
     EXPECT_THAT(texts, Contains(text));
   }
+}
+
+TEST(TransferFunctionFigure, DrawsWhatTheDelayLeavesOfThePhase) {
+  auto data = low_pass(14);
+  data.unit = "1";
+  data.group_delay = line_of(delay_s, 0.25);
+  for (ValueOverFrequency& mean : data.mean) {
+    mean.value.phase_rad += 0.25;
+  }
+  data.removes_delay = true;
+  const Figure figure = transfer_function_figure(data, "tf");
+  const Panel& panel = figure.picture.panels[1];
+  EXPECT_EQ(panel.y_label, "phase without delay in rad");
+  EXPECT_EQ(figure.picture.panels[0].y_label, "magnitude");
+  ASSERT_EQ(panel.series.size(), 4U); // no line of the delay
+  ASSERT_EQ(panel.series[0].points.size(), 14U);
+  for (const Point& point : panel.series[0].points) {
+    EXPECT_NEAR(point.y, 0.25, 1e-9);
+    EXPECT_EQ(point.half_bar, 2e-3);
+  }
+  data.removes_delay = false;
+  EXPECT_EQ(figure.csv, transfer_function_figure(data, "tf").csv);
 }
 
 TEST(TransferFunctionFigure, DrawsALineAndMarkersForEachLevelWhereAFrequencyHasSeveral) {

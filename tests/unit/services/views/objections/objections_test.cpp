@@ -9,6 +9,7 @@ namespace dyncal::inline views {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::Field;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
@@ -70,7 +71,8 @@ TEST(Objections, ToFlagsOfValuesResultsAndChannels) {
   result.points[1].flag_names = {"over_range", "shots_missing"};
   EXPECT_THAT(objections_to(result, {channel}),
               ElementsAre(HasSubstr("at 10 Hz, 20 Hz: flag over_range")));
-  EXPECT_THAT(stated_flags(result, {channel}), ElementsAre(HasSubstr("shots_missing")));
+  EXPECT_THAT(stated_flags(result, {channel}),
+              ElementsAre(Field(&TranslatedText::english, HasSubstr("shots_missing"))));
   result.channels[0].flag_names = {"over_range"};
   EXPECT_THAT(objections_to(result, {channel}), ElementsAre(HasSubstr("at all frequencies")));
   EXPECT_THAT(objections_to(result, {"dau/other"}), SizeIs(1)); // which has no value at all

@@ -79,13 +79,16 @@ TEST(StatedValue, CannotBeStatedWithoutAUsableUncertainty) {
 }
 
 TEST(StatedValue, SaysWhatItHoldsFor) {
-  EXPECT_EQ(coverage_percent(0.9544997361036416), "95.45 %");
-  EXPECT_EQ(frequency_range({}), "no frequency");
-  EXPECT_EQ(frequency_range({value_of(1, 1, 1, 1)}), "10 Hz");
-  EXPECT_EQ(method_description("of-the-future"), "of-the-future");
+  EXPECT_EQ(coverage_percent(0.9544997361036416, Language::english), "95.45 %");
+  EXPECT_EQ(coverage_percent(0.9544997361036416, Language::german), "95,45 %");
+  EXPECT_EQ(frequency_range({}, Language::english), "no frequency");
+  EXPECT_EQ(frequency_range({value_of(1, 1, 1, 1)}, Language::german), "10 Hz");
+  EXPECT_EQ(method_description("of-the-future", Language::german), "of-the-future");
   for (const char* method :
        {"analogue", "sample-timestamping", "series-timestamping", "absolute-time"}) {
-    EXPECT_GT(method_description(method).size(), 60U) << method;
+    for (const Language language : all_languages) {
+      EXPECT_GT(method_description(method, language).size(), 60U) << method;
+    }
   }
 }
 
