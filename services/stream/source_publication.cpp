@@ -216,6 +216,9 @@ dyncal::wire::SourceState SourcePublication::state(const SourcePublisher::Snapsh
 // From block to block: between two statuses there is a part of one.
 void SourcePublication::measure_rate(const SourcePublisher::Snapshot& snapshot,
                                      Clock::time_point now) {
+  if (snapshot.offered_samples == 0) {
+    return; // the first block began before it came
+  }
   if (rate_points_.empty() || snapshot.last_offer != rate_points_.back().time) {
     rate_points_.push_back({snapshot.last_offer, snapshot.offered_samples});
   }

@@ -71,6 +71,18 @@ class Metrologist(PageCase):
             self.assertEqual(f, f_expected)
             self.assertAlmostEqual(value, value_expected, 9)
 
+    def test_phone_shows_the_value_without_scrolling_sideways(self):
+        self.laboratory.runs["acc-2"] = [
+            {"run": "20261128T004241.295Z.f8f913b0", "planned_utc_ms": 1795388400000,
+             "state": "done"}]
+        page = self.open("run/acc-2", width=390)
+        page.wait_for("document.querySelectorAll('[data-frequency]').length === 17")
+        self.assertLessEqual(page.value("document.documentElement.scrollWidth"), 390)
+        for row in ("[data-frequency]", "[data-step]"):
+            right = page.value(f"document.querySelector('{row}').cells[2]"
+                               ".getBoundingClientRect().right")
+            self.assertLess(right, 390)
+
     def test_ticks_are_frequencies_that_were_measured(self):
         page = self.open("run/acc-2")
         page.wait_for(f"{drawn_pixels(0)} > 500")
