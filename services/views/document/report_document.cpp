@@ -146,9 +146,10 @@ std::string part_of(const ReportContents& contents, std::size_t first_figure) {
   for (std::size_t i = 0; i < contents.channels.size(); ++i) {
     html += channel_section(contents, contents.channels[i], first_figure + i);
   }
-  html += conformity_section(contents) + flag_section(contents) + closures_section(contents) +
-          conditions_section(contents) + equipment_section(contents) + losses_section(contents) +
-          clock_section(contents) + remarks(contents) + signatures(contents);
+  html += linearity_section(contents) + conformity_section(contents) + flag_section(contents) +
+          closures_section(contents) + conditions_section(contents) + equipment_section(contents) +
+          losses_section(contents) + clock_section(contents) + remarks(contents) +
+          signatures(contents);
   html += other_channels(contents) + devices_section(contents) + software_section(contents) +
           budget_annex(contents) + single_results(contents) + recipe_section(contents);
   return html +
@@ -193,6 +194,9 @@ Expected<ReportContents> gather_report(const ReportRequest& request) {
     contents.languages = contents.laboratory->languages;
   }
   contents.language = contents.languages.front();
+  if (auto linearity = amplitude_linearity_of(contents.result, contents.channels, std::nullopt)) {
+    contents.linearity = std::move(*linearity);
+  }
   DYNCAL_TRY(contents.conformity,
              asked_conformity(contents.result, contents.channels, request.tolerances,
                               contents.sensor ? contents.sensor->tolerances : std::nullopt));

@@ -12,6 +12,7 @@
 #include "services/views/lab_file/laboratory_file.hpp"
 #include "services/views/lab_file/sensor_file.hpp"
 #include "services/views/language/sentence.hpp"
+#include "services/views/linearity/amplitude_linearity.hpp"
 #include "services/views/report/stored_result.hpp"
 
 namespace dyncal::inline views {
@@ -20,17 +21,18 @@ struct ReportContents {
   StoredResult result;
   std::optional<LaboratoryFile> laboratory;
   std::optional<SensorFile> sensor;
-  std::vector<std::string> channels;          // those whose values are shown in full
-  std::optional<ConformityReport> conformity; // nothing: no tolerances
-  std::vector<EmbeddedPicture> pictures;      // further figures of the run folder
-  std::vector<std::string> left_out;          // pictures that could not be taken in, and why
-  std::string number;                         // empty: none
-  std::string replaces;                       // number of the report whose place it takes
-  bool is_draft = true;                       // not issued: every page says so
-  std::vector<TranslatedText> provenance;     // what the result was held against
-  std::vector<std::string> objections;        // in spite of which it is issued
-  std::string issued;                         // YYYY-MM-DD
-  std::string software;                       // that makes the report
+  std::vector<std::string> channels;           // those whose values are shown in full
+  std::optional<ConformityReport> conformity;  // nothing: no tolerances
+  std::optional<AmplitudeLinearity> linearity; // nothing: one level at each frequency
+  std::vector<EmbeddedPicture> pictures;       // further figures of the run folder
+  std::vector<std::string> left_out;           // pictures that could not be taken in, and why
+  std::string number;                          // empty: none
+  std::string replaces;                        // number of the report whose place it takes
+  bool is_draft = true;                        // not issued: every page says so
+  std::vector<TranslatedText> provenance;      // what the result was held against
+  std::vector<std::string> objections;         // in spite of which it is issued
+  std::string issued;                          // YYYY-MM-DD
+  std::string software;                        // that makes the report
   std::vector<Language> languages{Language::english};
   Language language = Language::english; // of the part that is being made
 };
@@ -69,6 +71,9 @@ struct ReportContents {
 [[nodiscard]] std::string budget_section(const ReportContents& contents,
                                          const std::string& channel);
 [[nodiscard]] std::string budget_annex(const ReportContents& contents);
+
+// How values change with the level (report_linearity.cpp); empty where there is one level.
+[[nodiscard]] std::string linearity_section(const ReportContents& contents);
 
 // What was decided of tolerances (report_conformity.cpp); empty without any.
 [[nodiscard]] std::string conformity_section(const ReportContents& contents);

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "analysis/base/phasor.hpp"
+#include "services/views/language/linearity_sentences.hpp"
 #include "services/views/objections/refusing_flags.hpp"
 #include "services/views/report/common_part.hpp"
 #include "services/views/report/stated_value.hpp"
@@ -20,19 +21,14 @@ using analysis::CombinedUncertainty;
 // The means of one channel at one frequency, by level.
 struct LevelledValues {
   std::vector<const StoredValue*> values{};
-  std::vector<std::string> doubts{};
+  std::vector<std::string> flags{}; // that forbid a certificate; empty: none
 };
 
-std::string left_out(const StoredValue& value, const std::string& reason) {
-  return fmt::format("{} at {} Hz, {} m/s^2 is left out: {}", value.channel,
-                     value.frequency_text_hz, value.level_m_s2, reason);
-}
-
-// A delay that is not stated shifts the phases of all levels alike.
-std::string doubt_about(const StoredResult& result, const StoredValue& value) {
-  const std::string name = doubting_flag(result, value, false);
-  return name.empty() ? ""
-                      : fmt::format("flag {}: {}", name, verdict_on(parse_flag_name(name)).reason);
+TranslatedText left_out(const StoredValue& value, const Sentence& why) {
+  return in_all_languages([&](Language language) {
+    return why(language, value.channel, decimal(language, value.frequency_text_hz),
+               decimal(language, fmt::format("{}", value.level_m_s2)));
+  });
 }
 
 using LineKey = std::tuple<std::string, double, std::string>; // channel, frequency, axis
@@ -46,7 +42,7 @@ std::map<LineKey, LevelledValues> lines_of(const StoredResult& result,
       continue;
     }
     if (!can_be_stated(value)) {
-      linearity.notes.push_back(left_out(value, "it has no U"));
+      linearity.notes.push_back(left_out(value, sentences::left_out_without_u));
       continue;
     }
     lines[{value.channel, value.frequency_hz, value.excited_axis}].values.push_back(&value);
@@ -55,7 +51,8 @@ std::map<LineKey, LevelledValues> lines_of(const StoredResult& result,
   for (auto& [key, line] : lines) {
     std::ranges::stable_sort(line.values, {}, &StoredValue::level_m_s2);
     for (const StoredValue* value : line.values) {
-      line.doubts.push_back(doubt_about(result, *value));
+      // A delay that is not stated shifts the phases of all levels alike.
+      line.flags.push_back(doubting_flag(result, *value, false));
     }
   }
   return lines;
@@ -68,7 +65,7 @@ std::size_t reference_of(const LevelledValues& line, std::optional<double> level
     return static_cast<std::size_t>(found - line.values.begin());
   }
   for (std::size_t i = line.values.size(); i-- > 0;) {
-    if (line.doubts[i].empty()) {
+    if (line.flags[i].empty()) {
       return i;
     }
   }
@@ -112,7 +109,7 @@ analysis::Expected<LinearityPoint> point_against(const StoredValue& value,
 
 LinearityLine line_against(const LevelledValues& levelled, std::size_t reference,
                            const StoredResult& result, const CommonParts& common,
-                           std::vector<std::string>& notes) {
+                           std::vector<TranslatedText>& notes) {
   const StoredValue& of_reference = *levelled.values[reference];
   LinearityLine line{.channel = of_reference.channel,
                      .frequency_text_hz = of_reference.frequency_text_hz,
@@ -125,11 +122,11 @@ LinearityLine line_against(const LevelledValues& levelled, std::size_t reference
       point = point_against(value, of_reference, shared_at(common, value, of_reference));
     }
     if (!point) {
-      notes.push_back(left_out(value, point.error().message));
+      notes.push_back(left_out(value, sentences::left_out_unclear));
       continue;
     }
     point->measured_level_m_s2 = measured_level_m_s2(result, value);
-    point->doubt = levelled.doubts[i];
+    point->doubting_flag = levelled.flags[i];
     line.points.push_back(std::move(*point));
   }
   return line;
@@ -160,9 +157,11 @@ Expected<AmplitudeLinearity> amplitude_linearity_of(const StoredResult& result,
     const std::size_t reference = reference_of(levelled, reference_level_m_s2);
     const std::string& channel = std::get<0>(key);
     if (reference == levelled.values.size()) {
-      linearity.notes.push_back(fmt::format("{} at {} Hz was not measured at {} m/s^2", channel,
-                                            levelled.values.front()->frequency_text_hz,
-                                            *reference_level_m_s2));
+      linearity.notes.push_back(in_all_languages([&](Language language) {
+        return sentences::not_at_reference_level(
+            language, channel, decimal(language, levelled.values.front()->frequency_text_hz),
+            decimal(language, fmt::format("{}", *reference_level_m_s2)));
+      }));
       continue;
     }
     const std::string source = source_of(channel);

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "services/base/error.hpp"
+#include "services/views/language/sentence.hpp"
 #include "services/views/report/result_file.hpp"
 
 namespace dyncal::inline views {
@@ -30,7 +31,7 @@ struct LinearityPoint {
   double k = 0.0;
   double phase_deviation_rad = 0.0;
   double expanded_phase_rad = 0.0;
-  std::string doubt{}; // the flag that forbids a certificate, and why; empty: none
+  std::string doubting_flag{}; // its name: it forbids a certificate; empty: none
 
   // Beyond its U, in magnitude or phase.
   [[nodiscard]] bool deviates() const;
@@ -49,7 +50,7 @@ struct LinearityLine { // of one channel at one frequency
 
 struct AmplitudeLinearity {
   std::vector<LinearityLine> lines{};
-  std::vector<std::string> notes{};
+  std::vector<TranslatedText> notes{};
 };
 
 [[nodiscard]] Expected<AmplitudeLinearity>

@@ -8,6 +8,8 @@
 
 #include "services/base/printable_text.hpp"
 #include "services/base/rounding.hpp"
+#include "services/views/language/linearity_sentences.hpp"
+#include "services/views/objections/refusing_flags.hpp"
 #include "services/views/report/json_number.hpp"
 
 namespace dyncal::inline views {
@@ -31,7 +33,10 @@ std::string point_line(const LinearityPoint& point, bool is_reference) {
     line += fmt::format(" {:>11} {:>9} {:>11} {:>9}{}", magnitude.value, magnitude.u, phase.value,
                         phase.u, point.deviates() ? "  beyond its U" : "");
   }
-  return line + (point.doubt.empty() ? "" : "  " + one_line(point.doubt)) + "\n";
+  if (const std::string& flag = point.doubting_flag; !flag.empty()) {
+    line += fmt::format("  flag {}: {}", flag, verdict_on(parse_flag_name(flag)).reason);
+  }
+  return line + "\n";
 }
 
 std::string line_section(const LinearityLine& line) {
@@ -62,8 +67,8 @@ nlohmann::ordered_json json_of(const LinearityPoint& point) {
                               {"phase_deviation_rad", point.phase_deviation_rad},
                               {"U_phase_deviation_rad", point.expanded_phase_rad},
                               {"deviates", point.deviates()}};
-  if (!point.doubt.empty()) {
-    json["doubt"] = point.doubt;
+  if (!point.doubting_flag.empty()) {
+    json["flag"] = point.doubting_flag;
   }
   return json;
 }
@@ -75,12 +80,10 @@ std::string linearity_table(const AmplitudeLinearity& linearity) {
   for (const LinearityLine& line : linearity.lines) {
     text += line_section(line);
   }
-  for (const std::string& note : linearity.notes) {
-    text += one_line(note) + "\n";
+  for (const TranslatedText& note : linearity.notes) {
+    text += one_line(note.english) + "\n";
   }
-  return text + "Deviations from the value at the reference level; U of the difference, without "
-                "what both levels have in common.\nThe reference is taken to be linear but for "
-                "what its certificate names beside its sensitivity.\n";
+  return text + sentences::linearity_explained(Language::english) + "\n";
 }
 
 nlohmann::ordered_json linearity_json(const AmplitudeLinearity& linearity) {
@@ -96,7 +99,11 @@ nlohmann::ordered_json linearity_json(const AmplitudeLinearity& linearity) {
                      {"reference_level_m_s2", line.reference_level_m_s2},
                      {"points", std::move(points)}});
   }
-  return {{"lines", std::move(lines)}, {"notes", linearity.notes}};
+  nlohmann::ordered_json notes = nlohmann::ordered_json::array();
+  for (const TranslatedText& note : linearity.notes) {
+    notes.push_back(note.english);
+  }
+  return {{"lines", std::move(lines)}, {"notes", std::move(notes)}};
 }
 
 } // namespace dyncal::inline views

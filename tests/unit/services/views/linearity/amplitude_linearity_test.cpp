@@ -11,7 +11,6 @@ namespace dyncal::inline views {
 namespace {
 
 using analysis::ContributionKind;
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 constexpr double u_reference_rel = 1e-3;
@@ -105,7 +104,8 @@ TEST(AmplitudeLinearity, DoesNotReferToAValueThatMayBeWrong) {
   const auto linearity = linearity_of(result);
   ASSERT_TRUE(linearity) << linearity.error().message;
   EXPECT_EQ(linearity->lines.front().reference_level_m_s2, 10.0);
-  EXPECT_THAT(linearity->lines.front().points[2].doubt, HasSubstr("over_range"));
+  EXPECT_EQ(linearity->lines.front().points[2].doubting_flag, "over_range");
+  EXPECT_THAT(linearity_table(*linearity), HasSubstr("flag over_range: a sine that is cut off"));
   EXPECT_THAT(linearity_table(*linearity), HasSubstr("-10.000     0.051"));
 }
 
@@ -130,7 +130,9 @@ TEST(AmplitudeLinearity, SaysWhichValueHasNoUncertainty) {
   const auto linearity = linearity_of(result);
   ASSERT_TRUE(linearity) << linearity.error().message;
   EXPECT_EQ(linearity->lines.front().points.size(), 2U);
-  EXPECT_THAT(linearity->notes, ElementsAre("dau/z at 80 Hz, 2 m/s^2 is left out: it has no U"));
+  ASSERT_EQ(linearity->notes.size(), 1U);
+  EXPECT_EQ(linearity->notes[0].english, "dau/z at 80 Hz, 2 m/s² is left out: it has no U");
+  EXPECT_EQ(linearity->notes[0].german, "dau/z bei 80 Hz, 2 m/s² fehlt: der Wert hat kein U");
 }
 
 // A linear sensor, with one error of the reference for both levels and noise in each.
