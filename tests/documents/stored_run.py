@@ -81,6 +81,7 @@ def clean_run(example_writer, seed=1):
     # After sensor and reference of the example files.
     for name, hour in (("began_utc", 12), ("ended_utc", 13)):
         result[name] = f"2026-03-01T{hour}:00:05.500000000Z"
+    result["conducted_by"] = {"name": "A. Meter", "user": "meter", "host": "lab3"}
     result["planned_steps"] = len(FREQUENCIES) * REPETITIONS
     sensor = {"source": "dau", "kind": "dau", "device": "MPU-9250", "serial": "0xbccb0100"}
     result["sources"].append({**result["sources"][0], **sensor})

@@ -31,6 +31,7 @@ TABLES = {
     "excitation.transverse_motion": {"ratio": 0.02, "source": "x"},
     "customer": {"name": "x", "city": "x", "country": "DE"},
     "conditions": {},
+    "run": {"on_end": ["x"]},
 }
 # A value and its uncertainty go together.
 COMPANIONS = {
@@ -41,6 +42,17 @@ COMPANIONS = {
     "U_temperature_k": ("temperature_degc", 20.0),
     "U_humidity_percent": ("humidity_percent", 20.0),
     "U_pressure_hpa": ("pressure_hpa", 1000.0),
+}
+
+
+# Where a quantity is found, and its uncertainty, in a bench file.
+FOUND = {
+    "temperature": ("U_temperature_k", 1.0),
+    "humidity": ("U_humidity_percent", 1.0),
+    "pressure": ("U_pressure_hpa", 1.0),
+    "U_temperature_k": ("temperature", "a/b"),
+    "U_humidity_percent": ("humidity", "a/b"),
+    "U_pressure_hpa": ("pressure", "a/b"),
 }
 
 
@@ -236,8 +248,9 @@ class Keys(unittest.TestCase):
                 of = outer[path[-2]] = copy.deepcopy(TABLES[".".join(path[:-1])])
             table = examples.first_table(of)
         table[path[-1]] = value
-        if path[-1] in COMPANIONS:
-            table.setdefault(*COMPANIONS[path[-1]])
+        companions = FOUND if "kind" in table else COMPANIONS
+        if path[-1] in companions:
+            table.setdefault(*companions[path[-1]])
         if path[-1] == "play" and table["driver"] == "can":
             table.setdefault(*COMPANIONS["play of can"])
         return changed

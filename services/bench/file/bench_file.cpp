@@ -10,6 +10,8 @@
 #include "services/bench/file/bench_name.hpp"
 #include "services/bench/file/bench_tables.hpp"
 #include "services/bench/file/check_table.hpp"
+#include "services/bench/file/conditions_table.hpp"
+#include "services/bench/file/run_end_table.hpp"
 #include "services/bench/file/toml_lines.hpp"
 #include "services/bench/file/toml_text.hpp"
 #include "services/contract/digest.hpp"
@@ -110,7 +112,9 @@ BenchFile read_tables(const toml::table& parsed, const std::filesystem::path& pa
     }
     file.uncertainty = read_uncertainty(std::move(*uncertainty));
   }
-  static_cast<void>(read_check(root)); // by who conducts a run, of its text
+  static_cast<void>(read_check(root)); // by who conducts a run, of its text, as those below
+  static_cast<void>(read_condition_settings(root));
+  static_cast<void>(read_run_end(root));
   root.finish();
   file.named_files = files.all();
   return file;

@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <optional>
 #include <thread>
+#include <tuple>
 
 #include <fmt/core.h>
 #include <spdlog/spdlog.h>
@@ -210,6 +211,29 @@ Expected<Evaluated> evaluate_files(const BenchFile& bench, const Recipe& recipe,
   return evaluated;
 }
 
+// What a source said of itself is in the recording, and no recipe changes it.
+std::vector<std::string> ignored_identities(const BenchFile& bench, const RunOutcome& outcome) {
+  std::vector<std::string> sentences;
+  for (const SourceSettings& source : bench.sources) {
+    const auto recorded = std::ranges::find(outcome.sources, source.name, &RunSource::source);
+    if (recorded == outcome.sources.end()) {
+      continue;
+    }
+    const drivers::SourceDescription& description = recorded->description;
+    for (const auto& [key, stated, known] :
+         {std::tuple{"serial", source.identity.serial, description.serial},
+          std::tuple{"model", source.identity.device, description.device}}) {
+      if (!stated.empty() && stated != known) {
+        sentences.push_back(fmt::format(
+            "{}: the recipe says {} '{}' of source {}, the run was recorded with '{}', and the "
+            "result keeps that; correct it with 'dyncal amend RUN {}/{}={} --reason TEXT'",
+            bench.path.string(), key, stated, source.name, known, source.name, key, stated));
+      }
+    }
+  }
+  return sentences;
+}
+
 // Prints what is damaged or missing on standard error.
 Expected<RunOutcome> analyse_recording(const AnalyseOptions& command, const std::stop_token& stop,
                                        const SharedWorkCount& count) {
@@ -220,18 +244,21 @@ Expected<RunOutcome> analyse_recording(const AnalyseOptions& command, const std:
   };
   RecordedRunOptions wish{.run = command.run, .recipe = {}, .count = count};
   std::optional<AdcFile> adc_file;
+  std::optional<BenchFile> recipe;
   if (command.recipe) {
     DYNCAL_TRY(const auto bench, read_bench_file(*command.recipe));
     DYNCAL_TRY(const auto adc, read_adc_calibration(bench));
     DYNCAL_TRY(wish.recipe, plan_recipe(bench, "recorded", adc));
     adc_file = adc_file_of(bench);
+    recipe = bench;
   }
   DYNCAL_TRY(auto opened, open_recording(command.bench_file, count, stop));
   warn(opened.warnings);
   DYNCAL_TRY(auto evaluated, evaluate_recording(opened.reader, wish, stop));
   warn(evaluated.warnings);
-  if (command.recipe) {
+  if (recipe) {
     evaluated.outcome.adc_file = std::move(adc_file);
+    warn(ignored_identities(*recipe, evaluated.outcome));
   }
   return std::move(evaluated.outcome);
 }
@@ -275,21 +302,22 @@ Expected<RunOutcome> analyse(const AnalyseOptions& command, const std::stop_toke
   return outcome;
 }
 
-// Who conducted the run has stated it in its folder; where that says none, so do documents.
-std::optional<DailyCheck> check_of(const std::filesystem::path& run) {
+// Who conducted the run has stated it in its folder.
+RunStatements statements_of(const std::filesystem::path& run) {
   std::error_code unknown;
   if (!std::filesystem::is_directory(run, unknown)) {
-    return std::nullopt;
+    return {};
   }
   const auto result = read_result(run);
-  return result ? result->check : std::nullopt;
+  return result ? static_cast<const RunStatements&>(*result) : RunStatements{};
 }
 
 Expected<void> run_analyse(const AnalyseOptions& command, const std::stop_token& stop) {
   DYNCAL_TRY(check_outputs(command.output, command.figures));
   keep_memory_for_samples();
   DYNCAL_TRY(const auto outcome, analyse(command, stop));
-  DYNCAL_TRY(show_outcome(outcome, command.output, command.figures, check_of(command.bench_file)));
+  DYNCAL_TRY(
+      show_outcome(outcome, command.output, command.figures, statements_of(command.bench_file)));
   return check_complete(outcome);
 }
 

@@ -138,6 +138,7 @@ void print_json(const History& history) {
          {"recipe_sha256", run.recipe_sha256},
          {"result_sha256", run.result_sha256},
          {"folder", run.folder},
+         {"amendments", run.amendments},
          {"open_closures", std::move(open)}});
   }
   for (const HistoryLine& line : history.lines) {
@@ -210,6 +211,12 @@ void print_tables(const History& history) {
              "phase)\n",
              agreeing, compared);
   print_open_closures(history);
+  for (const Calibration& calibration : history.calibrations) {
+    for (const std::string& sentence : calibration.run.amendments) {
+      fmt::print("calibration of {}: {}\n", one_line(day_and_time(calibration)),
+                 one_line(sentence));
+    }
+  }
 }
 
 figures::DriftData drift_of(const std::string& channel, const History& history) {

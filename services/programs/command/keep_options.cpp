@@ -50,6 +50,12 @@ void add_store_place(CLI::App& command, StorePlace& place) {
   add_store_option(command, place.store);
 }
 
+void add_operator_option(CLI::App& command, std::string& name) {
+  command.add_option("--operator", name,
+                     "who does this, for records and documents (default: $DYNCAL_OPERATOR, or the "
+                     "name of the login)");
+}
+
 CLI::Option* take_run(CLI::Option* option) {
   return option->transform([](const std::string& typed) { return run_path(typed).string(); });
 }

@@ -33,6 +33,9 @@ struct StorePlace {
 };
 void add_store_place(CLI::App& command, StorePlace& place);
 
+// --operator: who does it, a name for records and documents.
+void add_operator_option(CLI::App& command, std::string& name);
+
 // The option names a run: its folder, or ROOT/BENCH/NAME for the newest of that name. Returns it.
 CLI::Option* take_run(CLI::Option* option);
 

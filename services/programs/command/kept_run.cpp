@@ -1,15 +1,18 @@
 #include "services/programs/command/kept_run.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/core.h>
 
+#include "services/base/printable_text.hpp"
 #include "services/bench/file/named_files.hpp"
 #include "services/contract/run_identity.hpp"
 #include "services/programs/command/own_recording.hpp"
 #include "services/programs/command/progress_line.hpp"
 #include "services/records/capture/recorder.hpp"
 #include "services/records/store/store.hpp"
+#include "services/views/report/run_journal.hpp"
 #include "services/views/report/show_outcome.hpp"
 #include "services/views/report/stored_result.hpp"
 
@@ -49,6 +52,17 @@ std::optional<BegunRun> begun_run(const std::filesystem::path& folder) {
   return BegunRun{result->recipe_sha256, result->sources, !result->points.empty()};
 }
 
+// A run that is resumed stays that of who began it.
+RunStatements statements_of(const KeptRunSetup& setup, const std::filesystem::path& folder) {
+  RunStatements stated;
+  if (const auto begun = read_result(folder); setup.is_resumed && begun) {
+    stated = *begun;
+  }
+  stated.conducted_by = stated.conducted_by.value_or(setup.conducted_by);
+  stated.comment = stated.comment.empty() ? setup.comment : stated.comment;
+  return stated;
+}
+
 std::string line_of(const RunProgress& progress) {
   if (!progress.notice.empty()) {
     return progress.notice;
@@ -62,9 +76,15 @@ std::string line_of(const RunProgress& progress) {
 } // namespace
 
 KeptRun::KeptRun(KeepOptions options, const BenchFile& bench, KeptRunSetup setup,
-                 std::optional<Disk> disk)
-    : options_(std::move(options)), bench_(bench), setup_(std::move(setup)),
-      disk_(std::move(disk)) {}
+                 std::optional<Disk> disk, bus::Participant& participant)
+    : options_(std::move(options)), bench_(bench), setup_(std::move(setup)), disk_(std::move(disk)),
+      participant_(participant),
+      stated_(statements_of(setup_, disk_ ? disk_->folder->path() : std::filesystem::path())),
+      conditions_before_(stated_.conditions) {
+  if (disk_) {
+    disk_->folder->results().set_statements(stated_);
+  }
+}
 
 KeptRun::~KeptRun() = default;
 
@@ -72,7 +92,8 @@ Expected<std::unique_ptr<KeptRun>> KeptRun::open(const KeepOptions& options, con
                                                  KeptRunSetup setup,
                                                  bus::Participant& participant) {
   if (!options.folder) {
-    return std::unique_ptr<KeptRun>(new KeptRun(options, bench, std::move(setup), std::nullopt));
+    return std::unique_ptr<KeptRun>(
+        new KeptRun(options, bench, std::move(setup), std::nullopt, participant));
   }
   DYNCAL_TRY(auto folder, folder_of(*options.folder, bench, setup));
   auto log = LogFile::open(folder->path() / log_file_name);
@@ -87,11 +108,13 @@ Expected<std::unique_ptr<KeptRun>> KeptRun::open(const KeepOptions& options, con
     folder->discard();
     return fail(std::move(*error));
   }
-  log->write(fmt::format("bench '{}', run '{}', bench file {}", bench.bench, setup.run,
-                         std::filesystem::absolute(bench.path).string()));
-  return std::unique_ptr<KeptRun>(new KeptRun(
-      options, bench, std::move(setup),
-      Disk{std::move(folder), std::move(*log), std::move(*rates), std::move(*recorder)}));
+  log->write(fmt::format("bench '{}', run '{}', bench file {}, conducted by {}", bench.bench,
+                         setup.run, std::filesystem::absolute(bench.path).string(),
+                         text_of(setup.conducted_by)));
+  return std::unique_ptr<KeptRun>(
+      new KeptRun(options, bench, std::move(setup),
+                  Disk{std::move(folder), std::move(*log), std::move(*rates), std::move(*recorder)},
+                  participant));
 }
 
 RunKeeping KeptRun::keeping() {
@@ -118,12 +141,18 @@ Expected<void> KeptRun::check(const RunOutcome& planned) {
   say(fmt::format("run folder {}; the run needs about {} there, {} are free",
                   disk_->folder->path().string(), size_text(need.bytes()),
                   size_text(disk_->folder->free_bytes())));
+  if (auto settings = condition_settings_of(bench_.text)) {
+    conditions_ =
+        std::make_unique<ConditionLogger>(std::move(*settings), bench_, planned, participant_,
+                                          disk_->folder->path() / "conditions.csv");
+  }
   return disk_->folder->results().begin(completed(planned));
 }
 
 void KeptRun::set_check(const DailyCheck& check) {
+  stated_.check = check;
   if (disk_) {
-    disk_->folder->results().set_check(check);
+    disk_->folder->results().set_statements(stated_);
     say(sentence_of(check));
   }
 }
@@ -139,10 +168,40 @@ void KeptRun::note(const RunProgress& progress) {
   }
   note_kept();
   note_recording();
+  note_conditions();
   const std::string line = line_of(progress);
-  if (!line.empty() && line != last_line_) {
-    disk_->log.write(line);
-    last_line_ = line;
+  if (line.empty() || line == last_line_) {
+    return;
+  }
+  disk_->log.write(line);
+  last_line_ = line;
+  if (!progress.notice.empty()) {
+    note_event(progress.notice);
+  }
+}
+
+void KeptRun::note_event(const std::string& sentence) {
+  const auto kept =
+      append_to_journal(disk_->folder->path(),
+                        journal_entry(JournalKind::event, one_line(sentence), setup_.conducted_by));
+  if (!kept) {
+    say(kept.error().message);
+  }
+}
+
+void KeptRun::note_conditions() {
+  if (!conditions_) {
+    return;
+  }
+  for (const std::string& sentence : conditions_->take_sentences()) {
+    say(sentence);
+    note_event(sentence);
+  }
+  auto logged = joined_conditions(conditions_before_, conditions_->logged());
+  if (!std::ranges::equal(logged, stated_.conditions, {}, &LoggedCondition::count,
+                          &LoggedCondition::count)) {
+    stated_.conditions = std::move(logged);
+    disk_->folder->results().set_statements(stated_);
   }
 }
 
@@ -205,6 +264,11 @@ Expected<void> KeptRun::finish(const RunOutcome& outcome) {
     return {};
   }
   end_recording();
+  if (conditions_) {
+    stated_.conditions = joined_conditions(conditions_before_, conditions_->finish());
+    disk_->folder->results().set_statements(stated_);
+    note_conditions(); // its last sentences
+  }
   const auto written = disk_->folder->finish(outcome);
   disk_->log.write(
       written ? fmt::format("ended, {} results are in {}", outcome.results.size(), result_file_name)
@@ -220,8 +284,9 @@ void KeptRun::add_to_store(const RunOutcome& outcome) {
   if (place.empty()) {
     return;
   }
-  auto added = Store::open(place).and_then(
-      [&](std::unique_ptr<Store> store) { return store->add(disk_->folder->path()); });
+  auto added = Store::open(place).and_then([&](std::unique_ptr<Store> store) {
+    return store->add(disk_->folder->path(), setup_.conducted_by);
+  });
   if (!added) {
     say(fmt::format("run '{}' is not in the store ({}); all of it is in its folder: add it with "
                     "'dyncal store add {}'",
@@ -252,8 +317,15 @@ Expected<void> KeptRun::hold_against_recording(const RunOutcome& outcome,
   return {};
 }
 
+void KeptRun::log(const std::string& sentence) {
+  if (disk_) {
+    disk_->log.write(sentence);
+  }
+}
+
 void KeptRun::discard() {
   if (disk_) {
+    conditions_.reset();
     disk_->recorder.reset();
     disk_->folder->discard();
     disk_.reset();

@@ -16,11 +16,12 @@
 #include "services/bench/file/bench_file.hpp"
 #include "services/bus/bus.hpp"
 #include "services/daemon/program/log_file.hpp"
+#include "services/programs/command/condition_logger.hpp"
 #include "services/programs/command/keep_options.hpp"
 #include "services/records/run_folder/run_folder.hpp"
 #include "services/run/run_keeping.hpp"
 #include "services/run/run_progress.hpp"
-#include "services/views/report/daily_check.hpp"
+#include "services/views/report/run_statements.hpp"
 
 namespace dyncal::inline records::recording {
 class Recorder;
@@ -32,6 +33,8 @@ namespace dyncal::inline programs {
 struct KeptRunSetup {
   std::string run;
   bool is_resumed = false;
+  ActingPerson conducted_by;
+  std::string comment; // may be empty
   std::optional<AdcFile> adc_file;
   std::string
       dds; // the name of the participant's implementation, and its domain, for the recording
@@ -56,6 +59,7 @@ public:
   [[nodiscard]] RunKeeping keeping();
   // For all results from now on.
   void set_check(const DailyCheck& check);
+  [[nodiscard]] const RunStatements& statements() const { return stated_; }
   // What the progress line shows, for the log.
   void note(const RunProgress& progress);
   // When the run is over. Fails (bad_file) when the final results cannot be written.
@@ -66,6 +70,8 @@ public:
   // Fails (no_result) where it does not. REQUIRES: finish() has not failed.
   [[nodiscard]] Expected<void> hold_against_recording(const RunOutcome& outcome,
                                                       const std::stop_token& stop);
+  // A line into its log.
+  void log(const std::string& sentence);
   // Of a run that has excited nothing.
   void discard();
   // Nothing when none is kept.
@@ -80,10 +86,12 @@ private:
     std::unique_ptr<recording::Recorder> recorder; // nothing: not recorded
   };
 
-  KeptRun(KeepOptions options, const BenchFile& bench, KeptRunSetup setup,
-          std::optional<Disk> disk);
+  KeptRun(KeepOptions options, const BenchFile& bench, KeptRunSetup setup, std::optional<Disk> disk,
+          bus::Participant& participant);
   Expected<void> check(const RunOutcome& planned);
   [[nodiscard]] RunOutcome completed(RunOutcome so_far) const;
+  void note_event(const std::string& sentence);
+  void note_conditions();
   void note_kept();
   void note_recording();
   void end_recording();
@@ -93,6 +101,10 @@ private:
   const BenchFile& bench_;
   KeptRunSetup setup_;
   std::optional<Disk> disk_; // nothing: none is kept
+  bus::Participant& participant_;
+  RunStatements stated_;
+  std::vector<LoggedCondition> conditions_before_; // of a run that is resumed
+  std::unique_ptr<ConditionLogger> conditions_;    // nothing: none are logged
   std::string last_line_;
   std::size_t noted_results_ = 0;
   bool noted_problem_ = false;

@@ -18,6 +18,7 @@
 #include "services/records/provenance/result_provenance.hpp"
 #include "services/views/document/pdf.hpp"
 #include "services/views/document/report_document.hpp"
+#include "services/views/report/amendments.hpp"
 
 namespace dyncal::inline programs {
 namespace {
@@ -74,6 +75,8 @@ Expected<ReportContents> gather(const ReportOptions& report, const std::string& 
     DYNCAL_TRY(require_proof(request.held));
   } else {
     DYNCAL_TRY(request.held.result, read_values(request.run));
+    DYNCAL_TRY(auto journal, read_journal(request.run));
+    add_journal(std::move(journal), request.held.result);
   }
   DYNCAL_TRY(request.sensor, sensor_of_run(report.sensor, request.held.result, place));
   return gather_report(request);

@@ -28,6 +28,7 @@
 #include "services/programs/command/progress_line.hpp"
 #include "services/programs/command/required_check.hpp"
 #include "services/programs/command/run_again.hpp"
+#include "services/programs/command/run_end_hook.hpp"
 #include "services/records/run_folder/folder_access.hpp"
 #include "services/records/run_folder/run_folder.hpp"
 #include "services/records/store/store.hpp"
@@ -53,6 +54,8 @@ void add_run(CLI::App& command, RunOptions& run) {
   command.add_option("--without-check", run.without_check,
                      "begin without the check that the bench file demands; the reason is in the "
                      "result and in its documents");
+  add_operator_option(command, run.conducted_by);
+  command.add_option("--comment", run.comment, "a line about the run, for result and documents");
   command.add_option("--output", run.output, "write the result to this file as JSON");
   add_figure_options(command, run.figures);
   run.keep.folder = "runs";
@@ -95,7 +98,6 @@ void show_notice(const ShowProgress& show, const std::string& sentence) {
 struct ConductedRun {
   RunOutcome outcome;
   std::unique_ptr<KeptRun> kept;
-  std::optional<DailyCheck> check; // nothing: the bench demands none
 };
 
 // Nothing: the bench demands none.
@@ -109,14 +111,14 @@ std::optional<CheckDemand> check_demand(const Conduct& run) {
                      run.command.without_check};
 }
 
-// Before anything else that is looked at when the sources are known. `check` outlives the run.
-RunKeeping keeping_with_check(const Conduct& run, KeptRun& kept, std::optional<DailyCheck>& check) {
+// Before anything else that is looked at when the sources are known.
+RunKeeping keeping_with_check(const Conduct& run, KeptRun& kept) {
   RunKeeping keeping = kept.keeping();
   if (const auto demand = check_demand(run)) {
-    keeping.check = [&kept, &check, demand = *demand,
+    keeping.check = [&kept, demand = *demand,
                      next = std::move(keeping.check)](const RunOutcome& planned) -> Expected<void> {
-      DYNCAL_TRY(check, require_check(demand, planned, utc_now_ns()));
-      kept.set_check(*check);
+      DYNCAL_TRY(const auto check, require_check(demand, planned, utc_now_ns()));
+      kept.set_check(check);
       return next ? next(planned) : Expected<void>{};
     };
   }
@@ -130,6 +132,8 @@ Expected<ConductedRun> conduct(const Conduct& run, const std::string& text) {
   DYNCAL_TRY(auto kept, KeptRun::open(run.command.keep, run.bench,
                                       {.run = text,
                                        .is_resumed = resumes,
+                                       .conducted_by = acting_person(run.command.conducted_by),
+                                       .comment = one_line(run.command.comment),
                                        .adc_file = adc_file_of(run.bench),
                                        .dds = run.network.dds,
                                        .domain = run.network.domain,
@@ -142,9 +146,8 @@ Expected<ConductedRun> conduct(const Conduct& run, const std::string& text) {
     kept->note(progress);
     run.show(progress);
   };
-  std::optional<DailyCheck> check;
   RunController controller(run.participant, run.bench, text, show);
-  controller.set_keeping(keeping_with_check(run, *kept, check));
+  controller.set_keeping(keeping_with_check(run, *kept));
   auto outcome =
       resumes ? controller.resume(run.adc, run.stop) : controller.conduct(run.adc, run.stop);
   if (!outcome) {
@@ -154,7 +157,7 @@ Expected<ConductedRun> conduct(const Conduct& run, const std::string& text) {
     return fail(outcome.error());
   }
   outcome->adc_file = adc_file_of(run.bench);
-  return ConductedRun{std::move(*outcome), std::move(kept), std::move(check)};
+  return ConductedRun{std::move(*outcome), std::move(kept)};
 }
 
 // Every attempt is a run of its own.
@@ -262,7 +265,7 @@ Expected<void> show_and_keep(const Conduct& conduct, ConductedRun& run) {
   auto statuses = conduct.participant.reader(bus::topics::service_status, conduct.bench.bench,
                                              std::make_shared<bus::WakeUp>());
   const auto kept = run.kept->finish(run.outcome);
-  auto shown = show_outcome(run.outcome, command.output, command.figures, run.check);
+  auto shown = show_outcome(run.outcome, command.output, command.figures, run.kept->statements());
   if (const auto folder = run.kept->folder(); folder && kept) {
     fmt::print("kept in {}\n", folder->string());
     std::fflush(stdout);
@@ -280,6 +283,18 @@ Expected<void> show_and_keep(const Conduct& conduct, ConductedRun& run) {
     take_words_of_guards(*statuses, conduct.bench, run.outcome);
   }
   return done;
+}
+
+// The last, and it changes nothing.
+void tell_end(const BenchFile& bench, ConductedRun& run) {
+  const auto told =
+      run_end_hook(bench.text, run.outcome, run.kept->folder().value_or(std::filesystem::path()));
+  if (!told) {
+    const std::string sentence =
+        "the command at the end of the run (on_end): " + told.error().message;
+    run.kept->log(sentence);
+    fmt::print(stderr, "dyncal: {}\n", one_line(sentence));
+  }
 }
 
 // What this host hears instead of an analysis, in brackets. `links` as they were at the beginning.
@@ -373,6 +388,9 @@ Expected<RunOutcome> conduct_run(const RunOptions& command, const std::stop_toke
   auto run = conduct_as_asked(conduct);
   progress.end();
   const auto shown = run ? show_and_keep(conduct, *run) : fail(run.error());
+  if (run) {
+    tell_end(bench, *run);
+  }
   auto heard = (*joined)->outcome(shown);
   if (!heard && newest.misses_analysis) {
     joined->reset(); // what is looked for may be in its way

@@ -22,7 +22,9 @@ struct RunOptions {
   FigureFiles figures;                         // folder
   bool wait = false;                           // for the end of another run of the bench
   std::string without_check; // why a check that the bench demands is left out; empty: it is not
-  std::string resume;        // the run to go on with, the newest of that name; empty: a new one
+  std::string conducted_by;  // the name of the operator; empty: not stated
+  std::string comment;
+  std::string resume; // the run to go on with, the newest of that name; empty: a new one
   KeepOptions keep;
   NetworkOptions network;
 };

@@ -62,6 +62,8 @@ Json run_json(const StoredRun& run) {
             {"recipe_sha256", run.recipe_sha256},
             {"result_sha256", run.result_sha256},
             {"folder", run.folder},
+            {"conducted_by", text_or_null(run.conducted_by)},
+            {"amendments", run.amendments},
             {"sources", Json::array()}};
   for (const RunSource& source : run.sources) {
     json["sources"].push_back({{"source", source.source},
@@ -73,14 +75,21 @@ Json run_json(const StoredRun& run) {
 }
 
 void print_table(const std::vector<StoredRun>& runs) {
-  fmt::print("{:<20} {:<16} {:<26} {:<12} {:>9}  {}\n", "begin (UTC)", "bench", "run", "state",
-             "steps", "sources");
+  fmt::print("{:<20} {:<16} {:<26} {:<12} {:>9}  {:<16} {}\n", "begin (UTC)", "bench", "run",
+             "state", "steps", "operator", "sources");
   for (const StoredRun& run : runs) {
-    fmt::print("{:<20} {:<16} {:<26} {:<12} {:>9}  {}\n",
+    fmt::print("{:<20} {:<16} {:<26} {:<12} {:>9}  {:<16} {}\n",
                run.began_utc.empty() ? "-" : one_line(run.began_utc.substr(0, 19)) + "Z",
                one_line(run.bench), one_line(RunIdentity::parse(run.run).name), one_line(run.state),
                fmt::format("{}/{}", run.measured_steps, run.planned_steps),
+               run.conducted_by.empty() ? "-" : one_line(run.conducted_by),
                one_line(sensors_text(run)));
+  }
+  for (const StoredRun& run : runs) {
+    for (const std::string& sentence : run.amendments) {
+      fmt::print("{}, {}: {}\n", one_line(run.bench), one_line(RunIdentity::parse(run.run).name),
+                 one_line(sentence));
+    }
   }
 }
 

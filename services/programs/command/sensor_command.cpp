@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include "services/base/acting_person.hpp"
 #include "services/base/json_text.hpp"
 #include "services/base/printable_text.hpp"
 #include "services/base/whole_file.hpp"
@@ -59,7 +60,7 @@ Expected<void> keep(const SensorAddOptions& options,
                     const std::vector<std::pair<std::filesystem::path, std::string>>& texts) {
   DYNCAL_TRY(auto library, SensorLibrary::open(options.store.text()));
   for (const auto& [path, text] : texts) {
-    DYNCAL_TRY(const auto addition, library->add(text, path, options.change));
+    DYNCAL_TRY(const auto addition, library->add(text, path, options.change, acting_person()));
     DYNCAL_TRY(const auto sensor, parse_sensor_file(text, path));
     fmt::print("{}: {}\n", one_line(sensor.serial), addition_text(addition));
   }

@@ -19,7 +19,9 @@
 #include "services/programs/command/work_progress.hpp"
 #include "services/records/provenance/result_provenance.hpp"
 #include "services/records/store/document_register.hpp"
+#include "services/records/store/store.hpp"
 #include "services/views/certificate/verification.hpp"
+#include "services/views/report/amendments.hpp"
 
 namespace dyncal::inline programs {
 namespace {
@@ -53,6 +55,20 @@ std::string what_was_issued(const IssuedDocument& document) {
                      document.kind, document.run, document.bench, document.issued_utc);
 }
 
+// What was amended of its run after it was issued; empty: nothing.
+Expected<std::string> corrected_since(const IssuedDocument& document, const std::string& place) {
+  constexpr std::size_t seconds_length = 19; // "2026-03-01T12:00:00"
+  DYNCAL_TRY(const auto store, Store::open_existing(place));
+  DYNCAL_TRY(auto entries, store->entries_of(document.bench, document.run));
+  std::erase_if(entries, [&](const JournalEntry& entry) {
+    return entry.utc.substr(0, seconds_length) <= document.issued_utc.substr(0, seconds_length);
+  });
+  const auto sentences = amendment_sentences(entries);
+  return sentences.empty() ? ""
+                           : fmt::format("; corrected since, so that a revision is due: {}",
+                                         fmt::join(sentences, "; "));
+}
+
 // Of a file that the register does not know nothing is said, if it can be asked otherwise.
 Expected<std::optional<VerificationFinding>> said_by_register(const std::string& bytes,
                                                               const std::string& place) {
@@ -72,7 +88,9 @@ Expected<std::optional<VerificationFinding>> said_by_register(const std::string&
         fmt::format("{}; {} has taken its place", what_was_issued(*document), replacement)};
   }
   if (document) {
-    return VerificationFinding{Verification::issued, true, what_was_issued(*document)};
+    DYNCAL_TRY(const auto corrections, corrected_since(*document, place));
+    return VerificationFinding{Verification::issued, corrections.empty(),
+                               what_was_issued(*document) + corrections};
   }
   if (!is_pdf(bytes)) {
     return std::nullopt;

@@ -1,5 +1,7 @@
 #include "services/records/provenance/result_provenance.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -7,6 +9,7 @@
 #include "services/records/provenance/repeated_evaluation.hpp"
 #include "services/records/store/store.hpp"
 #include "services/views/language/statement_sentences.hpp"
+#include "services/views/report/amendments.hpp"
 #include "services/views/report/mean_check.hpp"
 
 namespace dyncal::inline records {
@@ -40,6 +43,45 @@ Expected<TranslatedText> said_by_store(const StoredResult& result, const std::st
         language == Language::english ? kept->since_utc : instant_text(language, kept->since_utc),
         result.sha256.substr(0, shown_of_hash));
   });
+}
+
+// Of the run folder; of a result file, those that the store has. Whoever can write the folder can
+// write a line: the store is what proves an amendment.
+Expected<std::vector<JournalEntry>> held_journal(const std::filesystem::path& run,
+                                                 const std::string& place, HeldResult& held) {
+  std::error_code unknown;
+  const StoredResult& result = held.result;
+  std::vector<JournalEntry> kept;
+  if (!place.empty() && (is_server(place) || std::filesystem::exists(place, unknown))) {
+    DYNCAL_TRY(const auto store, Store::open_existing(place));
+    DYNCAL_TRY(kept, store->entries_of(result.bench, result.run));
+  }
+  if (!std::filesystem::is_directory(run, unknown)) {
+    return kept;
+  }
+  DYNCAL_TRY(auto journal, read_journal(run));
+  const auto is_in = [](const std::vector<JournalEntry>& entries, const JournalEntry& wanted) {
+    return std::ranges::any_of(entries, [line = line_of(wanted)](const JournalEntry& one) {
+      return line_of(one) == line;
+    });
+  };
+  for (const JournalEntry& entry : kept) {
+    if (!is_in(journal, entry)) {
+      return fail(ErrorCode::no_result,
+                  fmt::format("{}: lacks the {} of {} that the store has of run '{}', or has it "
+                              "otherwise: it was changed; take it from a back-up",
+                              (run / journal_file_name).string(), kind_name(entry.kind), entry.utc,
+                              result.run));
+    }
+  }
+  for (const JournalEntry& entry : journal) {
+    if (entry.kind == JournalKind::amendment && !is_in(kept, entry)) {
+      held.objections.push_back(fmt::format("the store does not have the amendment of {} ('dyncal "
+                                            "store add {}')",
+                                            entry.utc, run.string()));
+    }
+  }
+  return journal;
 }
 
 TranslatedText said_of_mountings(const StoredResult& result) {
@@ -93,10 +135,8 @@ bool ends_it(const Expected<RepeatedEvaluation>& repeated) {
                        repeated.error().code == ErrorCode::interrupted);
 }
 
-} // namespace
-
-Expected<HeldResult> read_held_result(const std::filesystem::path& run, const std::string& store,
-                                      const SharedWorkCount& count, const std::stop_token& stop) {
+Expected<HeldResult> read_held_file(const std::filesystem::path& run, const std::string& store,
+                                    const SharedWorkCount& count, const std::stop_token& stop) {
   HeldResult held;
   DYNCAL_TRY(held.result, read_values(run));
   const StoredResult& result = held.result;
@@ -127,6 +167,16 @@ Expected<HeldResult> read_held_result(const std::filesystem::path& run, const st
   } else {
     held.statements.push_back(sentences::no_recording.translated());
   }
+  return held;
+}
+
+} // namespace
+
+Expected<HeldResult> read_held_result(const std::filesystem::path& run, const std::string& store,
+                                      const SharedWorkCount& count, const std::stop_token& stop) {
+  DYNCAL_TRY(auto held, read_held_file(run, store, count, stop));
+  DYNCAL_TRY(auto journal, held_journal(run, store, held));
+  add_journal(std::move(journal), held.result);
   return held;
 }
 

@@ -3,7 +3,9 @@
 // Three things are asked: are its means those of its single results (views/report/mean_check.hpp);
 // is it the file that the store has of its run, by SHA-256; does the recording in its run folder,
 // evaluated once more, give the same (repeated_evaluation.hpp). What contradicts it makes it fail
-// (no_result). What cannot be asked is an objection only where nothing else speaks for the file.
+// (no_result). The journal of the run is that of its folder, and the store must not have more of
+// it; an amendment that the store does not have is an objection. What cannot be asked is an
+// objection only where nothing else speaks for the file.
 //
 // Fails (bad_file) as stores do, (interrupted). Blocks; belongs to one thread.
 #pragma once

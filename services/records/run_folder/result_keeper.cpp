@@ -36,14 +36,19 @@ ResultKeeper::~ResultKeeper() {
   stop();
 }
 
-void ResultKeeper::set_check(DailyCheck check) {
-  const std::lock_guard writing(writing_);
-  check_ = std::move(check);
+void ResultKeeper::set_statements(RunStatements stated) {
+  const std::lock_guard lock(mutex_); // not that of the disk
+  stated_ = std::move(stated);
 }
 
-// REQUIRES: writing_ is locked.
+RunStatements ResultKeeper::statements() const {
+  const std::lock_guard lock(mutex_);
+  return stated_;
+}
+
+// REQUIRES: writing_ is locked, mutex_ is not.
 Expected<void> ResultKeeper::write(const RunOutcome& state) {
-  return write_json(path_, result_json(state, check_));
+  return write_json(path_, result_json(state, statements()));
 }
 
 Expected<void> ResultKeeper::begin(RunOutcome planned) {
@@ -99,7 +104,7 @@ void ResultKeeper::stop() {
 
 Expected<void> ResultKeeper::finish(const RunOutcome& outcome) {
   stop();
-  auto written = write_results(outcome, path_, check_);
+  auto written = write_results(outcome, path_, statements());
   if (written) {
     const std::lock_guard lock(mutex_);
     results_kept_ = outcome.results.size();

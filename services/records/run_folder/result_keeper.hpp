@@ -18,7 +18,7 @@
 
 #include "services/base/error.hpp"
 #include "services/evaluation/result/run_outcome.hpp"
-#include "services/views/report/daily_check.hpp"
+#include "services/views/report/run_statements.hpp"
 
 namespace dyncal::inline records {
 
@@ -29,8 +29,8 @@ public:
   ResultKeeper(const ResultKeeper&) = delete;
   ResultKeeper& operator=(const ResultKeeper&) = delete;
 
-  // Into all files from now on. Before begin().
-  void set_check(DailyCheck check);
+  // Into all files from now on.
+  void set_statements(RunStatements stated);
   // Before the first step, by the caller's thread. Fails (bad_file) when it cannot be written.
   [[nodiscard]] Expected<void> begin(RunOutcome planned);
   // The state of a run that goes on.
@@ -47,13 +47,14 @@ public:
 private:
   void write_newest(const std::stop_token& stop);
   [[nodiscard]] Expected<void> write(const RunOutcome& state);
+  [[nodiscard]] RunStatements statements() const;
 
   const std::filesystem::path path_;
   std::mutex writing_; // of the file; taken before the other where both are
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;
   std::optional<RunOutcome> newest_; // not yet written
-  std::optional<DailyCheck> check_;
+  RunStatements stated_;
   std::size_t results_kept_ = 0;
   std::optional<Error> problem_;
   std::jthread thread_; // the last member: it ends before what it uses

@@ -18,6 +18,13 @@ Expected<void> Database::transaction(const std::function<Expected<void>()>& writ
   return {};
 }
 
+Expected<void> Database::make_append_only(const std::string& table) {
+  for (const std::string& statement : append_only_statements(table)) {
+    DYNCAL_TRY(execute(statement));
+  }
+  return {};
+}
+
 bool is_server(const std::string& place) {
   return place.starts_with("postgresql://") || place.starts_with("postgres://") ||
          place.find("dbname=") != std::string::npos;

@@ -38,8 +38,12 @@ public:
   // All that `write` does, or nothing of it where it fails or the program dies. One writer at a
   // time.
   [[nodiscard]] Expected<void> transaction(const std::function<Expected<void>()>& write);
+  // From now on the table refuses every change of a row and every removal. In a transaction.
+  [[nodiscard]] Expected<void> make_append_only(const std::string& table);
 
 private:
+  [[nodiscard]] virtual std::vector<std::string>
+  append_only_statements(const std::string& table) const = 0;
   virtual Expected<void> begin_writing() = 0;
 };
 

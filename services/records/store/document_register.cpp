@@ -7,6 +7,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include "services/records/store/audit_trail.hpp"
 #include "services/records/store/migrations.hpp"
 
 namespace dyncal::inline records {
@@ -86,7 +87,7 @@ Expected<void> DocumentRegister::check(const IssuedDocument& document) {
   return document.replaces.empty() ? Expected<void>{} : check_replaced(document);
 }
 
-Expected<void> DocumentRegister::enter(const IssuedDocument& document) {
+Expected<void> DocumentRegister::enter(const IssuedDocument& document, const ActingPerson& by) {
   const std::string now = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
   return database_->transaction([&]() -> Expected<void> {
     DYNCAL_TRY(check(document));
@@ -97,13 +98,25 @@ Expected<void> DocumentRegister::enter(const IssuedDocument& document) {
         {document.sha256, document.number, document.kind, document.identifier, document.replaces,
          now, document.result_sha256, document.bench, document.run, document.serial,
          document.file}));
-    return {};
+    return add_to_audit(*database_,
+                        {AuditAction::document_issued, document.sha256,
+                         fmt::format("{} {} of run {} of bench {}, {}", document.kind,
+                                     document.number, document.run, document.bench, document.file)},
+                        by);
   });
 }
 
 Expected<std::optional<IssuedDocument>> DocumentRegister::find_file(const std::string& sha256) {
   DYNCAL_TRY(auto found, where("document_sha256", sha256));
   return found.empty() ? std::nullopt : std::optional(std::move(found.front()));
+}
+
+Expected<std::vector<IssuedDocument>> DocumentRegister::of_run(const std::string& bench,
+                                                               const std::string& run) {
+  DYNCAL_TRY(auto documents, where("run", run));
+  std::erase_if(documents, [&](const IssuedDocument& one) { return one.bench != bench; });
+  std::ranges::stable_sort(documents, {}, &IssuedDocument::issued_utc);
+  return documents;
 }
 
 Expected<std::string> DocumentRegister::replacement_of(const std::string& number) {

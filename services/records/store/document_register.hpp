@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "services/base/acting_person.hpp"
 #include "services/base/error.hpp"
 #include "services/records/store/database.hpp"
 
@@ -39,7 +40,11 @@ public:
 
   // Before its file is written: a number that was given to nothing does less harm than a document
   // that nobody knows.
-  [[nodiscard]] Expected<void> enter(const IssuedDocument& document);
+  [[nodiscard]] Expected<void> enter(const IssuedDocument& document,
+                                     const ActingPerson& by = acting_person());
+  // Of all results of a run, in the order of issue.
+  [[nodiscard]] Expected<std::vector<IssuedDocument>> of_run(const std::string& bench,
+                                                             const std::string& run);
   [[nodiscard]] Expected<std::optional<IssuedDocument>> find_file(const std::string& sha256);
   // Of each kind at most one.
   [[nodiscard]] Expected<std::vector<IssuedDocument>> of_number(const std::string& number) {

@@ -166,6 +166,18 @@ private:
     });
     return begun ? Expected<void>{} : fail(begun.error());
   }
+  [[nodiscard]] std::vector<std::string>
+  append_only_statements(const std::string& table) const override {
+    return {fmt::format("CREATE FUNCTION {0}_refuse_change() RETURNS trigger LANGUAGE plpgsql AS "
+                        "'BEGIN RAISE EXCEPTION ''{0} is append-only''; END'",
+                        table),
+            fmt::format("CREATE TRIGGER {0}_refuses_change BEFORE UPDATE OR DELETE ON {0} FOR EACH "
+                        "ROW EXECUTE PROCEDURE {0}_refuse_change()",
+                        table),
+            fmt::format("CREATE TRIGGER {0}_refuses_truncate BEFORE TRUNCATE ON {0} FOR EACH "
+                        "STATEMENT EXECUTE PROCEDURE {0}_refuse_change()",
+                        table)};
+  }
   [[nodiscard]] Error no_answer() const {
     return {ErrorCode::bad_file,
             fmt::format("{}: the store has not answered within {} s; is its server, or the network "

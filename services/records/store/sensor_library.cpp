@@ -6,6 +6,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include "services/records/store/audit_trail.hpp"
 #include "services/records/store/migrations.hpp"
 
 namespace dyncal::inline records {
@@ -40,7 +41,8 @@ Expected<std::unique_ptr<SensorLibrary>> SensorLibrary::open(const std::string& 
 }
 
 Expected<SensorAddition> SensorLibrary::add(const std::string& text,
-                                            const std::filesystem::path& path, bool may_change) {
+                                            const std::filesystem::path& path, bool may_change,
+                                            const ActingPerson& by) {
   DYNCAL_TRY(const auto sensor, parse_sensor_file(text, path));
   if (const std::string part = passing_part(sensor); !part.empty()) {
     return fail(ErrorCode::bad_file,
@@ -64,10 +66,14 @@ Expected<SensorAddition> SensorLibrary::add(const std::string& text,
                               sensor.serial));
     }
     addition = known ? SensorAddition::changed : SensorAddition::added;
+    const int version = known ? known->version + 1 : 1;
     DYNCAL_TRY(database_->execute(
         "INSERT INTO sensors (serial, version, added_utc, file) VALUES ($1, $2, $3, $4)",
-        {sensor.serial, std::int64_t{known ? known->version + 1 : 1}, now, text}));
-    return {};
+        {sensor.serial, std::int64_t{version}, now, text}));
+    return add_to_audit(*database_,
+                        {AuditAction::sensor_changed, sensor.serial,
+                         fmt::format("file of sensor {}, version {}", sensor.serial, version)},
+                        by);
   });
   DYNCAL_TRY(kept);
   return addition;

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "services/base/acting_person.hpp"
 #include "services/base/error.hpp"
 #include "services/records/store/database.hpp"
 #include "services/views/lab_file/sensor_file.hpp"
@@ -36,9 +37,10 @@ public:
   [[nodiscard]] static Expected<std::unique_ptr<SensorLibrary>> open(const std::string& place);
 
   // `path` is for messages. A sensor that is there with another file is changed only if that is
-  // asked for.
+  // asked for. `by`: for the audit trail.
   [[nodiscard]] Expected<SensorAddition> add(const std::string& text,
-                                             const std::filesystem::path& path, bool may_change);
+                                             const std::filesystem::path& path, bool may_change,
+                                             const ActingPerson& by = {});
   // Nothing: none has this serial number.
   [[nodiscard]] Expected<std::optional<LibrarySensor>> find(const std::string& serial);
   // The newest version of each, by serial number.

@@ -85,6 +85,16 @@ private:
     const auto begun = execute("BEGIN IMMEDIATE");
     return begun ? Expected<void>{} : fail(begun.error());
   }
+  [[nodiscard]] std::vector<std::string>
+  append_only_statements(const std::string& table) const override {
+    std::vector<std::string> statements;
+    for (const char* change : {"UPDATE", "DELETE"}) {
+      statements.push_back(fmt::format("CREATE TRIGGER {}_refuses_{} BEFORE {} ON {} BEGIN SELECT "
+                                       "RAISE(ABORT, '{} is append-only'); END",
+                                       table, change, change, table, table));
+    }
+    return statements;
+  }
   [[nodiscard]] Error error() const {
     return {ErrorCode::bad_file,
             fmt::format("{}: the store cannot be used ({})", path_, sqlite3_errmsg(handle_.get()))};

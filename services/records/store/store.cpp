@@ -1,17 +1,15 @@
 #include "services/records/store/store.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <ctime>
-#include <iterator>
 #include <sstream>
+#include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "services/base/per_enumerator.hpp"
 #include "services/records/store/migrations.hpp"
+#include "services/records/store/result_rows.hpp"
+#include "services/views/report/amendments.hpp"
 #include "services/views/report/mean_check.hpp"
 
 namespace dyncal::inline records {
@@ -19,20 +17,6 @@ namespace {
 
 // What `dyncal analyse` calls a run of files: the name says nothing, the time of the records does.
 constexpr const char* run_of_files = "files";
-
-std::string now_utc() {
-  const std::time_t now = std::time(nullptr);
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  std::array<char, 32> text{};
-  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
-  return text.data();
-}
-
-// The store knows no NaN.
-DatabaseValue value(double number) {
-  return number == number ? DatabaseValue(number) : DatabaseValue(std::monostate{});
-}
 
 StoredRun run_of(const DatabaseRow& row) {
   return {.bench = text_of(row[0]),
@@ -48,12 +32,13 @@ StoredRun run_of(const DatabaseRow& row) {
           .measured_steps = integer_of(row[10]),
           .problem = text_of(row[11]),
           .folder = text_of(row[12]),
+          .conducted_by = text_of(row[13]),
           .sources = {}};
 }
 
 constexpr const char* select_runs =
     "SELECT bench, run, state, began_utc, ended_utc, method, software, recipe_sha256, "
-    "result_sha256, planned_steps, measured_steps, problem, folder FROM results "
+    "result_sha256, planned_steps, measured_steps, problem, folder, operator FROM results "
     "ORDER BY began_utc, added_utc, result_sha256";
 
 bool is_sensor(const RunSource& source, const std::string& sensor) {
@@ -75,10 +60,6 @@ bool passes(const StoredRun& run, const RunFilter& filter) {
   return has_sensor && is_within(run.began_utc, filter) &&
          (filter.bench.empty() || run.bench == filter.bench) &&
          (filter.state.empty() || run.state == filter.state);
-}
-
-std::string source_of(const std::string& channel) {
-  return channel.substr(0, channel.find('/'));
 }
 
 // Of "samples_lost,over_range".
@@ -126,15 +107,35 @@ Expected<std::unique_ptr<Store>> Store::open_existing(const std::string& place) 
   return open(place);
 }
 
-Expected<StoreAddition> Store::add(const std::filesystem::path& path) {
+Expected<StoreAddition> Store::add(const std::filesystem::path& path, const ActingPerson& by) {
   DYNCAL_TRY(const auto record, read_result_record(path));
   DYNCAL_TRY(check_means(record.result));
+  std::error_code unknown;
+  std::vector<JournalEntry> entries;
+  if (std::filesystem::is_directory(path, unknown)) {
+    DYNCAL_TRY(entries, read_journal(path));
+  }
   StoreAddition addition = StoreAddition::added;
   const auto written = database_->transaction([&]() -> Expected<void> {
-    DYNCAL_TRY(addition, make_way(record));
-    return addition == StoreAddition::already_there ? Expected<void>{} : insert(record);
+    DYNCAL_TRY(addition, add_result(record, by));
+    return insert_entries(*database_, record.result.bench, record.result.run, entries, by);
   });
   DYNCAL_TRY(written);
+  return addition;
+}
+
+Expected<StoreAddition> Store::add_result(const ResultRecord& record, const ActingPerson& by) {
+  DYNCAL_TRY(const auto addition, make_way(record, by));
+  if (addition == StoreAddition::already_there) {
+    return addition;
+  }
+  DYNCAL_TRY(insert_result(*database_, record));
+  DYNCAL_TRY(
+      add_to_audit(*database_,
+                   {AuditAction::result_added, record.result.sha256,
+                    fmt::format("result of run {} of bench {} ({}), {}", record.result.run,
+                                record.result.bench, to_string(record.state), record.folder)},
+                   by));
   return addition;
 }
 
@@ -160,7 +161,7 @@ Expected<std::optional<KeptHash>> Store::hash_of(const StoredResult& result) {
 }
 
 // What becomes of the record, beside those of its run that are there.
-Expected<StoreAddition> Store::make_way(const ResultRecord& record) {
+Expected<StoreAddition> Store::make_way(const ResultRecord& record, const ActingPerson& by) {
   const StoredResult& result = record.result;
   DYNCAL_TRY(const auto rows,
              database_->execute(
@@ -180,89 +181,15 @@ Expected<StoreAddition> Store::make_way(const ResultRecord& record) {
     if (text_of(row[3]) != to_string(RunCompletion::unfinished)) {
       return fail(other_result(record, row));
     }
-    DYNCAL_TRY(remove(text_of(row[0])));
+    DYNCAL_TRY(remove_result(*database_, text_of(row[0])));
+    DYNCAL_TRY(add_to_audit(
+        *database_,
+        {AuditAction::result_removed, text_of(row[0]),
+         fmt::format("result of run {} of bench {} before it had ended", result.run, result.bench)},
+        by));
     return StoreAddition::replaced_unfinished;
   }
   return StoreAddition::added;
-}
-
-Expected<void> Store::insert(const ResultRecord& record) {
-  const StoredResult& result = record.result;
-  const auto done = database_->execute(
-      "INSERT INTO results (result_sha256, content_sha256, recipe_sha256, bench, run, state, "
-      "method, began_utc, ended_utc, software, planned_steps, measured_steps, problem, recipe, "
-      "folder, added_utc, document) "
-      "VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16, $17)",
-      {result.sha256, result.content_sha256, result.recipe_sha256, result.bench, result.run,
-       to_string(record.state), result.method, result.began_utc, result.ended_utc, result.software,
-       std::int64_t{result.planned_steps}, record.measured_steps, result.problem, result.recipe,
-       record.folder, now_utc(), record.document});
-  DYNCAL_TRY(done);
-  for (const RunSource& source : result.sources) {
-    const auto inserted = database_->execute(
-        "INSERT INTO sources (result_sha256, source, device, serial, firmware, software) "
-        "VALUES ($1, $2, $3, $4, $5, $6)",
-        {result.sha256, source.source, source.description.device, source.description.serial,
-         source.description.firmware, source.software});
-    DYNCAL_TRY(inserted);
-  }
-  return insert_values(result).and_then([&] { return insert_closures(result); });
-}
-
-Expected<void> Store::insert_values(const StoredResult& result) {
-  for (const StoredValue& point : result.values) {
-    const auto inserted = database_->execute(
-        "INSERT INTO points (result_sha256, source, channel, frequency_text_hz, frequency_hz, "
-        "level_m_s2, unit, magnitude, u_magnitude, k_magnitude, expanded_magnitude, phase_rad, "
-        "u_phase_rad, k_phase, expanded_phase_rad, flags, excited_axis) "
-        "VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16, $17)",
-        {result.sha256, source_of(point.channel), point.channel, point.frequency_text_hz,
-         point.frequency_hz, value(point.level_m_s2), point.unit, value(point.magnitude),
-         value(point.of_magnitude.u), value(point.of_magnitude.k),
-         value(point.of_magnitude.expanded), value(point.phase_rad), value(point.of_phase.u),
-         value(point.of_phase.k), value(point.of_phase.expanded),
-         fmt::format("{}", fmt::join(point.flag_names, ",")), point.excited_axis});
-    DYNCAL_TRY(inserted);
-  }
-  for (const StoredPoint& point : result.points) {
-    if (point.data_sha256.empty()) {
-      continue;
-    }
-    const auto inserted = database_->execute(
-        "INSERT INTO samples (result_sha256, channel, step, repetition, data_sha256, "
-        "frequency_hz, level_m_s2, excited_axis, attempt) "
-        "VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9)",
-        {result.sha256, point.channel, std::int64_t{point.step}, std::int64_t{point.repetition},
-         point.data_sha256, point.frequency_hz, value(point.level_m_s2), point.excited_axis,
-         std::int64_t{point.attempt}});
-    DYNCAL_TRY(inserted);
-  }
-  return {};
-}
-
-Expected<void> Store::insert_closures(const StoredResult& result) {
-  for (const StoredChannel& channel : result.channels) {
-    for (const Closure& closure : channel.closures) {
-      const auto inserted = database_->execute(
-          "INSERT INTO closures (result_sha256, source, channel, kind, subject, verdict, found, u, "
-          "bound, unit, sentence) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11)",
-          {result.sha256, source_of(channel.channel), channel.channel,
-           std::string(to_string(closure.kind)), closure.subject,
-           std::string(to_string(closure.verdict)), value(closure.value), value(closure.u),
-           value(closure.limit), closure.unit, closure.sentence});
-      DYNCAL_TRY(inserted);
-    }
-  }
-  return {};
-}
-
-Expected<void> Store::remove(const std::string& result_sha256) {
-  for (const char* table : {"closures", "samples", "points", "sources", "results"}) {
-    const auto removed = database_->execute(
-        fmt::format("DELETE FROM {} WHERE result_sha256 = $1", table), {result_sha256});
-    DYNCAL_TRY(removed);
-  }
-  return {};
 }
 
 Expected<std::vector<StoredRun>> Store::runs(const RunFilter& filter,
@@ -273,12 +200,33 @@ Expected<std::vector<StoredRun>> Store::runs(const RunFilter& filter,
   for (const DatabaseRow& row : rows) {
     StoredRun run = run_of(row);
     DYNCAL_TRY(run.sources, sources_of(run.result_sha256));
-    if (passes(run, filter)) {
-      found.push_back(std::move(run));
-    }
+    found.push_back(std::move(run));
     add_done(count);
   }
+  DYNCAL_TRY(amend(found));
+  std::erase_if(found, [&](const StoredRun& run) { return !passes(run, filter); });
   return found;
+}
+
+Expected<void> Store::add_entries(const std::string& bench, const std::string& run,
+                                  const std::vector<JournalEntry>& entries,
+                                  const ActingPerson& by) {
+  return database_->transaction(
+      [&] { return insert_entries(*database_, bench, run, entries, by); });
+}
+
+// As the journals of the runs correct them.
+Expected<void> Store::amend(std::vector<StoredRun>& runs) {
+  DYNCAL_TRY(const auto journals, amendments_by_run(*database_));
+  for (StoredRun& run : runs) {
+    const auto journal = journals.find({run.bench, run.run});
+    if (journal != journals.end()) {
+      amend_sources(journal->second, run.sources);
+      run.conducted_by = amended(journal->second, "operator").value_or(run.conducted_by);
+      run.amendments = amendment_sentences(journal->second);
+    }
+  }
+  return {};
 }
 
 Expected<std::vector<RunSource>> Store::sources_of(const std::string& result_sha256) {

@@ -15,11 +15,15 @@
 #include <string>
 #include <vector>
 
+#include "services/base/acting_person.hpp"
 #include "services/base/error.hpp"
 #include "services/base/work_count.hpp"
+#include "services/records/store/audit_trail.hpp"
 #include "services/records/store/database.hpp"
 #include "services/records/store/result_record.hpp"
+#include "services/records/store/run_entries.hpp"
 #include "services/views/report/common_part.hpp"
+#include "services/views/report/run_journal.hpp"
 
 namespace dyncal::inline records {
 
@@ -44,7 +48,9 @@ struct StoredRun {
   std::int64_t measured_steps = 0;
   std::string problem;
   std::string folder;
+  std::string conducted_by{}; // "A. Meter (meter on lab3)"; empty: not known
   std::vector<RunSource> sources;
+  std::vector<std::string> amendments{}; // sentences; what they correct is corrected here
 };
 
 struct RunFilter { // empty: any
@@ -81,8 +87,21 @@ public:
   // Fails (bad_file) if there is none, for those who only look something up.
   [[nodiscard]] static Expected<std::unique_ptr<Store>> open_existing(const std::string& place);
 
-  // A result file or a run folder.
-  [[nodiscard]] Expected<StoreAddition> add(const std::filesystem::path& path);
+  // A result file, or a run folder with its journal.
+  [[nodiscard]] Expected<StoreAddition> add(const std::filesystem::path& path,
+                                            const ActingPerson& by = acting_person());
+  // Those that it does not have yet.
+  [[nodiscard]] Expected<void> add_entries(const std::string& bench, const std::string& run,
+                                           const std::vector<JournalEntry>& entries,
+                                           const ActingPerson& by = acting_person());
+  [[nodiscard]] Expected<std::vector<JournalEntry>> entries_of(const std::string& bench,
+                                                               const std::string& run) {
+    return records::entries_of(*database_, bench, run);
+  }
+  [[nodiscard]] Expected<std::vector<AuditEntry>> audit() { return audit_entries(*database_); }
+  [[nodiscard]] Expected<std::vector<std::string>> audit_problems() {
+    return records::audit_problems(*database_);
+  }
   // Of the file that is kept of this run by this recipe; nothing: none is.
   [[nodiscard]] Expected<std::optional<KeptHash>> hash_of(const StoredResult& result);
   // By time.
@@ -99,11 +118,9 @@ public:
 
 private:
   explicit Store(std::unique_ptr<Database> database) : database_(std::move(database)) {}
-  Expected<StoreAddition> make_way(const ResultRecord& record);
-  Expected<void> insert(const ResultRecord& record);
-  Expected<void> insert_values(const StoredResult& result);
-  Expected<void> insert_closures(const StoredResult& result);
-  Expected<void> remove(const std::string& result_sha256);
+  Expected<StoreAddition> make_way(const ResultRecord& record, const ActingPerson& by);
+  Expected<StoreAddition> add_result(const ResultRecord& record, const ActingPerson& by);
+  Expected<void> amend(std::vector<StoredRun>& runs);
   Expected<std::vector<RunSource>> sources_of(const std::string& result_sha256);
   Expected<std::vector<StoredValue>> points_of(const std::string& result_sha256,
                                                const std::string& source);

@@ -14,6 +14,7 @@
 #include "services/contract/digest.hpp"
 #include "services/views/certificate/ratio_unit.hpp"
 #include "services/views/conformity/asked_conformity.hpp"
+#include "services/views/lab_file/documented_conditions.hpp"
 #include "services/views/objections/objections.hpp"
 #include "services/views/objections/subject_objections.hpp"
 #include "services/views/report/stated_value.hpp"
@@ -55,6 +56,7 @@ SensorFile described_sensor(const StoredResult& result, const std::string& chann
 Expected<void> gather_sensor(const CertificateRequest& request, CertificateContents& contents) {
   if (request.sensor) {
     contents.sensor = *request.sensor;
+    amend(contents.result.journal, contents.sensor);
     return {};
   }
   contents.sensor = described_sensor(contents.result, contents.channels.front().channel);
@@ -83,8 +85,12 @@ Expected<void> gather_customer(CertificateContents& contents) {
                    "a certificate names its customer, here or in the sensor file");
   }
   contents.customer = of_sensor ? *of_sensor : *of_laboratory;
-  contents.conditions = contents.sensor.conditions.empty() ? contents.laboratory.conditions
-                                                           : contents.sensor.conditions;
+  amend(contents.result.journal, contents.customer);
+  auto documented = documented_conditions(contents.result, contents.sensor.conditions.empty()
+                                                               ? contents.laboratory.conditions
+                                                               : contents.sensor.conditions);
+  contents.conditions = std::move(documented.conditions);
+  contents.condition_origins = std::move(documented.origins);
   return {};
 }
 

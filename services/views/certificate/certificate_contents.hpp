@@ -49,6 +49,7 @@ struct CertificateContents {
   SensorFile sensor;
   Contact customer;
   Conditions conditions;
+  std::vector<TranslatedText> condition_origins; // sentences
   std::vector<CertifiedChannel> channels;
   std::optional<ConformityReport> conformity; // nothing: no tolerances
   std::string number;                         // may be empty

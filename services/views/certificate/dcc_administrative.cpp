@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
@@ -5,6 +7,7 @@
 #include "services/views/certificate/dcc_conformity.hpp"
 #include "services/views/language/certificate_sentences.hpp"
 #include "services/views/language/report_sentences.hpp"
+#include "services/views/report/amendments.hpp"
 #include "services/views/report/daily_check.hpp"
 #include "services/views/report/stated_value.hpp"
 
@@ -91,9 +94,20 @@ void add_laboratory(XmlElement parent, const LaboratoryFile& file) {
   add_contact(laboratory.add("dcc:contact"), file.laboratory);
 }
 
-void add_persons(XmlElement parent, const LaboratoryFile& file) {
+// Who performed the measurement, beside those who are responsible.
+std::vector<Person> persons_of(const CertificateContents& contents) {
+  std::vector<Person> persons = contents.laboratory.persons;
+  const auto& conducted_by = contents.result.conducted_by;
+  if (conducted_by && !conducted_by->name.empty() &&
+      std::ranges::find(persons, conducted_by->name, &Person::name) == persons.end()) {
+    persons.push_back({.name = conducted_by->name, .role = "performed the measurement"});
+  }
+  return persons;
+}
+
+void add_persons(XmlElement parent, const std::vector<Person>& persons) {
   XmlElement list = parent.add("dcc:respPersons");
-  for (const Person& person : file.persons) {
+  for (const Person& person : persons) {
     XmlElement one = list.add("dcc:respPerson");
     add_text(one.add("dcc:person"), "dcc:name", person.name);
     add_line(one, "dcc:role", person.role);
@@ -143,6 +157,13 @@ void add_statements(XmlElement parent, const CertificateContents& contents) {
     add_text(list.add("dcc:statement").attribute("refType", "dyncal_dailyCheck"), "dcc:declaration",
              in_all_languages([&](Language language) { return sentence_of(*check, language); }));
   }
+  for (std::size_t i = 0;
+       i < amendment_sentences(contents.result.journal, Language::english).size(); ++i) {
+    add_text(list.add("dcc:statement").attribute("refType", "dyncal_amendment"), "dcc:declaration",
+             in_all_languages([&](Language language) {
+               return amendment_sentences(contents.result.journal, language)[i];
+             }));
+  }
   for (const TranslatedText& text : contents.provenance) {
     add_text(list.add("dcc:statement").attribute("refType", "dyncal_provenance"), "dcc:declaration",
              text);
@@ -161,7 +182,7 @@ void add_administrative_data(XmlElement root, const CertificateContents& content
   add_core_data(data, contents);
   add_item(data, contents.sensor);
   add_laboratory(data, contents.laboratory);
-  add_persons(data, contents.laboratory);
+  add_persons(data, persons_of(contents));
   add_contact(data.add("dcc:customer"), contents.customer);
   add_statements(data, contents);
 }

@@ -10,6 +10,7 @@
 #include "services/views/certificate/dcc_conformity.hpp"
 #include "services/views/lab_file/embedded_picture.hpp"
 #include "services/views/language/certificate_sentences.hpp"
+#include "services/views/language/journal_sentences.hpp"
 #include "services/views/language/setup_sentences.hpp"
 #include "services/views/language/statement_sentences.hpp"
 #include "services/views/report/run_equipment.hpp"
@@ -186,6 +187,9 @@ void add_conditions(XmlElement parent, const CertificateContents& contents) {
   add_own(sentences::positive_direction_of_axis, contents.sensor.positive_direction);
   add_own(sentences::mounting, contents.conditions.mounting);
   add_own(sentences::orientation, contents.conditions.orientation);
+  for (const TranslatedText& origin : contents.condition_origins) {
+    add_said(sentences::origin_of_conditions.translated(), origin);
+  }
   std::vector<std::string> channels;
   for (const CertifiedChannel& channel : contents.channels) {
     channels.push_back(channel.channel);
@@ -255,6 +259,12 @@ void add_all_meta_data(XmlElement parent, const CertificateContents& contents) {
   add_hash(list, "dyncal_resultSha256", sentences::result_hash, contents.result.sha256);
   add_hash(list, "dyncal_recipeSha256", sentences::hash_of_recipe, contents.result.recipe_sha256);
   add_hash(list, "dyncal_recordingSha256", sentences::recording_hash, contents.recording_sha256);
+  if (const auto& person = contents.result.conducted_by) {
+    add_said(list, "dyncal_performedBy", sentences::measurement_performed_by,
+             {name_of(*person), name_of(*person)});
+  }
+  add_said(list, "dyncal_comment", sentences::comment_on_run,
+           {contents.result.comment, contents.result.comment});
   add_conformity(list, contents.conformity);
   add_clock(list, contents.result);
   for (const TranslatedText& flag : contents.flags) {

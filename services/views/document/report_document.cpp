@@ -10,9 +10,11 @@
 #include "services/base/version.hpp"
 #include "services/views/conformity/asked_conformity.hpp"
 #include "services/views/document/html.hpp"
+#include "services/views/lab_file/documented_conditions.hpp"
 #include "services/views/language/report_sentences.hpp"
 #include "services/views/objections/objections.hpp"
 #include "services/views/objections/subject_objections.hpp"
+#include "services/views/report/amendments.hpp"
 #include "services/views/report/stated_value.hpp"
 
 namespace dyncal::inline views {
@@ -81,6 +83,9 @@ Expected<void> add_laboratory(const ReportRequest& request, ReportContents& cont
     DYNCAL_TRY(contents.laboratory, read_laboratory_file(request.laboratory));
   }
   contents.sensor = request.sensor;
+  if (contents.sensor) {
+    amend(contents.result.journal, *contents.sensor);
+  }
   return {};
 }
 
@@ -151,7 +156,8 @@ std::string part_of(const ReportContents& contents, std::size_t first_figure) {
           losses_section(contents) + clock_section(contents) + remarks(contents) +
           signatures(contents);
   html += other_channels(contents) + devices_section(contents) + software_section(contents) +
-          budget_annex(contents) + single_results(contents) + recipe_section(contents);
+          budget_annex(contents) + single_results(contents) + journal_section(contents) +
+          recipe_section(contents);
   return html +
          element("p", sentences::end_of(language, title_of(contents), mark_of(contents)), "end") +
          "</div>\n";

@@ -7,9 +7,12 @@
 
 #include "services/views/conformity/stated_conformity.hpp"
 #include "services/views/document/html.hpp"
+#include "services/views/lab_file/documented_conditions.hpp"
+#include "services/views/language/journal_sentences.hpp"
 #include "services/views/language/report_sentences.hpp"
 #include "services/views/language/statement_sentences.hpp"
 #include "services/views/objections/subject_objections.hpp"
+#include "services/views/report/amendments.hpp"
 #include "services/views/report/daily_check.hpp"
 #include "services/views/report/stated_value.hpp"
 
@@ -79,8 +82,10 @@ std::string customer_text(const ReportContents& contents) {
   if (customer == nullptr) {
     return "";
   }
-  std::vector<std::string> lines = address_lines(*customer);
-  lines.insert(lines.begin(), customer->name);
+  Contact corrected = *customer;
+  amend(contents.result.journal, corrected);
+  std::vector<std::string> lines = address_lines(corrected);
+  lines.insert(lines.begin(), corrected.name);
   return joined_texts(lines);
 }
 
@@ -248,6 +253,11 @@ std::string summary(const ReportContents& contents) {
   table.add(sentences::channels, fmt::format("{}", fmt::join(contents.channels, ", ")));
   table.add(sentences::customer, customer_text(contents));
   table.add(sentences::measured, period(result, language));
+  table.add(sentences::performed_by, result.conducted_by ? name_of(*result.conducted_by) : "");
+  table.add(sentences::comment, result.comment);
+  for (const std::string& sentence : amendment_sentences(result.journal, language)) {
+    table.add(sentences::corrected, sentence);
+  }
   table.add(sentences::place, place_text(contents));
   table.add(sentences::bench_and_run, fmt::format("{}, {}", result.bench, result.run));
   table.add(sentences::excitation,

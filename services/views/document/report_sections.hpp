@@ -86,6 +86,8 @@ struct ReportContents {
 [[nodiscard]] std::string equipment_section(const ReportContents& contents);
 [[nodiscard]] std::string devices_section(const ReportContents& contents);
 [[nodiscard]] std::string software_section(const ReportContents& contents);
+// What was noted of the run, and what happened in it.
+[[nodiscard]] std::string journal_section(const ReportContents& contents);
 [[nodiscard]] std::string recipe_section(const ReportContents& contents);
 
 // How it looks, on the screen and on A4 paper: CSS without anything to fetch (report_style.cpp).

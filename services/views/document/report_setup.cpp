@@ -12,7 +12,9 @@
 #include "services/evaluation/result/members.hpp"
 #include "services/views/document/html.hpp"
 #include "services/views/document/toml_comments.hpp"
+#include "services/views/lab_file/documented_conditions.hpp"
 #include "services/views/language/closure_text.hpp"
+#include "services/views/language/journal_sentences.hpp"
 #include "services/views/language/report_sentences.hpp"
 #include "services/views/language/setup_sentences.hpp"
 #include "services/views/report/run_equipment.hpp"
@@ -199,11 +201,17 @@ std::string applied_corrections(const ReportContents& contents) {
 std::string conditions_section(const ReportContents& contents) {
   const Language language = contents.language;
   DefinitionTable table(language);
+  Conditions typed = contents.laboratory ? contents.laboratory->conditions : Conditions{};
   if (contents.sensor && !contents.sensor->conditions.empty()) {
-    add_stated_conditions(contents.sensor->conditions, language, table);
-  } else if (contents.laboratory) {
-    add_stated_conditions(contents.laboratory->conditions, language, table);
+    typed = contents.sensor->conditions;
   }
+  const DocumentedConditions documented = documented_conditions(contents.result, typed);
+  add_stated_conditions(documented.conditions, language, table);
+  std::string origins;
+  for (const TranslatedText& origin : documented.origins) {
+    origins += (origins.empty() ? "" : " ") + origin.in(language);
+  }
+  table.add(sentences::origin_of_these, origins);
   const std::vector<StoredPoint> points = contents.result.points_of(contents.channels);
   const std::string temperature = temperature_range(points, language);
   table.add(sentences::own_temperature, temperature.empty() ? "" : temperature + " °C");
@@ -334,6 +342,7 @@ std::string software_section(const ReportContents& contents) {
     provenance.push_back(statement.in(language));
   }
   DefinitionTable table(language);
+  table.add(sentences::run_conducted_by, result.conducted_by ? text_of(*result.conducted_by) : "");
   table.add(sentences::conducted_with, result.software);
   table.add(sentences::evaluated_by, result.analysis_software);
   table.add(sentences::on_host, result.analysis_host);
@@ -347,6 +356,22 @@ std::string software_section(const ReportContents& contents) {
   add_hash(sentences::its_hash, result.sha256);
   add_hash(sentences::recipe_hash, result.recipe_sha256);
   return element("h2", sentences::software, language) + table.finish();
+}
+
+std::string journal_section(const ReportContents& contents) {
+  const Language language = contents.language;
+  HtmlTable table("legend", {sentences::instant_column(language), sentences::kind_column(language),
+                             sentences::by_column(language), sentences::text_column(language)});
+  for (const JournalEntry& entry : contents.result.journal) {
+    const std::string text =
+        entry.kind == JournalKind::amendment
+            ? fmt::format("{}", fmt::join(amendment_sentences(entry, language), "; "))
+            : entry.text;
+    const Sentence& kind =
+        per_enumerator(entry.kind, {sentences::note, sentences::event, sentences::amendment});
+    table.row({entry.utc, kind(language), name_of(entry.by), text});
+  }
+  return table.empty() ? "" : element("h2", sentences::journal, language) + table.finish();
 }
 
 std::string recipe_section(const ReportContents& contents) {

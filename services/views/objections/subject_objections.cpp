@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "services/evaluation/result/members.hpp"
+#include "services/views/report/amendments.hpp"
 #include "services/views/report/stated_value.hpp"
 
 namespace dyncal::inline views {
@@ -60,11 +61,16 @@ void hold_sensor(const DocumentSubject& subject, std::vector<std::string>& objec
     if (described->serial.empty()) {
       continue; // a file, or a bus that knows no sensor by name
     }
-    if (!is_same_serial(described->serial, serial)) {
+    // An amendment is the stated override of what a source says of itself.
+    const bool is_corrected = amended(subject.result.journal, source + "/serial") &&
+                              is_same_serial(described->serial, sensor.serial);
+    if (!is_corrected && !is_same_serial(described->serial, serial)) {
       add_difference("serial number", "electronic_serial", source, described->serial, serial,
                      objections);
     }
-    if (!described->device.empty() && !is_same_model(described->device, model)) {
+    const bool is_renamed = amended(subject.result.journal, source + "/model") &&
+                            is_same_model(described->device, sensor.model);
+    if (!is_renamed && !described->device.empty() && !is_same_model(described->device, model)) {
       add_difference("model", "electronic_model", source, described->device, model, objections);
     }
   }

@@ -4,7 +4,8 @@
 //
 // A sensor is the one of the run if serial number and model are those that its source states,
 // letters and digits alone compared, for "MPU 9250" is MPU-9250; a source that states no serial
-// number does not know its sensor, and contradicts nothing. Where a sensor calls itself otherwise
+// number does not know its sensor, and contradicts nothing. An amendment of the run says otherwise
+// than the source, and counts. Where a sensor calls itself otherwise
 // than it is labelled, its file says how. The reference is that of the run's reference file, else
 // that of the laboratory file; where both state one, they must be the same. Days are those of UTC,
 // or of this computer's zone if that favours the document. Any thread.

@@ -7,6 +7,7 @@
 
 #include "services/base/version.hpp"
 #include "services/evaluation/combined_mountings.hpp"
+#include "services/views/report/amendments.hpp"
 #include "services/views/report/result_json.hpp"
 #include "services/views/report/result_table.hpp"
 #include "services/views/report/stated_value.hpp"
@@ -148,9 +149,16 @@ StoredResult head_of(const std::vector<StoredResult>& runs, const std::string& n
   result.roles = first.roles;
   result.corrections = first.corrections;
   result.check = first.check;
+  result.conducted_by = first.conducted_by;
   for (const StoredResult& run : runs) {
     if (run.check && !run.check->left_out.empty()) {
       result.check = run.check; // what documents must say
+    }
+    if (run.conducted_by != first.conducted_by) {
+      result.conducted_by.reset(); // several did: their results name them
+    }
+    for (const std::string& sentence : amendment_sentences(run.journal)) {
+      result.comment += fmt::format("Run {}: {}. ", run.run, sentence);
     }
     result.began_utc = std::min(result.began_utc, run.began_utc);
     result.ended_utc = std::max(result.ended_utc, run.ended_utc);

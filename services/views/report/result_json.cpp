@@ -128,10 +128,9 @@ nlohmann::ordered_json result_json(const StoredResult& result) {
   return json;
 }
 
-nlohmann::ordered_json result_json(const RunOutcome& outcome,
-                                   const std::optional<DailyCheck>& check) {
+nlohmann::ordered_json result_json(const RunOutcome& outcome, const RunStatements& stated) {
   StoredResult result = stored_result_of(outcome);
-  result.check = check;
+  static_cast<RunStatements&>(result) = stated;
   return result_json(result);
 }
 

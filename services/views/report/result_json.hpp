@@ -23,9 +23,8 @@ namespace dyncal::inline views {
 [[nodiscard]] StoredResult stored_result_of(const RunOutcome& outcome);
 
 [[nodiscard]] nlohmann::ordered_json result_json(const StoredResult& result);
-// `check`: that of the bench, which no evaluation knows.
 [[nodiscard]] nlohmann::ordered_json result_json(const RunOutcome& outcome,
-                                                 const std::optional<DailyCheck>& check = {});
+                                                 const RunStatements& stated = {});
 
 // Fails (bad_file) when the file cannot be written.
 [[nodiscard]] Expected<void> write_json(const std::filesystem::path& path,

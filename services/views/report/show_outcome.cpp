@@ -64,8 +64,8 @@ std::filesystem::path free_name(const std::filesystem::path& folder, const std::
 
 // Results that took hours are not lost with a full disk.
 Expected<void> write_results(const RunOutcome& outcome, const std::filesystem::path& path,
-                             const std::optional<DailyCheck>& check) {
-  const nlohmann::ordered_json json = result_json(outcome, check);
+                             const RunStatements& stated) {
+  const nlohmann::ordered_json json = result_json(outcome, stated);
   auto written = write_json(path, json);
   if (written) {
     return written;
@@ -90,14 +90,14 @@ Expected<void> check_outputs(const std::optional<std::filesystem::path>& json,
 
 Expected<void> show_outcome(const RunOutcome& outcome,
                             const std::optional<std::filesystem::path>& json,
-                            const FigureFiles& figures, const std::optional<DailyCheck>& check) {
+                            const FigureFiles& figures, const RunStatements& stated) {
   fmt::print("bench {}, run {}{}\n", one_line(outcome.bench),
              one_line(RunIdentity::parse(outcome.run).name), result_table(outcome));
-  if (check) {
-    fmt::print("{}\n", one_line(sentence_of(*check)));
+  if (stated.check) {
+    fmt::print("{}\n", one_line(sentence_of(*stated.check)));
   }
   if (json) {
-    DYNCAL_TRY(write_results(outcome, *json, check));
+    DYNCAL_TRY(write_results(outcome, *json, stated));
   }
   if (figures.folder) {
     DYNCAL_TRY(const auto written, write_figures(outcome, *figures.folder, figures.error_bars));

@@ -8,8 +8,8 @@
 
 #include "services/base/error.hpp"
 #include "services/evaluation/result/run_outcome.hpp"
-#include "services/views/report/daily_check.hpp"
 #include "services/views/report/run_figures.hpp"
+#include "services/views/report/run_statements.hpp"
 
 namespace dyncal::inline views {
 
@@ -17,18 +17,18 @@ namespace dyncal::inline views {
 [[nodiscard]] Expected<void> check_outputs(const std::optional<std::filesystem::path>& json,
                                            const FigureFiles& figures);
 
-// Prints the table, what `check` says, and writes the files asked for. Fails (bad_file) when one
-// cannot be written; the results are then kept in the folder for temporary files, if they can be,
-// and the error says so.
+// Prints the table, what the check of the bench says, and writes the files asked for. Fails
+// (bad_file) when one cannot be written; the results are then kept in the folder for temporary
+// files, if they can be, and the error says so.
 [[nodiscard]] Expected<void> show_outcome(const RunOutcome& outcome,
                                           const std::optional<std::filesystem::path>& json,
                                           const FigureFiles& figures,
-                                          const std::optional<DailyCheck>& check = {});
+                                          const RunStatements& stated = {});
 
 // Writes the JSON file. Fails as show_outcome() does, with the results in the same refuge.
 [[nodiscard]] Expected<void> write_results(const RunOutcome& outcome,
                                            const std::filesystem::path& path,
-                                           const std::optional<DailyCheck>& check = {});
+                                           const RunStatements& stated = {});
 
 // What to say last where RunOutcome::output_may_be_on: what is dangerous, and what to do.
 [[nodiscard]] std::string output_warning(const RunOutcome& outcome);

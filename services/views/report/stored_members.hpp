@@ -208,6 +208,24 @@ void members(auto& visit, Either<DailyCheck> auto& one) {
   visit("left_out", one.left_out);
 }
 
+void members(auto& visit, Either<ActingPerson> auto& one) {
+  visit("name", one.name);
+  visit("user", one.user);
+  visit("host", one.host);
+}
+
+void members(auto& visit, Either<LoggedCondition> auto& one) {
+  visit("quantity", one.quantity);
+  visit("unit", one.unit);
+  visit("source", one.source);
+  visit("count", one.count);
+  visit("minimum", one.minimum);
+  visit("mean", one.mean);
+  visit("maximum", one.maximum);
+  visit("U", one.expanded);
+  visit("problem", one.problem);
+}
+
 void members(auto& visit, Either<CombinedRun> auto& one) {
   visit("bench", one.bench);
   visit("run", one.run);
@@ -246,6 +264,9 @@ void members(auto& visit, Either<StoredResult> auto& one) {
   visit.unless_empty("recipe", one.recipe);
   visit.unless_empty("combined", one.combined);
   visit("check", one.check);
+  visit("conducted_by", one.conducted_by);
+  visit.unless_empty("comment", one.comment);
+  visit.unless_empty("conditions", one.conditions);
 }
 
 } // namespace dyncal::inline views

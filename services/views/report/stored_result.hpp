@@ -20,8 +20,9 @@
 #include "services/base/byte_count.hpp"
 #include "services/base/error.hpp"
 #include "services/evaluation/result/run_outcome.hpp"
-#include "services/views/report/daily_check.hpp"
 #include "services/views/report/expanded_uncertainty.hpp"
+#include "services/views/report/run_journal.hpp"
+#include "services/views/report/run_statements.hpp"
 
 namespace dyncal::inline views {
 
@@ -137,7 +138,7 @@ struct CombinedRun { // of a result that combines several
   std::string sha256; // of its result file
 };
 
-struct StoredResult {
+struct StoredResult : RunStatements {
   std::filesystem::path file;
   std::string sha256; // of the file
   std::string bench;
@@ -166,7 +167,7 @@ struct StoredResult {
   std::vector<StoredPoint> points;
   std::string recipe;                // text of the bench file
   std::vector<CombinedRun> combined; // the mountings that it combines; empty: it is of one run
-  std::optional<DailyCheck> check;   // of the bench; nothing: the run does not say
+  std::vector<JournalEntry> journal; // of the run; not in the file (amendments.hpp)
   std::string content_sha256; // without what another evaluation of the same samples may change
 
   [[nodiscard]] std::vector<StoredValue> values_of(const std::string& channel) const;

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "services/records/store/audit_trail.hpp"
 #include "tests/unit/services/records/store/store_places.hpp"
 
 namespace dyncal::inline records {
@@ -52,6 +53,11 @@ TEST_P(SensorLibraryTest, ChangesASensorOnlyWhenAsked) {
   ASSERT_THAT(*versions, SizeIs(2));
   EXPECT_EQ((*versions)[0].sensor.firmware, "");
   EXPECT_EQ((*versions)[1].sensor.firmware, "2");
+  const auto trail = audit_entries(*open());
+  ASSERT_TRUE(trail);
+  ASSERT_THAT(*trail, SizeIs(2));
+  EXPECT_EQ((*trail)[1].subject, "S-1");
+  EXPECT_THAT((*trail)[1].detail, HasSubstr("version 2"));
   ASSERT_TRUE(library()->add(file_of("R-9"), "r.toml", false));
   const auto all = library()->all();
   ASSERT_TRUE(all);

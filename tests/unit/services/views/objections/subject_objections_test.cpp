@@ -4,6 +4,8 @@
 
 #include <gmock/gmock.h>
 
+#include "services/views/report/amendments.hpp"
+
 namespace dyncal::inline views {
 namespace {
 
@@ -74,6 +76,26 @@ TEST(SubjectObjections, NamesAnotherSensor) {
               ElementsAre(HasSubstr("electronic_serial = \"0xbccb0100\"")));
   EXPECT_THAT(objections([](Subject& one) { one.sensor.model = "BMA280"; }),
               ElementsAre(HasSubstr("electronic_model = \"MPU 9250\"")));
+}
+
+// An amendment is the stated override of what the source said of itself.
+TEST(SubjectObjections, TakesTheAmendedSerialNumberAndNoOther) {
+  const auto amended_to = [](Subject& one, const std::string& serial) {
+    add_journal({{JournalKind::amendment,
+                  "2026-03-02T00:00:00.000000000Z",
+                  {"A. Meter", "meter", "lab3"},
+                  "typing error",
+                  {{"dau/serial", "0xbccb0100", serial}}}},
+                one.result);
+  };
+  EXPECT_THAT(objections([&](Subject& one) {
+                amended_to(one, "SN-777");
+                one.sensor.serial = "SN-777";
+                one.sensor.electronic_serial = "0xbccb0100";
+              }),
+              IsEmpty());
+  EXPECT_THAT(objections([&](Subject& one) { amended_to(one, "SN-777"); }),
+              ElementsAre(HasSubstr("'SN-777'"))); // the file has the old one still
 }
 
 // What is on the label, and what the device calls itself.

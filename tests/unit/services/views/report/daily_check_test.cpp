@@ -28,7 +28,7 @@ TEST(DailyCheck, StandsInTheResultFile) {
   const auto without = read_result(file);
   ASSERT_TRUE(without) << without.error().message;
   EXPECT_FALSE(without->check);
-  nlohmann::ordered_json json = result_json(tests::example_outcome(), example);
+  nlohmann::ordered_json json = result_json(tests::example_outcome(), {.check = example});
   std::ofstream(file) << json;
   const auto with = read_result(file); // by its schema
   ASSERT_TRUE(with) << with.error().message;
