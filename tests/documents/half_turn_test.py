@@ -204,7 +204,7 @@ class HalfATurn(unittest.TestCase):
         for row in single:
             self.assertGreater(float(row[4]), -180.0)
             self.assertLessEqual(float(row[4]), 180.0)
-        applied = [row for row in rows["legend"] if row[:1] == ["reference_response"]]
+        applied = [row for row in rows["legend"] if row[:1] == ["response of the reference"]]
         self.assertEqual(len(applied), 1)
         low, high = map(float, applied[0][1].split(" to "))
         self.assertLess(high - low, 2.0, "the table spans 0.6 degrees, not a whole turn")

@@ -45,6 +45,11 @@ def text_of(page):
     return " ".join(html.unescape(re.sub(r"<[^>]+>", " ", page)).replace("\u00ad", "").split())
 
 
+def english_in(text):
+    """English words with what stands around them."""
+    return [text[max(0, one.start() - 40) : one.end() + 40] for one in ENGLISH.finditer(text)]
+
+
 def contents_by_language(element):
     languages = {}
     for content in element.iter(f"{DCC}content"):
@@ -88,7 +93,8 @@ class Languages(unittest.TestCase):
         """What files and instruments say, the longest first."""
         words = texts_in(tomllib.loads(self.laboratory.read_text()))
         words += texts_in(tomllib.loads(self.sensor.read_text()))
-        for key in ("bench", "run", "sources", "software", "analysis_software", "channels", "method"):
+        keys = ("bench", "run", "sources", "software", "analysis_software", "channels", "method")
+        for key in keys:
             words += texts_in(self.result.get(key, ""))
         words += [pause["reason"] for pause in self.result.get("pauses", [])]
         words += ["what-it-cannot-see.md", "Example Laboratory for Vibration", "ISO/IEC", "DDS"]
@@ -115,8 +121,7 @@ class Languages(unittest.TestCase):
         self.assertIn('<html lang="de">', page)
         text = self.without_words_of_user(text_of(page))
         self.assertGreater(len(text), 5000)
-        found = [text[max(0, one.start() - 40) : one.end() + 40] for one in ENGLISH.finditer(text)]
-        self.assertEqual(found, [])
+        self.assertEqual(english_in(text), [])
         numbers = re.findall(r"(?<![\d.,])\d+\.\d+(?![\d.])", text)
         self.assertEqual(numbers, [])
         for part in ("95,45 %", "23,0 °C", "12,5", "Kalibrierschein", "Messunsicherheitsbudget"):
@@ -148,6 +153,7 @@ class Languages(unittest.TestCase):
     def test_both_languages_follow_each_other(self):
         page = self.report("--language", "de,en")
         self.assertEqual(re.findall(r'<div class="part" lang="(..)">', page), ["de", "en"])
+        self.assertEqual(re.findall(r'<div class="draft.*?>(.*?)<', page), ["ENTWURF / DRAFT"])
         german, english = page.split('<div class="part" lang="en">')
         self.assertIn("Übertragungsfunktion von dau/acceleration_z", german)
         self.assertIn("Transfer function of dau/acceleration_z", english)
@@ -196,8 +202,7 @@ class Languages(unittest.TestCase):
         text = self.certificate("--language", "de").read_text()
         tree = ElementTree.fromstring(text)
         german = self.without_words_of_user(" ".join(contents_by_language(tree)["de"]))
-        found = [german[max(0, one.start() - 40) : one.end() + 40] for one in ENGLISH.finditer(german)]
-        self.assertEqual(found, [])
+        self.assertEqual(english_in(german), [])
         for part in ("Übertragungskoeffizient", "Metrologische Rückführung", "Konformitätsaussage"):
             self.assertIn(part, german)
         numbers = [one.text for one in tree.iter() if one.tag.endswith("valueXMLList")]

@@ -42,10 +42,11 @@ std::vector<StoredPoint> budget_points(const StoredResult& result, const std::st
 // Two digits, without an exponent where that is readable; nothing for what is not there.
 std::string small_number(double value, Language language) {
   constexpr double smallest_plain = 1e-6;
+  constexpr double smallest_short = 1e-3;
   if (!std::isfinite(value) || value == 0.0) {
     return value == 0.0 ? "0" : "";
   }
-  if (std::abs(value) < smallest_plain || std::abs(value) >= 1.0) {
+  if (std::abs(value) < smallest_plain || std::abs(value) >= smallest_short) {
     return decimal(language, rounded_uncertainty(value));
   }
   const int decimals = 1 - static_cast<int>(std::floor(std::log10(std::abs(value))));

@@ -146,7 +146,6 @@ std::string running_texts(const ReportContents& contents) {
 std::string part_of(const ReportContents& contents, std::size_t first_figure) {
   const Language language = contents.language;
   std::string html = fmt::format("<div class=\"part\" lang=\"{}\">\n", code_of(language));
-  html += contents.is_draft ? element("div", sentences::draft, language, "draft") : "";
   html += running_texts(contents) + letterhead(contents) + warnings(contents) + summary(contents);
   for (std::size_t i = 0; i < contents.channels.size(); ++i) {
     html += channel_section(contents, contents.channels[i], first_figure + i);
@@ -163,8 +162,18 @@ std::string part_of(const ReportContents& contents, std::size_t first_figure) {
          "</div>\n";
 }
 
+// On every page of the document, whatever its language.
+std::string watermark(const std::vector<Language>& languages) {
+  std::vector<std::string> words;
+  for (const Language language : languages) {
+    words.emplace_back(sentences::draft.in(language));
+  }
+  return element("div", fmt::format("{}", fmt::join(words, " / ")),
+                 words.size() > 1 ? "draft several" : "draft");
+}
+
 std::string body_of(ReportContents contents) {
-  std::string html;
+  std::string html = contents.is_draft ? watermark(contents.languages) : "";
   std::size_t figure = 1;
   for (const Language language : contents.languages) {
     contents.language = language;

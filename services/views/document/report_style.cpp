@@ -23,6 +23,7 @@ constexpr std::string_view style = R"(
   font-size: 1px; }
 .draft { position: fixed; top: 95mm; left: 0; right: 0; text-align: center; font-size: 90pt;
   font-weight: bold; color: rgba(179, 84, 30, 0.13); transform: rotate(-35deg); }
+.several { font-size: 54pt; }
 .end { text-align: center; color: #5a6672; margin-top: 6mm; }
 * { box-sizing: border-box; }
 html { font-family: "Liberation Sans", Arial, Helvetica, "DejaVu Sans", sans-serif;
@@ -67,6 +68,7 @@ tr { break-inside: avoid; }
   border-top: 0.6pt solid #14507a; border-bottom: 0.6pt solid #14507a; }
 .model td { padding: 0.6mm 1.2mm; border-bottom: 0.3pt solid #dde5eb; vertical-align: top; }
 .model td + td, .model th + th { text-align: right; }
+.model td + td { white-space: nowrap; }
 .model td:first-child { width: 58mm; }
 .model tr.sum td { border-top: 0.6pt solid #14507a; font-weight: bold; }
 .legend { font-size: 8pt; }

@@ -30,7 +30,6 @@ struct TranslatedText {
 
 class Sentence {
 public:
-  // NOLINTNEXTLINE(bugprone-easily-swappable-parameters): in the order of the enumeration
   consteval Sentence(std::string_view english, std::string_view german)
       : english_(english), german_(german) {
     if (english.empty() || german.empty() || places_in(english) != places_in(german)) {
