@@ -125,6 +125,7 @@ BudgetRow phase_row(const Contribution& row, double frequency_hz, Language langu
 
 std::vector<double> contributions_of(const std::vector<BudgetRow>& rows) {
   std::vector<double> contributions;
+  contributions.reserve(rows.size());
   for (const BudgetRow& row : rows) {
     contributions.push_back(row.contribution);
   }
@@ -213,6 +214,7 @@ std::vector<Contribution> all_contributions(const std::vector<StoredPoint>& poin
   std::vector<Contribution> rows;
   for (const StoredPoint& point : points) {
     std::vector<double> all;
+    all.reserve(point.budget.size());
     for (const Contribution& row : point.budget) {
       all.push_back(row.*u);
     }

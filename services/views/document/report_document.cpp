@@ -165,6 +165,7 @@ std::string part_of(const ReportContents& contents, std::size_t first_figure) {
 // On every page of the document, whatever its language.
 std::string watermark(const std::vector<Language>& languages) {
   std::vector<std::string> words;
+  words.reserve(languages.size());
   for (const Language language : languages) {
     words.emplace_back(sentences::draft.in(language));
   }

@@ -338,6 +338,7 @@ std::string software_section(const ReportContents& contents) {
   const Language language = contents.language;
   const StoredResult& result = contents.result;
   std::vector<std::string> provenance;
+  provenance.reserve(contents.provenance.size());
   for (const TranslatedText& statement : contents.provenance) {
     provenance.push_back(statement.in(language));
   }

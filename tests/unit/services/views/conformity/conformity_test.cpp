@@ -58,6 +58,7 @@ ConformityReport judged(const StoredResult& result, std::vector<ToleranceRow> ro
 
 std::vector<std::string> english_of(const std::vector<TranslatedText>& texts) {
   std::vector<std::string> english;
+  english.reserve(texts.size());
   for (const TranslatedText& text : texts) {
     english.push_back(text.english);
   }
