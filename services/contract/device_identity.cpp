@@ -90,8 +90,8 @@ std::vector<std::string> unit_doubts(const drivers::SourceDescription& described
         (stated->second.from_v != 0.0 && quantity_of_unit(channel.unit) == Quantity::voltage)) {
       continue;
     }
-    doubts.push_back(fmt::format("channel '{}' is taken to be in {}, as the bench file says; the "
-                                 "instrument says that it is in {}",
+    doubts.push_back(fmt::format("channel '{}' is taken to be in {}, as the bench file says; it "
+                                 "is said by its source to be in {}",
                                  channel.name, stated->second.written, short_form(channel.unit)));
   }
   return doubts;

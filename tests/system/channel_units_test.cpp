@@ -110,5 +110,14 @@ TEST(ChannelUnits, AreRefusedWhereNoConversionIsKnown) {
   }
 }
 
+TEST(ChannelUnits, AreRefusedWhereTheFileSaysAnother) {
+  const auto folder = fresh_folder("channel-units-contradicted");
+  UnitCase one = cases[1];
+  one.sensor_at = R"(dos [\metre\second\tothe{-2}])";
+  ProgramRun run("dyncal", {"analyse", bench_of(folder, one)}, folder);
+  EXPECT_NE(run.wait(patience), 0);
+  EXPECT_THAT(run.errors(), testing::HasSubstr("'dos' is taken to be in g"));
+}
+
 } // namespace
 } // namespace dyncal::tests

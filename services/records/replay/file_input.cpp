@@ -61,6 +61,11 @@ Expected<std::unique_ptr<FileInput>> FileInput::open(const SourceSettings& setti
     return fail(ErrorCode::bad_file,
                 fmt::format("source '{}': {}", settings.name, known.error().message));
   }
+  if (const auto doubts = unit_doubts(*described, settings.identity); !doubts.empty()) {
+    return fail(ErrorCode::bad_file,
+                fmt::format("source '{}': {}: leave the unit out of one of both", settings.name,
+                            doubts.front()));
+  }
   input->factors_ = unit_factors(*described, settings.identity);
   input->description_ = with_identity(std::move(*described), settings.identity);
   input->thread_ = std::jthread([raw = input.get()] { raw->read(); });

@@ -79,7 +79,7 @@ TEST(DeviceIdentity, ConvertsWhatAFileItselfSaysToBeInG) {
 TEST(DeviceIdentity, DoubtsUnitsThatTheInstrumentContradicts) {
   const std::string m_s2 = R"(\metre\second\tothe{-2})";
   ASSERT_EQ(unit_doubts(described(m_s2), with_unit("g")).size(), 1U);
-  EXPECT_NE(unit_doubts(described(m_s2), with_unit("g"))[0].find("says that it is in m/s^2"),
+  EXPECT_NE(unit_doubts(described(m_s2), with_unit("g"))[0].find("by its source to be in m/s^2"),
             std::string::npos);
   EXPECT_TRUE(unit_doubts(described(""), with_unit("g")).empty());
   EXPECT_TRUE(unit_doubts(described(R"(\volt)"), with_unit("100 mV/g")).empty());
