@@ -20,10 +20,10 @@ from tree import CODE, TOP, conclude, tracked
 FLOORS = {
     "analysis": [
         ["base"],
-        ["sine/kernel"],
+        ["interferometer/kernel", "sine/kernel"],
         ["sine"],
         ["uncertainty"],
-        ["response", "step"],
+        ["interferometer", "response", "step"],
         ["clock"],
         ["instrument"],
         ["method"],
@@ -90,6 +90,7 @@ BETWEEN_TREES = {
 }
 # Rooms that only some may include, on whichever floor.
 ONLY_FROM = {
+    "analysis/interferometer/kernel": ["analysis/interferometer"],
     "analysis/sine/kernel": ["analysis/sine"],
 }
 # Drivers know nothing of each other: "drivers/x/..." includes only itself and these. The virtual

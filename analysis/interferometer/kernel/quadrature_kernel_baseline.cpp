@@ -1,0 +1,15 @@
+// For every processor: two lanes a register (SSE2, NEON).
+#include "analysis/interferometer/kernel/arctangent_polynomial.hpp"
+#include "analysis/interferometer/kernel/quadrature_kernel.hpp"
+
+namespace {
+constexpr std::size_t vector_width = 2;
+}
+
+#include "analysis/interferometer/kernel/quadrature_kernel_body.hpp"
+
+namespace dyncal::analysis::kernel {
+const QuadratureKernel baseline_quadrature_kernel{
+    "baseline", phase_of<std::int16_t>,       phase_of<float>,   phase_of<double>,
+    moments_of, fourth_difference_squares_of, sum_of_products_of};
+}

@@ -1,0 +1,74 @@
+#include "analysis/interferometer/radius_over_phase.hpp"
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+namespace dyncal::analysis {
+namespace {
+
+constexpr std::size_t most_empty_sectors = radius_sectors / 16;
+constexpr int harmonic_columns = 1 + 2 * static_cast<int>(radius_orders);
+
+using HarmonicVector = Eigen::Matrix<double, harmonic_columns, 1>;
+using HarmonicMatrix = Eigen::Matrix<double, harmonic_columns, harmonic_columns>;
+
+HarmonicVector harmonic_row(std::size_t sector) {
+  const double turns = (static_cast<double>(sector) + 0.5) / radius_sectors - 0.5;
+  HarmonicVector row;
+  row[0] = 1.0;
+  for (int order = 1; order <= static_cast<int>(radius_orders); ++order) {
+    const auto phasor = std::polar(1.0, 2.0 * std::numbers::pi * order * turns);
+    row[2 * order - 1] = phasor.real();
+    row[2 * order] = phasor.imag();
+  }
+  return row;
+}
+
+} // namespace
+
+void RadiusOverPhase::add(const RadiusOverPhase& other) {
+  for (std::size_t i = 0; i < sectors_.size(); ++i) {
+    sectors_[i].squares += other.sectors_[i].squares;
+    sectors_[i].samples += other.sectors_[i].samples;
+  }
+}
+
+std::optional<double> RadiusOverPhase::radius(std::size_t sector) const {
+  const Sector& one = sectors_[sector];
+  if (one.samples == 0) {
+    return std::nullopt;
+  }
+  return std::sqrt(one.squares / static_cast<double>(one.samples));
+}
+
+std::optional<RadiusHarmonics> RadiusOverPhase::harmonics() const {
+  HarmonicMatrix normal = HarmonicMatrix::Zero();
+  HarmonicVector right = HarmonicVector::Zero();
+  std::size_t empty = 0;
+  for (std::size_t sector = 0; sector < sectors_.size(); ++sector) {
+    const auto value = radius(sector);
+    if (!value) {
+      ++empty;
+      continue;
+    }
+    const double weight = static_cast<double>(sectors_[sector].samples);
+    const HarmonicVector row = harmonic_row(sector);
+    normal += weight * row * row.transpose();
+    right += weight * *value * row;
+  }
+  if (empty > most_empty_sectors) {
+    return std::nullopt;
+  }
+  const HarmonicVector solution = normal.ldlt().solve(right);
+  RadiusHarmonics result;
+  result.mean = solution[0];
+  for (std::size_t order = 1; order <= radius_orders; ++order) {
+    const auto column = static_cast<Eigen::Index>(2 * order - 1);
+    result.amplitude[order - 1] = std::hypot(solution[column], solution[column + 1]);
+  }
+  return result;
+}
+
+} // namespace dyncal::analysis
