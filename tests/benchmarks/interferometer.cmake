@@ -1,0 +1,5 @@
+dyncal_benchmark(interferometer_benchmark
+  SOURCES
+    interferometer_benchmark.cpp
+  LIBRARIES dyncal_analysis)
+target_compile_options(interferometer_benchmark PRIVATE -O3)
