@@ -18,10 +18,12 @@ HarmonicVector harmonic_row(std::size_t sector) {
   const double turns = (static_cast<double>(sector) + 0.5) / radius_sectors - 0.5;
   HarmonicVector row;
   row[0] = 1.0;
-  for (int order = 1; order <= static_cast<int>(radius_orders); ++order) {
-    const auto phasor = std::polar(1.0, 2.0 * std::numbers::pi * order * turns);
-    row[2 * order - 1] = phasor.real();
-    row[2 * order] = phasor.imag();
+  for (std::size_t order = 1; order <= radius_orders; ++order) {
+    const auto phasor =
+        std::polar(1.0, 2.0 * std::numbers::pi * static_cast<double>(order) * turns);
+    const auto column = static_cast<Eigen::Index>(2 * order - 1);
+    row[column] = phasor.real();
+    row[column + 1] = phasor.imag();
   }
   return row;
 }

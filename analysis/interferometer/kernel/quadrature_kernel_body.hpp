@@ -121,7 +121,7 @@ struct LaneSums {
   }
 };
 
-void moments_of(const double* x, const double* y, std::size_t n, double* sums) {
+inline void moments_of(const double* x, const double* y, std::size_t n, double* sums) {
   LaneSums lanes[quadrature_moments];
   for (std::size_t first = 0; first < quadrature_lanes; first += vector_width) {
     Vector s[quadrature_moments] = {};
@@ -155,7 +155,7 @@ void moments_of(const double* x, const double* y, std::size_t n, double* sums) {
   }
 }
 
-double fourth_difference_squares_of(const double* x, std::size_t n) {
+inline double fourth_difference_squares_of(const double* x, std::size_t n) {
   LaneSums lanes;
   for (std::size_t first = 0; first < quadrature_lanes; first += vector_width) {
     Vector sum = {};
@@ -170,7 +170,7 @@ double fourth_difference_squares_of(const double* x, std::size_t n) {
   return lanes.total();
 }
 
-double sum_of_products_of(const double* a, const double* b, std::size_t n) {
+inline double sum_of_products_of(const double* a, const double* b, std::size_t n) {
   constexpr std::size_t parts = quadrature_lanes / vector_width;
   Vector sums[parts] = {};
   std::size_t i = 0;
