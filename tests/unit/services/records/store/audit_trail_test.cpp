@@ -97,7 +97,7 @@ TEST_P(AuditTrailTest, SaysWhoDidWhat) {
     EXPECT_EQ(entry.previous_sha256, previous);
     previous = entry.sha256;
   }
-  EXPECT_THAT(entries->at(4).detail, HasSubstr("serial of dau corrected to SN-7"));
+  EXPECT_THAT(entries->at(4).detail, HasSubstr("serial number of dau corrected to SN-7"));
   EXPECT_THAT(problems(), IsEmpty());
 }
 
