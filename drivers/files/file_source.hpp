@@ -1,6 +1,6 @@
-// A recorded series played as a source: CSV (time column or constant rate), NumPy (.npy), WAV, or a
-// file of the public SmartUp receiver (.dump, .h5), of any kind of instrument. README.md has the
-// formats.
+// A recorded series played as a source: CSV (time column or constant rate), NumPy (.npy), WAV,
+// TDMS, SigMF, or a file of the public SmartUp receiver (.dump, .h5), of any kind of instrument.
+// README.md has the formats.
 //
 // The file is read as it is played, never as a whole. Where the stamps of a block are exactly
 // equidistant the block carries a RegularClock, otherwise one stamp a sample; either way the stamps
@@ -16,6 +16,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "drivers/link/stop_signal.hpp"
 #include "drivers/sample_rate.hpp"
@@ -23,16 +24,26 @@
 
 namespace dyncal::drivers::files {
 
+// A channel in a file: its name there, with its group and a slash before it where it has one.
+struct FileChannel {
+  std::filesystem::path path;
+  std::string name;
+};
+
 struct FileSettings {
   std::filesystem::path path;
-  double speed = 0.0; // times real time; 0: at once
+  std::string channel{};             // of an own file, with all others left out; "": all
+  std::vector<FileChannel> single{}; // channels of one or more files in place of `path`
+  double speed = 0.0;                // times real time; 0: at once
   std::optional<SampleRate>
       sample_rate; // needed when there is no time column; nominal rate otherwise
   std::map<std::string, std::string> channels; // name in the file -> name of the channel
   std::map<std::string, std::string> units;    // name of the channel -> D-SI
   TimeBase time_base = TimeBase::utc;
-  std::string group{};    // the sensor's in an HDF5 file with several; "": the only one
+  std::string group{};    // of an HDF5 or TDMS file with several; "": the only one, or all
   double u_stamp_s = 0.0; // standard uncertainty of the stamps in their time base; 0: not known
+  std::int64_t time_offset_ns = 0;       // added to every stamp
+  std::map<std::string, double> scale{}; // name of the channel -> factor of its values
 };
 
 // Reads one format; FileSource does the pacing.

@@ -31,7 +31,7 @@ FLOORS = {
     ],
     "drivers": [
         ["."],
-        ["link"],
+        ["files/tdms", "link"],
         ["can/bus", "files"],
         ["can/dbc", "can/time"],
         ["acs", "can", "dso", "generator", "smartup", "tss", "virtual_bench/model"],
