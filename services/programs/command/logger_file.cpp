@@ -162,7 +162,9 @@ std::optional<double> logger_value(const std::string& text) {
   const std::string rest = trimmed(std::string_view(text).substr(
       std::min(text.size(), text.find_first_not_of("+-0123456789.,eE"))));
   constexpr std::size_t longest_unit = 6;
-  return rest.size() <= longest_unit ? parsed_number<double>(number) : std::nullopt;
+  const bool is_unit =
+      rest.size() <= longest_unit && rest.find_first_of("0123456789") == std::string::npos;
+  return is_unit ? parsed_number<double>(number) : std::nullopt;
 }
 
 Expected<LoggerReading> newest_reading_of(std::string_view text, const std::string& column,
