@@ -60,6 +60,7 @@ RunStatements statements_of(const KeptRunSetup& setup, const std::filesystem::pa
   }
   stated.conducted_by = stated.conducted_by.value_or(setup.conducted_by);
   stated.comment = stated.comment.empty() ? setup.comment : stated.comment;
+  stated.sensor = stated.sensor.empty() ? setup.sensor : stated.sensor;
   return stated;
 }
 

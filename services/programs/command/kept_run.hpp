@@ -35,6 +35,7 @@ struct KeptRunSetup {
   bool is_resumed = false;
   ActingPerson conducted_by;
   std::string comment; // may be empty
+  std::string sensor;  // that the command names; may be empty
   std::optional<AdcFile> adc_file;
   std::string
       dds; // the name of the participant's implementation, and its domain, for the recording

@@ -58,8 +58,8 @@ Expected<SensorFile> sensor_named(const std::string& sensor, const std::string& 
 
 Expected<std::optional<SensorFile>>
 sensor_of_run(const SensorOptions& options, const StoredResult& result, const std::string& place) {
-  const std::string named =
-      options.sensor.empty() ? named_by_bench_file(result.recipe) : options.sensor;
+  std::string named = options.sensor.empty() ? result.sensor : options.sensor;
+  named = named.empty() ? named_by_bench_file(result.recipe) : named;
   if (named.empty()) {
     if (!options.received.empty() || !options.condition.empty()) {
       return fail(ErrorCode::bad_argument,

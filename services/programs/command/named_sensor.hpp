@@ -33,8 +33,8 @@ CLI::Option* add_sensor_option(CLI::App& command, std::string& sensor);
 [[nodiscard]] Expected<SensorFile> sensor_named(const std::string& sensor,
                                                 const std::string& place);
 
-// As the options say, else the one that the bench file of the run names (`sensor`); nothing: no one
-// names any.
+// As the options say, else as the run was told, else the one that its bench file names (`sensor`);
+// nothing: no one names any.
 [[nodiscard]] Expected<std::optional<SensorFile>>
 sensor_of_run(const SensorOptions& options, const StoredResult& result, const std::string& place);
 

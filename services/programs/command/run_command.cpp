@@ -21,14 +21,13 @@
 #include "services/daemon/program/watched_network.hpp"
 #include "services/programs/command/command.hpp"
 #include "services/programs/command/figure_options.hpp"
-#include "services/programs/command/judged_run.hpp"
 #include "services/programs/command/kept_run.hpp"
 #include "services/programs/command/laboratory_look.hpp"
-#include "services/programs/command/named_sensor.hpp"
 #include "services/programs/command/progress_line.hpp"
 #include "services/programs/command/required_check.hpp"
 #include "services/programs/command/run_again.hpp"
 #include "services/programs/command/run_end_hook.hpp"
+#include "services/programs/command/run_sensor.hpp"
 #include "services/records/run_folder/folder_access.hpp"
 #include "services/records/run_folder/run_folder.hpp"
 #include "services/records/store/store.hpp"
@@ -37,7 +36,6 @@
 #include "services/run/run_controller.hpp"
 #include "services/run/run_plan.hpp"
 #include "services/security/identity_check.hpp"
-#include "services/views/conformity/conformity_table.hpp"
 #include "services/views/report/show_outcome.hpp"
 
 namespace dyncal::inline programs {
@@ -54,6 +52,9 @@ void add_run(CLI::App& command, RunOptions& run) {
   command.add_option("--without-check", run.without_check,
                      "begin without the check that the bench file demands; the reason is in the "
                      "result and in its documents");
+  command.add_option("--sensor", run.sensor,
+                     "serial number of the sensor in the library (default: the 'sensor' of the "
+                     "bench file)");
   add_operator_option(command, run.conducted_by);
   command.add_option("--comment", run.comment, "a line about the run, for result and documents");
   command.add_option("--output", run.output, "write the result to this file as JSON");
@@ -134,6 +135,7 @@ Expected<ConductedRun> conduct(const Conduct& run, const std::string& text) {
                                        .is_resumed = resumes,
                                        .conducted_by = acting_person(run.command.conducted_by),
                                        .comment = one_line(run.command.comment),
+                                       .sensor = run.command.sensor,
                                        .adc_file = adc_file_of(run.bench),
                                        .dds = run.network.dds,
                                        .domain = run.network.domain,
@@ -241,21 +243,9 @@ void take_words_of_guards(bus::Reader<wire::ServiceStatus>& statuses, const Benc
   }
 }
 
-// By the tolerances of the sensor that the bench file names, if it has some.
-Expected<void> show_conformity(const Conduct& conduct, const std::filesystem::path& folder) {
-  const KeepOptions& keep = conduct.command.keep;
-  const std::string place = keep.folder ? store_place(keep.store, *keep.folder) : "";
-  if (conduct.bench.sensor.empty() || place.empty()) {
-    return {};
-  }
-  DYNCAL_TRY(const auto sensor, sensor_named(conduct.bench.sensor, place));
-  if (sensor.tolerances) {
-    DYNCAL_TRY(auto result, read_values(folder));
-    DYNCAL_TRY(const auto judged, judge_run(std::move(result), {}, {}, sensor.tolerances));
-    fmt::print("\n{}", conformity_table(judged.report));
-    DYNCAL_TRY(keep_conformity(folder, judged));
-  }
-  return {};
+// What documents of the run will look for.
+const std::string& sensor_of(const RunOptions& command, const BenchFile& bench) {
+  return command.sensor.empty() ? bench.sensor : command.sensor;
 }
 
 // The folder first, which is what is left if the rest fails; then the database, which may let wait.
@@ -270,7 +260,8 @@ Expected<void> show_and_keep(const Conduct& conduct, ConductedRun& run) {
     fmt::print("kept in {}\n", folder->string());
     std::fflush(stdout);
     run.kept->add_to_store(run.outcome);
-    if (const auto judged = show_conformity(conduct, *folder); !judged) {
+    const auto judged = show_conformity(sensor_of(command, conduct.bench), command.keep, *folder);
+    if (!judged) {
       fmt::print(stderr, "tolerances: {}\n", one_line(judged.error().message));
     }
   }
@@ -344,18 +335,6 @@ Expected<void> check_bench(const BenchFile& bench) {
   return fail(ErrorCode::bad_file, std::move(sentence));
 }
 
-// Documents of the run will look for it.
-Expected<void> check_sensor(const BenchFile& bench, const KeepOptions& keep) {
-  const std::string place = keep.folder ? store_place(keep.store, *keep.folder) : "";
-  if (bench.sensor.empty() || place.empty()) {
-    return {};
-  }
-  const auto known = sensor_named(bench.sensor, place);
-  return known ? Expected<void>{}
-               : fail(known.error().code, fmt::format("{}: key 'sensor': {}", bench.path.string(),
-                                                      known.error().message));
-}
-
 } // namespace
 
 Expected<RunOutcome> conduct_run(const RunOptions& command, const std::stop_token& asked) {
@@ -363,7 +342,7 @@ Expected<RunOutcome> conduct_run(const RunOptions& command, const std::stop_toke
   DYNCAL_TRY(RunIdentity::begin(command.run, utc_now_ns()));
   DYNCAL_TRY(const auto bench, read_bench_file(command.bench_file));
   DYNCAL_TRY(check_bench(bench));
-  DYNCAL_TRY(check_sensor(bench, command.keep));
+  DYNCAL_TRY(require_sensor(sensor_of(command, bench), command.keep));
   DYNCAL_TRY(const auto adc, read_adc_calibration(bench));
   DYNCAL_TRY(check_outputs(command.output, command.figures));
   NetworkOptions network = command.network;

@@ -24,6 +24,7 @@ struct RunOptions {
   std::string without_check; // why a check that the bench demands is left out; empty: it is not
   std::string conducted_by;  // the name of the operator; empty: not stated
   std::string comment;
+  std::string sensor; // its serial number in the library; empty: that of the bench file
   std::string resume; // the run to go on with, the newest of that name; empty: a new one
   KeepOptions keep;
   NetworkOptions network;

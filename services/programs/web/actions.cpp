@@ -59,8 +59,11 @@ std::vector<std::string> bench_files_of(const fs::path& folder) {
 }
 
 // What a visitor may say of a run, and the option of `dyncal run` that takes it.
-constexpr std::array<std::pair<const char*, const char*>, 3> run_members{
-    {{"run", "--run"}, {"operator", "--operator"}, {"comment", "--comment"}}};
+constexpr std::array<std::pair<const char*, const char*>, 4> run_members{
+    {{"run", "--run"},
+     {"sensor", "--sensor"},
+     {"operator", "--operator"},
+     {"comment", "--comment"}}};
 constexpr std::size_t max_text_bytes = 200;
 
 // Of the members that are given. As one word each: no text can be an option of its own.

@@ -34,6 +34,7 @@ struct RunStatements {
   std::optional<DailyCheck> check{};          // of the bench; nothing: the run does not say
   std::optional<ActingPerson> conducted_by{}; // nothing: not known
   std::string comment{};
+  std::string sensor{}; // its serial number in the library; empty: as the bench file says
   std::vector<LoggedCondition> conditions{};
 };
 

@@ -266,6 +266,7 @@ void members(auto& visit, Either<StoredResult> auto& one) {
   visit("check", one.check);
   visit("conducted_by", one.conducted_by);
   visit.unless_empty("comment", one.comment);
+  visit.unless_empty("sensor", one.sensor);
   visit.unless_empty("conditions", one.conditions);
 }
 

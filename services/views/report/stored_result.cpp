@@ -25,8 +25,9 @@ using Json = nlohmann::json;
 constexpr std::uintmax_t max_result_bytes = 1U << 30U;
 
 // Which may differ between two evaluations of the same samples by the same recipe.
-constexpr std::array volatile_members{"began_utc", "ended_utc",    "software", "analysis",  "dds",
-                                      "check",     "conducted_by", "comment",  "conditions"};
+constexpr std::array volatile_members{"began_utc",  "ended_utc", "software",     "analysis",
+                                      "dds",        "check",     "conducted_by", "comment",
+                                      "conditions", "sensor"};
 
 tl::unexpected<Error> refuse(const std::filesystem::path& file, const std::string& why) {
   return fail(ErrorCode::bad_file, fmt::format("{}: {}", file.string(), why));

@@ -9,7 +9,7 @@ import { shortened } from "./foreign_text.js";
 // Of members of a run.
 const LABELS = {
   run: "Name of the run (empty: the time) ", operator: "Operator ", comment: "Comment ",
-  sensor: "Sensor ",
+  sensor: "Sensor, serial number in the library ",
 };
 const MAX_TEXT = 200;
 
