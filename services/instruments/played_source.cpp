@@ -1,6 +1,7 @@
 #include "services/instruments/played_source.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/core.h>
 
@@ -55,6 +56,11 @@ Expected<std::unique_ptr<drivers::SampleSource>> make_driver(const SourceSetting
   file.time_base = settings.time_base;
   file.group = played.group;
   file.u_stamp_s = played.u_stamp_s;
+  for (const NamedChannel& channel : played.single) {
+    file.single.push_back({channel.path, channel.name});
+  }
+  file.time_offset_ns = std::llround(played.time_offset_s * 1e9);
+  file.scale = played.scale;
   if (played.sample_rate_hz) {
     file.sample_rate = drivers::sample_rate_from_hz(*played.sample_rate_hz);
     if (!file.sample_rate) {

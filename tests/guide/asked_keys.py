@@ -23,6 +23,7 @@ SAMPLES = {
     "list of texts": [["x"]],
     "number or list of numbers": [1.5],
     "table of texts": [{}],
+    "table of numbers": [{}],
     "": ["x", 1.5, [{}]],  # nobody has said yet
 }
 

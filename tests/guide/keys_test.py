@@ -176,6 +176,8 @@ class Keys(unittest.TestCase):
                 said = {"text"} if row["type"] == "date" else {row["type"]}
                 if row["type"] == "text or number":
                     said = {"text", "number"}
+                if row["type"] == "text or list of texts":
+                    said = {"text", "list of texts"}
                 if row["type"] == "number or list of numbers":
                     types.discard("number")  # of each of them
                 self.assertEqual(said, types)

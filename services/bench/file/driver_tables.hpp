@@ -10,11 +10,14 @@ namespace dyncal::inline bench {
 
 // driver = "file": a recorded series (drivers/files/README.md).
 //
-//   path = "record.csv"
+//   path = "record.csv"      or a channel, "record.tdms:GROUP/CHANNEL", or a list of channels, of
+//                            several files too
 //   play = "at-once"         or "real-time", or a factor: 10.0 is ten times faster than real time
 //   sample_rate_hz = 20000   where the file has no time column
-//   group = "0x1fe40000_MPU_9250"   the sensor of an HDF5 file that has several
+//   group = "0x1fe40000_MPU_9250"   the sensor of an HDF5 file that has several, a group of TDMS
 //   u_stamp_s = 1e-7         standard uncertainty of its stamps, of UTC or of the clock they share
+//   time_offset_s = -37.0    added to its stamps, as where they are TAI
+//   scale = { sync = 10.0 }  factors of the values of its channels
 [[nodiscard]] FileSourceSettings read_file_source(TomlTable& table, NamedFiles& files);
 
 // The key `play`: times real time; 0: at once.

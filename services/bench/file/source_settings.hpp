@@ -27,12 +27,20 @@ struct SocketSourceSettings { // driver = "socket"
   std::string address;
 };
 
+struct NamedChannel {         // "FILE:CHANNEL"
+  std::filesystem::path path; // absolute
+  std::string name;           // in the file, with its group and a slash before it where it has one
+};
+
 struct FileSourceSettings {               // driver = "file"
-  std::filesystem::path path;             // absolute
+  std::filesystem::path path;             // absolute; the first where single channels are named
   double play_speed = 0.0;                // times real time; 0: at once
   std::optional<double> sample_rate_hz{}; // of a file without a time column
-  std::string group{};                    // the sensor's in an HDF5 file with several
+  std::string group{};                    // of an HDF5 or TDMS file with several
   double u_stamp_s = 0.0;                 // of its stamps in their time base; 0: not stated
+  std::vector<NamedChannel> single{};     // channels in place of the whole file
+  double time_offset_s = 0.0;             // added to its stamps
+  std::map<std::string, double> scale{};  // our name of a channel -> factor of its values
 };
 
 // driver = "can". Channels, units and time base of its stream stand in SourceSettings.

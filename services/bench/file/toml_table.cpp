@@ -270,6 +270,29 @@ std::map<std::string, std::string> TomlTable::text_map(const std::string& key) {
   return values;
 }
 
+std::map<std::string, double> TomlTable::number_map(const std::string& key) {
+  tell(key, {.type = "table of numbers"});
+  std::map<std::string, double> values;
+  const toml::node* found = find(key);
+  if (found == nullptr) {
+    return values;
+  }
+  const toml::table* entries = found->as_table();
+  if (entries == nullptr) {
+    refuse(key, "must be a table of numbers, for example { sync = 2.0 }");
+    return values;
+  }
+  for (const auto& [name, entry] : *entries) {
+    const auto value = entry.value<double>();
+    if (!entry.is_number() || !std::isfinite(*value)) {
+      refuse(key, fmt::format("must give a number for '{}'", name.str()));
+      return values;
+    }
+    values.emplace(name.str(), *value);
+  }
+  return values;
+}
+
 std::string TomlTable::one_of(const std::string& key, const std::vector<std::string>& words,
                               const std::string& otherwise) {
   tell(key, {.type = "text",

@@ -36,6 +36,7 @@ public:
   numbers(const std::string& key,
           const std::string& unit); // a number alone counts as a list of one
   [[nodiscard]] std::map<std::string, std::string> text_map(const std::string& key);
+  [[nodiscard]] std::map<std::string, double> number_map(const std::string& key);
   [[nodiscard]] std::string one_of(const std::string& key, const std::vector<std::string>& words,
                                    const std::string& otherwise);
   // The sub-table, or nothing when it is not there.
