@@ -50,6 +50,8 @@ def all_descriptions():
         for heading, text in pages.sections_of(pages.GUIDE / page):
             reader, table, conditions = section_of(page, heading)
             for row in pages.rows_of(text):
+                if "key" not in row:  # of another table, as that of units
+                    continue
                 key = pages.code_in(row["key"])[0]
                 name = f"{table}.{key}" if table else key
                 described.append(Description(reader, name, conditions, row))

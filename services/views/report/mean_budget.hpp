@@ -9,8 +9,8 @@
 //                                          frequencies together say so
 //                                          (analysis/method/repetitions.hpp)
 //
-// Rows add in squares to u of the mean, which is U / k; rows of the phase to more where the sensor
-// hardly stands out of noise, as only the mean tells its amplitude then. Of the magnitude they are
+// Rows add in squares to u of the mean, which is U / k; to somewhat more where the sensor hardly
+// stands out of noise, as only the mean tells its amplitude then. Of the magnitude they are
 // relative to that of the mean. A row of n that are drawn anew has n times its degrees of freedom.
 // Plain function, any thread.
 #pragma once
