@@ -53,13 +53,14 @@ struct Limit {
   std::optional<double> largest{};
   double planned = 0.0; // in the same unit
   const char* unit = nullptr;
+  bool is_level = false; // as it was asked for
 };
 
 std::vector<Limit> limits_of(const BenchView& view, const PlannedLevel& planned) {
   const GeneratorSettings& generator = view.bench.generator;
   const double level_m_s2 = planned.level_m_s2;
   std::vector<Limit> limits{
-      {"maximum_level_m_s2", generator.maximum_level_m_s2, level_m_s2, "m/s^2"},
+      {"maximum_level_m_s2", generator.maximum_level_m_s2, level_m_s2, "m/s^2", true},
       {"maximum_velocity_m_s", generator.maximum_velocity_m_s,
        analysis::velocity_m_s(level_m_s2, planned.frequency_hz), "m/s"},
       {"maximum_displacement_mm", generator.maximum_displacement_mm,
@@ -72,7 +73,7 @@ std::vector<Limit> limits_of(const BenchView& view, const PlannedLevel& planned)
 
 Finding beyond_limit(const BenchView& view, const PlannedLevel& planned, const Limit& limit) {
   const std::string needed =
-      limit.planned == planned.level_m_s2
+      limit.is_level
           ? fmt::format("has {:g} m/s^2 at {:g} Hz", planned.level_m_s2, planned.frequency_hz)
           : fmt::format("of {:g} m/s^2 at {:g} Hz needs {:.4g} {}", planned.level_m_s2,
                         planned.frequency_hz, limit.planned, limit.unit);
