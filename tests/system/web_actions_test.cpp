@@ -151,7 +151,7 @@ TEST_F(WebActions, ConductARun) {
   }
   EXPECT_NEAR(std::sqrt(squares) * mean["magnitude"].get<double>() *
                   mean["k_magnitude"].get<double>() / mean["U_magnitude"].get<double>(),
-              1.0, 1e-3);
+              1.0, 1e-2);
 
   const fs::path kept = folder_ / "runs" / "live" / run;
   // Written as results come: what is compared is what stands when the run has ended.
