@@ -10,15 +10,17 @@
 namespace dyncal::tests {
 namespace {
 
-// A result file without the lines that give times.
+// A result file without its times, and without who conducted the run, which no recording knows.
 std::vector<std::string> lines_without_times(const std::filesystem::path& path) {
   std::ifstream file(path);
+  auto json = nlohmann::ordered_json::parse(file);
+  for (const char* member : {"began_utc", "ended_utc", "conducted_by"}) {
+    json.erase(member);
+  }
+  std::istringstream text(json.dump(1));
   std::vector<std::string> lines;
-  for (std::string line; std::getline(file, line);) {
-    if (line.find("\"began_utc\"") == std::string::npos &&
-        line.find("\"ended_utc\"") == std::string::npos) {
-      lines.push_back(line);
-    }
+  for (std::string line; std::getline(text, line);) {
+    lines.push_back(line);
   }
   return lines;
 }
