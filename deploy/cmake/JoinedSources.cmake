@@ -18,6 +18,10 @@ function(dyncal_unnamed_names text result)
   while(begin GREATER -1)
     string(SUBSTRING "${text}" ${begin} -1 text)
     string(FIND "${text}" "\n} // namespace\n" end)
+    if(end EQUAL -1) # of one line, or its end is not to be seen
+      message(FATAL_ERROR "a source has an unnamed namespace that does not end with\n"
+        "} // namespace\n${text}")
+    endif()
     string(SUBSTRING "${text}" 0 ${end} unnamed)
     string(SUBSTRING "${text}" ${end} -1 text)
     string(REGEX MATCHALL "\n[A-Za-z][^][\n;(){}=]*" declarations "${unnamed}")

@@ -2,10 +2,6 @@
 #include "analysis/interferometer/kernel/arctangent_polynomial.hpp"
 #include "analysis/interferometer/kernel/quadrature_kernel.hpp"
 
-namespace {
-constexpr std::size_t vector_width = 2;
-}
-
 #include "analysis/interferometer/kernel/quadrature_kernel_body.hpp"
 
 namespace dyncal::analysis::kernel {

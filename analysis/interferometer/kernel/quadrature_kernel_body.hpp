@@ -1,5 +1,5 @@
-// The loops of quadrature_kernel.hpp on vectors of `vector_width` doubles, which the including
-// source defines. Every name here is local to that source: two variants must never share a
+// The loops of quadrature_kernel.hpp on vectors of `vector_width` doubles, which CMakeLists.txt gives
+// the including source. Every name here is local to that source: two variants must never share a
 // function, or a processor would be given instructions that it has not.
 
 namespace {
@@ -11,6 +11,7 @@ using dyncal::analysis::kernel::quadrature_moments;
 using dyncal::analysis::kernel::QuadratureCorrection;
 using dyncal::analysis::kernel::tangent_of_an_eighth_pi;
 
+constexpr std::size_t vector_width = DYNCAL_VECTOR_WIDTH; // of the source that includes this
 using Vector = double __attribute__((vector_size(8 * vector_width)));
 using Integers = std::int64_t __attribute__((vector_size(8 * vector_width)));
 
