@@ -1,6 +1,6 @@
-// The loops of quadrature_kernel.hpp on vectors of `vector_width` doubles, which CMakeLists.txt gives
-// the including source. Every name here is local to that source: two variants must never share a
-// function, or a processor would be given instructions that it has not.
+// The loops of quadrature_kernel.hpp on vectors of `vector_width` doubles, a definition of each
+// source that includes this. Every name here is local to that source: two variants must never share
+// a function, or a processor would be given instructions that it has not.
 
 namespace {
 

@@ -14,20 +14,19 @@
 namespace dyncal::inline programs {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr std::int64_t limit_part = 10; // of the run's time
 
 // Until the timer's own end requests a stop when the time is over.
 std::jthread stop_after(std::chrono::nanoseconds limit, std::stop_source& stop) {
-  return std::jthread([&stop, until = Clock::now() + limit](const std::stop_token& ended) {
-    std::mutex mutex;
-    std::unique_lock lock(mutex);
-    std::condition_variable_any().wait_until(lock, ended, until, [] { return false; });
-    if (!ended.stop_requested()) {
-      stop.request_stop();
-    }
-  });
+  return std::jthread(
+      [&stop, until = std::chrono::steady_clock::now() + limit](const std::stop_token& ended) {
+        std::mutex mutex;
+        std::unique_lock lock(mutex);
+        std::condition_variable_any().wait_until(lock, ended, until, [] { return false; });
+        if (!ended.stop_requested()) {
+          stop.request_stop();
+        }
+      });
 }
 
 Expected<RecordedRunOutcome> evaluate(const RunOutcome& outcome,
@@ -64,7 +63,7 @@ OwnRecordingCheck check_own_recording(const RunOutcome& outcome,
                                       const std::filesystem::path& run_folder, bool may_lack,
                                       const std::stop_token& stop) {
   const auto by_hand = fmt::format("; 'dyncal analyse {}' does it", run_folder.string());
-  const auto began = Clock::now();
+  const auto began = std::chrono::steady_clock::now();
   const auto limit = std::max<std::chrono::nanoseconds>(
       least_limit,
       std::chrono::nanoseconds((outcome.ended_utc_ns - outcome.began_utc_ns) / limit_part));
@@ -92,7 +91,8 @@ OwnRecordingCheck check_own_recording(const RunOutcome& outcome,
   if (agreement.missing == agreement.values) {
     return {not_held(agreement.values == 0 ? "no value is valid" : "it has none of the samples")};
   }
-  const double took_s = std::chrono::duration<double>(Clock::now() - began).count();
+  const double took_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   const std::string rest =
       agreement.missing == 0
           ? ""
