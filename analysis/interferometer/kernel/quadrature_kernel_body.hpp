@@ -11,7 +11,7 @@ using dyncal::analysis::kernel::quadrature_moments;
 using dyncal::analysis::kernel::QuadratureCorrection;
 using dyncal::analysis::kernel::tangent_of_an_eighth_pi;
 
-constexpr std::size_t vector_width = DYNCAL_VECTOR_WIDTH; // of the source that includes this
+inline constexpr std::size_t vector_width = DYNCAL_VECTOR_WIDTH;
 using Vector = double __attribute__((vector_size(8 * vector_width)));
 using Integers = std::int64_t __attribute__((vector_size(8 * vector_width)));
 
