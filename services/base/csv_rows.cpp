@@ -7,16 +7,6 @@ namespace {
 
 constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
 
-// That which the head has most of.
-char separator_of(std::string_view head) {
-  const auto count = [&](char letter) { return std::ranges::count(head, letter); };
-  char best = ',';
-  for (const char candidate : {';', '\t'}) {
-    best = count(candidate) > count(best) ? candidate : best;
-  }
-  return best;
-}
-
 std::string trimmed(const std::string& text) {
   const std::size_t begin = text.find_first_not_of(" \t");
   return begin == std::string::npos ? ""
@@ -54,11 +44,27 @@ std::vector<std::string> take_record(std::string_view& text, char separator, std
 
 } // namespace
 
-CsvRows csv_rows(std::string_view text) {
-  if (text.starts_with(byte_order_mark)) {
-    text.remove_prefix(byte_order_mark.size());
+char csv_separator(std::string_view line) {
+  for (const char candidate : {';', '\t'}) {
+    if (line.find(candidate) != std::string_view::npos) {
+      return candidate;
+    }
   }
-  const char separator = separator_of(text.substr(0, text.find('\n')));
+  return ',';
+}
+
+std::vector<std::string> csv_fields(std::string_view line, char separator) {
+  std::size_t lines = 0;
+  return take_record(line, separator, lines);
+}
+
+std::string_view without_byte_order_mark(std::string_view text) {
+  return text.substr(text.starts_with(byte_order_mark) ? byte_order_mark.size() : 0);
+}
+
+CsvRows csv_rows(std::string_view text) {
+  text = without_byte_order_mark(text);
+  const char separator = csv_separator(text.substr(0, text.find('\n')));
   std::size_t line = 0;
   CsvRows table{.head = take_record(text, separator, line), .rows = {}};
   while (!text.empty()) {

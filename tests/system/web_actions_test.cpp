@@ -58,7 +58,8 @@ protected:
   json bench_until(const WebVisitor::Holds& holds) { return visitor_->ask_until(address, holds); }
   // Its name, once `steps` steps of it are done. Empty `name`: the time.
   std::string started_run(int steps, const std::string& name = "") {
-    const json started = visitor_->post("/api/run", {{"file", "bench.toml"}, {"run", name}});
+    const json started = visitor_->post(
+        "/api/run", {{"file", "bench.toml"}, {"run", name}, {"operator", "A. Meter"}});
     if (started["status"] != 200) {
       ADD_FAILURE() << started;
       return "";
@@ -95,6 +96,9 @@ void expect_same_again(const fs::path& run_folder) {
 }
 
 TEST_F(WebActions, ConductARun) {
+  const json too_long =
+      visitor_->post("/api/run", {{"file", "bench.toml"}, {"comment", std::string(201, 'x')}});
+  EXPECT_EQ(too_long["status"], 400) << too_long;
   const std::string run = started_run(1, "first-run");
   ASSERT_THAT(run, testing::StartsWith("first-run."));
   EXPECT_EQ(command("pause", run)["message"], "pause: done");
@@ -176,6 +180,7 @@ TEST_F(WebActions, ConductARun) {
   }
   EXPECT_EQ(compared, 2U) << listed["files"];
 
+  EXPECT_EQ(read_json(kept / "result.json")["conducted_by"]["name"], "A. Meter");
   expect_same_again(kept);
 
   const json sensors = visitor_->ask_until(

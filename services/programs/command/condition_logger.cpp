@@ -1,11 +1,13 @@
 #include "services/programs/command/condition_logger.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <fstream>
 #include <limits>
 #include <sstream>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,6 +15,7 @@
 #include "drivers/utc_clock.hpp"
 #include "services/base/csv_field.hpp"
 #include "services/base/printable_text.hpp"
+#include "services/contract/unit.hpp"
 #include "services/evaluation/result/members.hpp"
 #include "services/programs/command/local_command.hpp"
 #include "services/programs/command/logger_file.hpp"
@@ -35,31 +38,55 @@ bool is_on_earth(const std::string& quantity, double value) {
   if (quantity == "humidity") {
     return value >= 0.0 && value <= 100.0;
   }
-  return quantity == "pressure" ? value >= 1.0 && value <= 2000.0
-                                : value >= -100.0 && value <= 500.0;
+  return quantity == "pressure" ? value >= 100.0 && value <= 2000.0
+                                : value >= -100.0 && value <= 200.0; // so that 296 K is none
 }
 
-ReadCondition file_reader(const std::filesystem::path& file, const std::string& column) {
-  return [file, column]() -> Expected<ConditionReading> {
-    DYNCAL_TRY(const auto reading, newest_reading(file, column));
-    return ConditionReading{reading.utc_ns, reading.value};
+// What a value in a unit is times, and then plus, in that of the condition; nothing: it is none.
+std::optional<std::pair<double, double>> conversion_to(const std::string& unit,
+                                                       const std::string& d_si) {
+  struct Conversion {
+    std::string_view unit;
+    std::string_view d_si;
+    double factor;
+    double offset;
   };
+  static constexpr std::array conversions{
+      Conversion{"degC", R"(\degreecelsius)", 1.0, 0.0},
+      Conversion{"degC", R"(\kelvin)", 1.0, -273.15}, Conversion{"%", R"(\percent)", 1.0, 0.0},
+      Conversion{"hPa", R"(\hecto\pascal)", 1.0, 0.0}, Conversion{"hPa", R"(\pascal)", 0.01, 0.0}};
+  for (const Conversion& one : conversions) {
+    if (one.unit == unit && one.d_si == d_si) {
+      return std::pair(one.factor, one.offset);
+    }
+  }
+  return std::nullopt;
+}
+
+ReadCondition file_reader(const std::filesystem::path& file, const ConditionQuantity& quantity) {
+  return
+      [file, wanted = LoggerColumn{quantity.place, quantity.unit}]() -> Expected<ConditionReading> {
+        DYNCAL_TRY(const auto reading, newest_reading(file, wanted));
+        return ConditionReading{reading.utc_ns, reading.value};
+      };
 }
 
 // Of lines "NAME VALUE".
-ReadCondition command_reader(const std::vector<std::string>& words, const std::string& name) {
-  return [words, name]() -> Expected<ConditionReading> {
+ReadCondition command_reader(const std::vector<std::string>& words,
+                             const ConditionQuantity& quantity) {
+  return [words, name = quantity.place, unit = quantity.unit]() -> Expected<ConditionReading> {
     DYNCAL_TRY(const auto output, run_local_command({.words = words, .limit = command_limit}));
     std::istringstream lines(output);
     for (std::string line; std::getline(lines, line);) {
-      const auto value =
-          line.starts_with(name + " ") ? logger_value(line.substr(name.size() + 1)) : std::nullopt;
+      const auto value = line.starts_with(name + " ")
+                             ? logger_value(line.substr(name.size() + 1), unit)
+                             : std::nullopt;
       if (value) {
         return ConditionReading{utc_now_ns(), *value};
       }
     }
     return fail(ErrorCode::bad_file,
-                fmt::format("{}: prints no line '{} VALUE'", words.front(), name));
+                fmt::format("{}: prints no line '{} VALUE', in {}", words.front(), name, unit));
   };
 }
 
@@ -135,55 +162,73 @@ ReadCondition ConditionLogger::reader_of(const ConditionQuantity& quantity, cons
                                          const RunOutcome& planned) {
   if (settings_.kind == "file") {
     const auto folder = std::filesystem::absolute(bench.path).parent_path();
-    return file_reader(folder / settings_.file, quantity.place);
+    return file_reader(folder / settings_.file, quantity);
   }
-  return settings_.kind == "command" ? command_reader(settings_.command, quantity.place)
-                                     : channel_reader(quantity.place, bench.bench, planned);
+  return settings_.kind == "command" ? command_reader(settings_.command, quantity)
+                                     : channel_reader(quantity, bench.bench, planned);
 }
 
-ReadCondition ConditionLogger::channel_reader(const std::string& channel, const std::string& bench,
-                                              const RunOutcome& planned) {
-  const std::size_t slash = channel.find('/');
-  const std::string name = channel.substr(0, slash);
+ReadCondition ConditionLogger::channel_reader(const ConditionQuantity& quantity,
+                                              const std::string& bench, const RunOutcome& planned) {
+  const std::size_t slash = quantity.place.find('/');
+  const std::string name = quantity.place.substr(0, slash);
   const auto source = std::ranges::find(planned.sources, name, &RunSource::source);
   if (source == planned.sources.end()) {
     return no_reader(fmt::format("the run has no source '{}'", name));
   }
   const auto& channels = source->description.channels;
-  const auto column =
-      std::ranges::find(channels, channel.substr(slash + 1), &drivers::ChannelDescription::name);
+  const auto column = std::ranges::find(channels, quantity.place.substr(slash + 1),
+                                        &drivers::ChannelDescription::name);
   if (column == channels.end()) {
-    return no_reader(fmt::format("source {} has no channel '{}'", name, channel.substr(slash + 1)));
+    return no_reader(
+        fmt::format("source {} has no channel '{}'", name, quantity.place.substr(slash + 1)));
+  }
+  const auto conversion = conversion_to(quantity.unit, column->unit);
+  if (!conversion) {
+    return no_reader(fmt::format(
+        "channel {} is in {}, not in {}; state its unit in the bench file", quantity.place,
+        column->unit.empty() ? "no unit" : short_form(column->unit), quantity.unit));
   }
   tap_ = tap_ ? std::move(tap_) : std::make_unique<SignalTap>(participant_, bus::system_clock());
   const TappedChannel tapped{bench, name, source->kind,
                              static_cast<std::size_t>(column - channels.begin())};
-  return [this, tapped]() -> Expected<ConditionReading> {
-    std::vector<Sample> samples;
-    const bool is_seen = tap_->look(tapped, [&](const ChannelRing& ring) {
-      samples = ring.newest_stretch(ChannelRing::max_samples);
-    });
-    if (!is_seen || samples.empty()) {
-      return fail(ErrorCode::bad_file, fmt::format("source {} sends no samples", tapped.source));
-    }
-    double sum = 0.0;
-    for (const Sample& sample : samples) {
-      sum += sample.value;
-    }
-    return ConditionReading{utc_now_ns(), sum / static_cast<double>(samples.size())};
+  return [this, tapped, conversion = *conversion]() -> Expected<ConditionReading> {
+    DYNCAL_TRY(const double mean, mean_since(tapped, looked_since_));
+    return ConditionReading{utc_now_ns(), conversion.first * mean + conversion.second};
   };
 }
 
-// A channel is read from the first look on.
+// Of the samples that came at this instant or later: older ones may be of a source that is silent.
+Expected<double> ConditionLogger::mean_since(const TappedChannel& channel,
+                                             bus::Clock::Instant since) {
+  double sum = 0.0;
+  std::size_t count = 0;
+  const bool is_seen = tap_->look(channel, [&](const ChannelRing& ring) {
+    const auto first_ns = ring.first_stamp_since(since);
+    for (auto sample = ring.samples().rbegin();
+         first_ns && sample != ring.samples().rend() && sample->stamp_ns >= *first_ns; ++sample) {
+      sum += sample->value;
+      ++count;
+    }
+  });
+  if (!is_seen || count == 0) {
+    return fail(ErrorCode::bad_file, fmt::format("source {} sends no samples", channel.source));
+  }
+  return sum / static_cast<double>(count);
+}
+
+// A channel is read from the first look on; so long its samples are gathered.
+void ConditionLogger::gather_samples() {
+  looked_since_ = bus::system_clock().now();
+  for (const ReadCondition& read : readers_) {
+    static_cast<void>(read()); // the look counts
+  }
+  std::this_thread::sleep_for(channel_time); // no condition: this is what a reading is the mean of
+}
+
 void ConditionLogger::read_all() {
   if (tap_) {
-    for (const ReadCondition& read : readers_) {
-      static_cast<void>(read());
-    }
-    std::mutex mutex;
-    std::unique_lock lock(mutex);
-    std::condition_variable_any nobody;
-    nobody.wait_for(lock, channel_time, [] { return false; });
+    gather_samples();
   }
   for (std::size_t i = 0; i < readers_.size(); ++i) {
     const auto reading = readers_[i]();

@@ -1,10 +1,11 @@
 // Logs the surroundings of a run ([conditions] of the bench file) while it goes on: a reading of
 // each source at once, then every `every_s`, and a last one at the end.
 //
-// Readings come from channels of sources (the mean over two seconds), from the newest line of the
-// file of a data logger, or from what a command prints. One that is older than `max_age_s`, of
-// the future, or beyond what there is on earth is none: sentences say so, and that it is read
-// again, and the result has the reason. Every reading goes into conditions.csv of the run folder.
+// Readings come from channels of sources (the mean of the samples that come within two seconds),
+// from the newest line of the file of a data logger, or from what a command prints. One that is
+// older than `max_age_s`, of the future, in another unit, or beyond what there is on earth is none:
+// sentences say so, and that it is read again, and the result has the reason. Channels may be in K
+// and Pa as well. Every reading goes into conditions.csv of the run folder.
 //
 // Reads in a thread of its own, which may wait for a command for 10 s; the conductor never waits
 // but in finish(). The other functions: one thread.
@@ -75,8 +76,11 @@ public:
 private:
   ReadCondition reader_of(const ConditionQuantity& quantity, const BenchFile& bench,
                           const RunOutcome& planned);
-  ReadCondition channel_reader(const std::string& channel, const std::string& bench,
+  ReadCondition channel_reader(const ConditionQuantity& quantity, const std::string& bench,
                                const RunOutcome& planned);
+  [[nodiscard]] Expected<double> mean_since(const TappedChannel& channel,
+                                            bus::Clock::Instant since);
+  void gather_samples();
   void run(const std::stop_token& stop);
   void read_all();
   void keep(const ConditionSummary& summary);
@@ -84,7 +88,8 @@ private:
   const ConditionSettings settings_;
   bus::Participant& participant_;
   const std::filesystem::path csv_;
-  std::unique_ptr<SignalTap> tap_; // where a source is a channel
+  std::unique_ptr<SignalTap> tap_;     // where a source is a channel
+  bus::Clock::Instant looked_since_{}; // of the thread
   std::vector<ReadCondition> readers_;
   mutable std::mutex mutex_; // of what follows
   std::vector<ConditionSummary> summaries_;

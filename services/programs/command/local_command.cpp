@@ -1,14 +1,11 @@
 #include "services/programs/command/local_command.hpp"
 
-#include <unistd.h>
-
-#include <cstdlib>
-#include <filesystem>
 #include <fstream>
 
 #include <fmt/format.h>
 
 #include "services/base/printable_text.hpp"
+#include "services/base/temporary_folder.hpp"
 #include "services/daemon/program/child_process.hpp"
 
 namespace dyncal::inline programs {
@@ -17,27 +14,6 @@ namespace {
 // Sets the environment and looks in PATH, which execv() does not.
 constexpr const char* starter = "/usr/bin/env";
 constexpr std::size_t max_output = 4096;
-
-// Removed with the object.
-class OutputFolder {
-public:
-  OutputFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "dyncal-XXXXXX").string();
-    path_ = mkdtemp(name.data()) == nullptr ? "" : name;
-  }
-  ~OutputFolder() {
-    std::error_code ignored;
-    if (!path_.empty()) {
-      std::filesystem::remove_all(path_, ignored);
-    }
-  }
-  OutputFolder(const OutputFolder&) = delete;
-  OutputFolder& operator=(const OutputFolder&) = delete;
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
-private:
-  std::filesystem::path path_;
-};
 
 std::string beginning_of(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -67,7 +43,7 @@ tl::unexpected<Error> failed(const LocalCommand& command, const std::string& why
 
 Expected<std::string> run_local_command(const LocalCommand& command, const std::stop_token& stop) {
   constexpr std::chrono::milliseconds slice{100};
-  const OutputFolder folder;
+  const TemporaryFolder folder;
   if (folder.path().empty()) {
     return fail(ErrorCode::bad_file, "no folder can be made for what commands print");
   }

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "services/base/csv_rows.hpp"
 #include "services/base/parsed_number.hpp"
 #include "services/base/whole_file.hpp"
 
@@ -17,41 +18,71 @@ namespace {
 constexpr std::uintmax_t max_file_bytes = 1U << 28U;
 constexpr std::int64_t second_ns = 1'000'000'000;
 
-std::string trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r\"");
-  const auto last = text.find_last_not_of(" \t\r\"");
-  return first == std::string_view::npos ? "" : std::string(text.substr(first, last - first + 1));
+// As loggers and people write the unit that a quantity is stated in; small letters.
+struct UnitSpellings {
+  std::string_view unit;
+  std::vector<std::string_view> spellings;
+};
+const std::vector<UnitSpellings>& known_units() {
+  static const std::vector<UnitSpellings> units{
+      {"degC",
+       {"degc",
+        "\xC2\xB0"
+        "c",
+        "\xB0"
+        "c",
+        "c", "deg c"}},
+      {"%", {"%", "%rh", "% rh", "%rf", "% rf", "% r.h.", "% r.f."}},
+      {"hPa", {"hpa", "mbar"}}};
+  return units;
 }
 
-std::vector<std::string> cells_of(std::string_view line, char separator) {
-  std::vector<std::string> cells;
-  std::string cell;
-  bool quoted = false;
-  for (const char letter : line) {
-    quoted = letter == '"' ? !quoted : quoted;
-    if (letter == separator && !quoted) {
-      cells.push_back(trimmed(cell));
-      cell.clear();
-    } else {
-      cell += letter;
-    }
-  }
-  cells.push_back(trimmed(cell));
-  return cells;
+std::string in_small_letters(std::string text) {
+  std::ranges::transform(text, text.begin(), [](char letter) {
+    return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
+  });
+  return text;
 }
 
-char separator_of(std::string_view line) {
-  for (const char one : {';', '\t'}) {
-    if (line.find(one) != std::string_view::npos) {
-      return one;
-    }
+bool is_unit(const std::string& text, std::string_view unit) {
+  const auto known = std::ranges::find(known_units(), unit, &UnitSpellings::unit);
+  return known != known_units().end() &&
+         std::ranges::find(known->spellings, in_small_letters(text)) != known->spellings.end();
+}
+
+// "K" of "Temp [K]": what stands in the last brackets, where that is a unit of such a quantity and
+// not the one that is asked for; empty: nothing speaks against it.
+std::string other_unit_of(const std::string& title, std::string_view unit) {
+  const std::size_t begin = title.find_last_of("([");
+  const std::size_t end = begin == std::string::npos ? begin : title.find_first_of(")]", begin);
+  if (end == std::string::npos) {
+    return "";
   }
-  return ',';
+  const std::string named = title.substr(begin + 1, end - begin - 1);
+  static const std::vector<std::string_view> others{"k",
+                                                    "kelvin",
+                                                    "f",
+                                                    "degf",
+                                                    "\xC2\xB0"
+                                                    "f",
+                                                    "\xB0"
+                                                    "f",
+                                                    "pa",
+                                                    "kpa",
+                                                    "bar",
+                                                    "torr",
+                                                    "psi",
+                                                    "mmhg",
+                                                    "inhg"};
+  const bool is_other = std::ranges::find(others, in_small_letters(named)) != others.end() ||
+                        std::ranges::any_of(known_units(), [&](const UnitSpellings& one) {
+                          return one.unit != unit && is_unit(named, one.unit);
+                        });
+  return is_other ? named : "";
 }
 
 std::vector<std::string_view> lines_of(std::string_view text) {
-  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-  text.remove_prefix(text.starts_with(byte_order_mark) ? byte_order_mark.size() : 0);
+  text = without_byte_order_mark(text);
   std::vector<std::string_view> lines;
   while (!text.empty()) {
     const std::size_t end = std::min(text.find('\n'), text.size());
@@ -66,24 +97,39 @@ struct ColumnPlace {
   std::size_t cells = 0;  // of the title line; 0: not known
 };
 
-// Nothing: no line has such a title.
-std::optional<ColumnPlace> place_of(const std::vector<std::string_view>& lines,
-                                    const std::string& column) {
+// Of the title, or of the only one that begins so.
+Expected<ColumnPlace> place_in(const std::vector<std::string>& titles, const std::string& column,
+                               const std::string& unit) {
+  auto found = std::ranges::find(titles, column);
+  if (found == titles.end()) {
+    const auto begins_so = [&](const std::string& title) { return title.starts_with(column); };
+    found = std::ranges::find_if(titles, begins_so);
+    if (std::ranges::count_if(titles, begins_so) > 1) {
+      return fail(ErrorCode::bad_file,
+                  fmt::format("several columns begin with '{}'; name one whole", column));
+    }
+  }
+  if (const std::string other = other_unit_of(*found, unit); !other.empty()) {
+    return fail(ErrorCode::bad_file,
+                fmt::format("column '{}' is in {}, not in {}", *found, other, unit));
+  }
+  return ColumnPlace{static_cast<std::size_t>(found - titles.begin()), titles.size()};
+}
+
+Expected<ColumnPlace> place_of(const std::vector<std::string_view>& lines,
+                               const std::string& column, const std::string& unit) {
   if (const auto number = parsed_number<std::size_t>(column); number && *number > 0) {
     return ColumnPlace{*number - 1, 0};
   }
   for (const std::string_view line : lines) {
-    const auto cells = cells_of(line, separator_of(line));
-    for (const bool whole : {true, false}) {
-      const auto found = std::ranges::find_if(cells, [&](const std::string& title) {
-        return whole ? title == column : title.starts_with(column);
-      });
-      if (found != cells.end() && cells.size() > 1) {
-        return ColumnPlace{static_cast<std::size_t>(found - cells.begin()), cells.size()};
-      }
+    const auto cells = csv_fields(line, csv_separator(line));
+    const bool has_title = std::ranges::any_of(
+        cells, [&](const std::string& title) { return title.starts_with(column); });
+    if (has_title && cells.size() > 1) {
+      return place_in(cells, column, unit);
     }
   }
-  return std::nullopt;
+  return fail(ErrorCode::bad_file, fmt::format("has no column '{}'", column));
 }
 
 std::optional<std::int64_t> time_in(const std::vector<std::string>& cells) {
@@ -155,33 +201,30 @@ std::optional<std::int64_t> logger_time_ns(const std::string& text) {
   return std::int64_t{seconds} * second_ns;
 }
 
-std::optional<double> logger_value(const std::string& text) {
-  std::string number = text.substr(0, text.find_first_not_of("+-0123456789.,eE"));
+std::optional<double> logger_value(const std::string& text, const std::string& unit) {
+  const std::size_t end = std::min(text.find_first_not_of("+-0123456789.,eE"), text.size());
+  std::string number = text.substr(0, end);
   std::ranges::replace(number, ',', '.');
   number.erase(0, number.starts_with('+') ? 1 : 0);
-  const std::string rest = trimmed(std::string_view(text).substr(
-      std::min(text.size(), text.find_first_not_of("+-0123456789.,eE"))));
-  constexpr std::size_t longest_unit = 6;
-  const bool is_unit =
-      rest.size() <= longest_unit && rest.find_first_of("0123456789") == std::string::npos;
-  return is_unit ? parsed_number<double>(number) : std::nullopt;
+  const std::string rest = text.substr(std::min(text.find_first_not_of(' ', end), text.size()));
+  return rest.empty() || is_unit(rest, unit) ? parsed_number<double>(number) : std::nullopt;
 }
 
-Expected<LoggerReading> newest_reading_of(std::string_view text, const std::string& column,
+Expected<LoggerReading> newest_reading_of(std::string_view text, const LoggerColumn& wanted,
                                           const std::filesystem::path& file) {
   const std::vector<std::string_view> lines = lines_of(text);
-  const auto place = place_of(lines, column);
+  const auto place = place_of(lines, wanted.column, wanted.unit);
   if (!place) {
-    return fail(ErrorCode::bad_file, fmt::format("{}: has no column '{}'", file.string(), column));
+    return fail(ErrorCode::bad_file, fmt::format("{}: {}", file.string(), place.error().message));
   }
   std::optional<LoggerReading> newest;
   for (const std::string_view line : lines) {
-    const auto cells = cells_of(line, separator_of(line));
+    const auto cells = csv_fields(line, csv_separator(line));
     // A decimal comma between commas would make two cells of a number.
     const bool is_like_title = place->cells == 0 || cells.size() == place->cells;
     const auto utc_ns = time_in(cells);
     const auto value = is_like_title && place->number < cells.size()
-                           ? logger_value(cells[place->number])
+                           ? logger_value(cells[place->number], wanted.unit)
                            : std::nullopt;
     if (utc_ns && value && (!newest || *utc_ns >= newest->utc_ns)) {
       newest = LoggerReading{*utc_ns, *value};
@@ -189,17 +232,17 @@ Expected<LoggerReading> newest_reading_of(std::string_view text, const std::stri
   }
   if (!newest) {
     return fail(ErrorCode::bad_file,
-                fmt::format("{}: has no line with a time (2026-11-27 23:45:10) and a number in "
-                            "column '{}'",
-                            file.string(), column));
+                fmt::format("{}: has no line with a time (2026-11-27 23:45:10) and a number, in {} "
+                            "where it has a unit, in column '{}'",
+                            file.string(), wanted.unit, wanted.column));
   }
   return *newest;
 }
 
 Expected<LoggerReading> newest_reading(const std::filesystem::path& file,
-                                       const std::string& column) {
+                                       const LoggerColumn& wanted) {
   DYNCAL_TRY(const auto text, read_whole_file(file, max_file_bytes));
-  return newest_reading_of(text, column, file);
+  return newest_reading_of(text, wanted, file);
 }
 
 } // namespace dyncal::inline programs

@@ -55,37 +55,36 @@ const char* addition_text(SensorAddition addition) {
   return "changed";
 }
 
-// Of all files or of none: a sensor that is refused leaves the others out as well.
-Expected<void> keep(const SensorAddOptions& options,
-                    const std::vector<std::pair<std::filesystem::path, std::string>>& texts) {
+// All of them or none.
+Expected<void> keep(const SensorAddOptions& options, const std::vector<SensorText>& sensors) {
   DYNCAL_TRY(auto library, SensorLibrary::open(options.store.text()));
-  for (const auto& [path, text] : texts) {
-    DYNCAL_TRY(const auto addition, library->add(text, path, options.change, acting_person()));
-    DYNCAL_TRY(const auto sensor, parse_sensor_file(text, path));
-    fmt::print("{}: {}\n", one_line(sensor.serial), addition_text(addition));
+  DYNCAL_TRY(const auto additions, library->add(sensors, options.change, acting_person()));
+  for (std::size_t i = 0; i < additions.size(); ++i) {
+    DYNCAL_TRY(const auto sensor, parse_sensor_file(sensors[i].text, sensors[i].path));
+    fmt::print("{}: {}\n", one_line(sensor.serial), addition_text(additions[i]));
   }
   return {};
 }
 
 Expected<void> run_sensor_add(const SensorAddOptions& options, const std::stop_token& /*stop*/) {
-  std::vector<std::pair<std::filesystem::path, std::string>> texts;
+  std::vector<SensorText> sensors;
   for (const std::filesystem::path& file : options.files) {
     DYNCAL_TRY(auto text, read_whole_file(file, max_file_bytes));
-    texts.emplace_back(file, std::move(text));
+    sensors.push_back({std::move(text), file});
   }
-  return keep(options, texts);
+  return keep(options, sensors);
 }
 
 Expected<void> run_sensor_import(const SensorAddOptions& options, const std::stop_token& /*stop*/) {
-  std::vector<std::pair<std::filesystem::path, std::string>> texts;
+  std::vector<SensorText> sensors;
   for (const std::filesystem::path& file : options.files) {
     DYNCAL_TRY(const auto list, read_whole_file(file, max_file_bytes));
-    DYNCAL_TRY(const auto sensors, parse_sensor_list(list, file));
-    for (const std::string& sensor : sensors) {
-      texts.emplace_back(file, sensor);
+    DYNCAL_TRY(const auto texts, parse_sensor_list(list, file));
+    for (const std::string& text : texts) {
+      sensors.push_back({text, file});
     }
   }
-  return keep(options, texts);
+  return keep(options, sensors);
 }
 
 struct SensorListOptions {

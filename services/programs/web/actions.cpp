@@ -66,12 +66,19 @@ constexpr std::array<std::pair<const char*, const char*>, 4> run_members{
      {"comment", "--comment"}}};
 constexpr std::size_t max_text_bytes = 200;
 
-// Of the members that are given. As one word each: no text can be an option of its own.
-std::vector<std::string> stated_arguments(const Json& body) {
+// Of the members that are given, and `actor`, whose token it is, as operator where none is. As one
+// word each: no text can be an option of its own. Fails (bad_argument) for a text that is too long.
+Expected<std::vector<std::string>> stated_arguments(const Json& body, const std::string& actor) {
   std::vector<std::string> arguments;
   for (const auto& [member, option] : run_members) {
-    if (const std::string text = text_of(body, member); !text.empty()) {
-      arguments.push_back(fmt::format("{}={}", option, text.substr(0, max_text_bytes)));
+    std::string text = text_of(body, member);
+    if (text.size() > max_text_bytes) {
+      return fail(ErrorCode::bad_argument,
+                  fmt::format("'{}' is longer than {} bytes", member, max_text_bytes));
+    }
+    text = text.empty() && std::string_view(member) == "operator" ? actor : text;
+    if (!text.empty()) {
+      arguments.push_back(fmt::format("{}={}", option, text));
     }
   }
   return arguments;
@@ -150,8 +157,10 @@ bool Actions::post(const httplib::Request& request, httplib::Response& response)
   const std::string by = actor->empty() ? "" : *actor + ", ";
   if (is_command) {
     command(address->bench, body, by + options_.sender, request, response);
+  } else if (const auto stated = stated_arguments(body, *actor); stated) {
+    start_run(text_of(body, "file"), *stated, response);
   } else {
-    start_run(text_of(body, "file"), stated_arguments(body), response);
+    answer_error(400, "malformed", stated.error().message, response);
   }
   spdlog::info("{} of {}{}: {} {}", request.path, by, request.remote_addr, response.status,
                response.body);

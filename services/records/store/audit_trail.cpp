@@ -76,7 +76,7 @@ std::map<std::string, std::string> expected_rows(const std::vector<AuditEntry>& 
   for (const AuditEntry& entry : entries) {
     if (entry.action == to_string(AuditAction::result_removed)) {
       rows.erase(entry.subject);
-    } else if (entry.action != to_string(AuditAction::sensor_changed)) {
+    } else {
       rows[entry.subject] = entry.detail;
     }
   }
@@ -104,6 +104,22 @@ Expected<void> check_table(Database& database, const AuditedTable& table,
   return {};
 }
 
+Expected<void> check_sensors(Database& database, std::map<std::string, std::string>& expected,
+                             std::vector<std::string>& problems) {
+  DYNCAL_TRY(const auto rows, database.execute("SELECT serial, version, file FROM sensors "
+                                               "ORDER BY serial, version"));
+  for (const DatabaseRow& row : rows) {
+    const std::string serial = text_of(row[0]);
+    const std::int64_t version = integer_of(row[1]);
+    if (expected.erase(sensor_hash(serial, version, text_of(row[2]))) == 0) {
+      problems.push_back(fmt::format("version {} of the file of sensor {} is not in the trail, or "
+                                     "was changed in the store",
+                                     version, serial));
+    }
+  }
+  return {};
+}
+
 Expected<void> add_found(Database& database, const std::string& statement) {
   DYNCAL_TRY(const auto rows, database.execute(statement));
   for (const DatabaseRow& row : rows) {
@@ -121,6 +137,10 @@ Expected<void> add_found(Database& database, const std::string& statement) {
 std::string to_string(AuditAction action) {
   return per_enumerator(action, {"store_found", "result_added", "result_removed", "document_issued",
                                  "note_added", "run_amended", "sensor_changed"});
+}
+
+std::string sensor_hash(const std::string& serial, std::int64_t version, const std::string& file) {
+  return sha256_hex(fmt::format("{}\n{}\n{}", serial, version, file));
 }
 
 Expected<void> add_to_audit(Database& database, const AuditEvent& event, const ActingPerson& by) {
@@ -160,6 +180,7 @@ Expected<std::vector<std::string>> audit_problems(Database& database) {
   for (const AuditedTable& table : audited_tables) {
     DYNCAL_TRY(check_table(database, table, expected, problems));
   }
+  DYNCAL_TRY(check_sensors(database, expected, problems));
   for (const auto& [subject, detail] : expected) {
     problems.push_back(fmt::format("what the trail has is not in the store any more: {} (SHA-256 "
                                    "{}...)",

@@ -34,7 +34,7 @@ enum class AuditAction {
 
 struct AuditEvent {
   AuditAction action = AuditAction::result_added;
-  std::string subject; // SHA-256 of a result, a document or an entry; a serial number
+  std::string subject; // SHA-256 of a result, a document, an entry, or a version of a sensor's file
   std::string detail;  // for people
 };
 
@@ -54,8 +54,13 @@ struct AuditEntry {
 // All, the oldest first.
 [[nodiscard]] Expected<std::vector<AuditEntry>> audit_entries(Database& database);
 
-// What is wrong, a sentence each; empty: chain and tables agree. Results, documents and entries of
-// journals are held against the trail, and the texts that are kept against their SHA-256.
+// Of a version of a sensor's file: "SERIAL\nVERSION\nFILE".
+[[nodiscard]] std::string sensor_hash(const std::string& serial, std::int64_t version,
+                                      const std::string& file);
+
+// What is wrong, a sentence each; empty: chain and tables agree. Results, documents, entries of
+// journals and files of sensors are held against the trail, and the texts that are kept against
+// their SHA-256.
 [[nodiscard]] Expected<std::vector<std::string>> audit_problems(Database& database);
 
 // Results and documents that are in the store before there is a trail.

@@ -40,9 +40,9 @@ Expected<std::unique_ptr<SensorLibrary>> SensorLibrary::open(const std::string& 
       new SensorLibrary(std::move(database), without_password(place)));
 }
 
-Expected<SensorAddition> SensorLibrary::add(const std::string& text,
-                                            const std::filesystem::path& path, bool may_change,
-                                            const ActingPerson& by) {
+Expected<SensorAddition> SensorLibrary::add_one(const SensorText& added, bool may_change,
+                                                const ActingPerson& by) {
+  const auto& [text, path] = added;
   DYNCAL_TRY(const auto sensor, parse_sensor_file(text, path));
   if (const std::string part = passing_part(sensor); !part.empty()) {
     return fail(ErrorCode::bad_file,
@@ -50,33 +50,41 @@ Expected<SensorAddition> SensorLibrary::add(const std::string& text,
                             "and state it when the document is made",
                             path.string(), part));
   }
+  DYNCAL_TRY(const auto known, find(sensor.serial));
+  if (known && known->text == text) {
+    return SensorAddition::already_there;
+  }
+  if (known && !may_change) {
+    return fail(ErrorCode::bad_argument,
+                fmt::format("{}: sensor '{}' is in the library with another file since {}; see "
+                            "'dyncal sensor show {} --file', and --change it",
+                            path.string(), sensor.serial, known->added_utc.substr(0, 10),
+                            sensor.serial));
+  }
   const std::string now = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
-  SensorAddition addition = SensorAddition::added;
+  const std::int64_t version = known ? known->version + 1 : 1;
+  DYNCAL_TRY(database_->execute(
+      "INSERT INTO sensors (serial, version, added_utc, file) VALUES ($1, $2, $3, $4)",
+      {sensor.serial, version, now, text}));
+  DYNCAL_TRY(add_to_audit(*database_,
+                          {AuditAction::sensor_changed, sensor_hash(sensor.serial, version, text),
+                           fmt::format("file of sensor {}, version {}", sensor.serial, version)},
+                          by));
+  return known ? SensorAddition::changed : SensorAddition::added;
+}
+
+Expected<std::vector<SensorAddition>> SensorLibrary::add(const std::vector<SensorText>& sensors,
+                                                         bool may_change, const ActingPerson& by) {
+  std::vector<SensorAddition> additions;
   const auto kept = database_->transaction([&]() -> Expected<void> {
-    DYNCAL_TRY(const auto known, find(sensor.serial));
-    if (known && known->text == text) {
-      addition = SensorAddition::already_there;
-      return {};
+    for (const SensorText& sensor : sensors) {
+      DYNCAL_TRY(const auto addition, add_one(sensor, may_change, by));
+      additions.push_back(addition);
     }
-    if (known && !may_change) {
-      return fail(ErrorCode::bad_argument,
-                  fmt::format("{}: sensor '{}' is in the library with another file since {}; see "
-                              "'dyncal sensor show {} --file', and --change it",
-                              path.string(), sensor.serial, known->added_utc.substr(0, 10),
-                              sensor.serial));
-    }
-    addition = known ? SensorAddition::changed : SensorAddition::added;
-    const int version = known ? known->version + 1 : 1;
-    DYNCAL_TRY(database_->execute(
-        "INSERT INTO sensors (serial, version, added_utc, file) VALUES ($1, $2, $3, $4)",
-        {sensor.serial, std::int64_t{version}, now, text}));
-    return add_to_audit(*database_,
-                        {AuditAction::sensor_changed, sensor.serial,
-                         fmt::format("file of sensor {}, version {}", sensor.serial, version)},
-                        by);
+    return {};
   });
   DYNCAL_TRY(kept);
-  return addition;
+  return additions;
 }
 
 Expected<LibrarySensor> SensorLibrary::sensor_of(const DatabaseRow& row) const {

@@ -31,16 +31,20 @@ struct LibrarySensor {
 
 enum class SensorAddition { added, already_there, changed };
 
+struct SensorText { // a sensor file, before it is read
+  std::string text;
+  std::filesystem::path path; // for messages
+};
+
 class SensorLibrary {
 public:
   // In the database of a store; makes it if there is none.
   [[nodiscard]] static Expected<std::unique_ptr<SensorLibrary>> open(const std::string& place);
 
-  // `path` is for messages. A sensor that is there with another file is changed only if that is
-  // asked for. `by`: for the audit trail.
-  [[nodiscard]] Expected<SensorAddition> add(const std::string& text,
-                                             const std::filesystem::path& path, bool may_change,
-                                             const ActingPerson& by = {});
+  // All of them or none. A sensor that is there with another file is changed only if that is asked
+  // for. `by`: for the audit trail.
+  [[nodiscard]] Expected<std::vector<SensorAddition>>
+  add(const std::vector<SensorText>& sensors, bool may_change, const ActingPerson& by = {});
   // Nothing: none has this serial number.
   [[nodiscard]] Expected<std::optional<LibrarySensor>> find(const std::string& serial);
   // The newest version of each, by serial number.
@@ -51,6 +55,8 @@ public:
 private:
   explicit SensorLibrary(std::unique_ptr<Database> database, std::string place)
       : database_(std::move(database)), place_(std::move(place)) {}
+  Expected<SensorAddition> add_one(const SensorText& added, bool may_change,
+                                   const ActingPerson& by);
   Expected<LibrarySensor> sensor_of(const DatabaseRow& row) const;
   Expected<std::vector<LibrarySensor>> sensors_of(const std::vector<DatabaseRow>& rows) const;
 

@@ -10,6 +10,7 @@
 #include <fmt/core.h>
 
 #include "services/base/output_file.hpp"
+#include "services/base/temporary_folder.hpp"
 #include "services/base/whole_file.hpp"
 #include "services/daemon/program/child_process.hpp"
 
@@ -32,32 +33,6 @@ std::optional<std::filesystem::path> find_program(const std::string& name) {
   }
   return std::nullopt;
 }
-
-// Removed with all that is in it.
-class TemporaryFolder {
-public:
-  TemporaryFolder() {
-    std::error_code unknown;
-    std::string name =
-        (std::filesystem::temp_directory_path(unknown) / "dyncal-pdf-XXXXXX").string();
-    if (mkdtemp(name.data()) != nullptr) {
-      path_ = name;
-    }
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    if (!path_.empty()) {
-      std::filesystem::remove_all(path_, ignored);
-    }
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
-private:
-  std::filesystem::path path_;
-};
 
 Expected<void> run_weasyprint(const std::filesystem::path& program,
                               const std::filesystem::path& folder) {

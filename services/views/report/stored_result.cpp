@@ -103,9 +103,11 @@ std::optional<std::string> contradiction(const StoredResult& result) {
   const auto valid = std::count_if(result.points.begin(), result.points.end(),
                                    [](const StoredPoint& point) { return point.valid; });
   if (valid > 0 && result.values.empty()) {
-    return fmt::format("transfer_function is empty, but {} single results have a value: the file "
-                       "was changed",
-                       valid);
+    return fmt::format(
+        "transfer_function is empty, but {} single results have a value: its run lost "
+        "its analysis before the means were taken, or the file was changed; evaluate "
+        "the recording of the run once more with 'dyncal analyse'",
+        valid);
   }
   return std::nullopt;
 }

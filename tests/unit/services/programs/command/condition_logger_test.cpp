@@ -1,10 +1,16 @@
 #include "services/programs/command/condition_logger.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <memory>
 #include <numeric>
 #include <random>
 
 #include <gmock/gmock.h>
+
+#include "services/bus/memory/memory_network.hpp"
+#include "services/contract/topics.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace dyncal::inline programs {
 namespace {
@@ -103,6 +109,109 @@ TEST(JoinedConditions, AreOfARunThatWasResumed) {
   EXPECT_EQ(joined[0].mean, 22.0);
   EXPECT_EQ(joined[0].maximum, 25.0);
   EXPECT_EQ(joined_conditions({}, {since})[0].count, 1U);
+}
+
+// Blocks of one channel, 10 samples each, as long as it is asked to.
+class ChannelSource {
+public:
+  explicit ChannelSource(bus::MemoryNetwork& network) : there_(network.join("dau")) {}
+
+  // Until `is_done`.
+  void write(double value, const std::function<bool()>& is_done) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+    while (!is_done() && std::chrono::steady_clock::now() < end) {
+      wire::SampleBlock block;
+      block.bench("acc-1");
+      block.source("dau");
+      block.session(7);
+      block.block(number_);
+      block.first_sample(number_ * 10);
+      block.sample_count(10);
+      block.channel_count(1);
+      block.origin_ns(1'000);
+      block.interval_numerator_ns(1'000'000);
+      block.interval_denominator(1);
+      block.values(std::vector<double>(10, value));
+      writer_.write(block);
+      ++number_;
+      bus::WakeUp pacing;
+      pacing.wait_until(std::chrono::steady_clock::now() + std::chrono::milliseconds(10));
+    }
+    EXPECT_TRUE(is_done());
+  }
+
+private:
+  bus::Participant there_;
+  bus::Writer<wire::SampleBlock> writer_ =
+      there_
+          .writer<wire::SampleBlock>(bus::topics::dau_samples, bus::Profile::live_samples, "acc-1")
+          .value();
+  std::uint64_t number_ = 0;
+};
+
+class ChannelConditions : public testing::Test {
+protected:
+  std::unique_ptr<ConditionLogger> logger_of(const std::string& unit) {
+    ConditionSettings settings;
+    settings.kind = "channel";
+    settings.every_s = 0.1;
+    settings.quantities = {{"temperature", "degC", "dau/temperature", 0.4}};
+    bench_.bench = "acc-1";
+    RunSource source;
+    source.source = "dau";
+    source.kind = SourceKind::dau;
+    source.description.channels.resize(1);
+    source.description.channels[0].name = "temperature";
+    source.description.channels[0].unit = unit;
+    planned_.sources = {source};
+    return std::make_unique<ConditionLogger>(settings, bench_, planned_, here_,
+                                             folder_.path() / "conditions.csv");
+  }
+
+  bus::MemoryNetwork network_;
+  bus::Participant here_ = network_.join("run");
+  ChannelSource source_{network_};
+  BenchFile bench_;
+  RunOutcome planned_;
+  tests::TemporaryFolder folder_;
+};
+
+TEST_F(ChannelConditions, AreMeansOfWhatComes) {
+  const auto logger = logger_of(R"(\degreecelsius)");
+  source_.write(23.5, [&] { return logger->logged().front().count >= 2; });
+  const LoggedCondition logged = logger->logged().front();
+  EXPECT_EQ(logged.mean, 23.5);
+  EXPECT_THAT(logged.problem, IsEmpty());
+  EXPECT_THAT(logger->take_sentences(), IsEmpty());
+}
+
+TEST_F(ChannelConditions, AreStatedInTheirUnitWhateverThatOfTheChannel) {
+  const auto logger = logger_of(R"(\kelvin)");
+  source_.write(296.15, [&] { return logger->logged().front().count >= 1; });
+  EXPECT_NEAR(logger->finish().front().mean, 23.0, 1e-9);
+}
+
+TEST_F(ChannelConditions, AreNoneInAUnitThatIsNotTheirs) {
+  for (const char* unit : {R"(\volt)", "", R"(\one)"}) {
+    const LoggedCondition logged = logger_of(unit)->finish().front();
+    EXPECT_EQ(logged.count, 0U) << unit;
+    EXPECT_THAT(logged.problem, HasSubstr("not in degC"));
+  }
+}
+
+// What came before is still held, and not taken for what comes.
+TEST_F(ChannelConditions, AreNotThoseOfASourceThatHasFallenSilent) {
+  const auto logger = logger_of(R"(\degreecelsius)");
+  source_.write(23.5, [&] { return logger->logged().front().count >= 1; });
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  std::vector<std::string> sentences;
+  while (sentences.empty() && std::chrono::steady_clock::now() < end) {
+    sentences = logger->take_sentences();
+  }
+  ASSERT_THAT(sentences, testing::ElementsAre(HasSubstr("source dau sends no samples")));
+  const auto count = logger->logged().front().count;
+  EXPECT_LE(count, 2U); // the one that was being taken may hold some
+  EXPECT_EQ(logger->finish().front().count, count);
 }
 
 } // namespace

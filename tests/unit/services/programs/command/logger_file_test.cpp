@@ -14,7 +14,7 @@ using testing::HasSubstr;
 constexpr std::int64_t noon_ns = 1'772'366'400'000'000'000; // 2026-03-01T12:00:00Z
 
 Expected<LoggerReading> newest(const std::string& text, const std::string& column = "Temp") {
-  return newest_reading_of(text, column, "room.csv");
+  return newest_reading_of(text, {column, "degC"}, "room.csv");
 }
 
 // As loggers of several makers write the same.
@@ -50,17 +50,52 @@ TEST(LoggerFile, TakesNoPartOfANumber) {
   ASSERT_FALSE(reading);
   EXPECT_THAT(reading.error().message, HasSubstr("no line with a time"));
   for (const char* text : {"1.234,5", "23.1.2", "", "-", "nan", "0x10", "12 something else"}) {
-    EXPECT_FALSE(logger_value(text)) << text;
+    EXPECT_FALSE(logger_value(text, "degC")) << text;
   }
-  EXPECT_EQ(logger_value("+23,5 %"), 23.5);
-  EXPECT_EQ(logger_value("-4"), -4.0);
+  EXPECT_EQ(logger_value("+23,5 %", "%"), 23.5);
+  EXPECT_EQ(logger_value("-4", "degC"), -4.0);
+}
+
+TEST(LoggerFile, TakesNoValueInAnotherUnit) {
+  for (const char* text : {"296 K", "73 F",
+                           "73.4 \xC2\xB0"
+                           "F",
+                           "23 %", "101325 Pa", "23 hPa"}) {
+    EXPECT_FALSE(logger_value(text, "degC")) << text;
+  }
+  for (const char* text : {"23.1 degC",
+                           "23,1 \xC2\xB0"
+                           "C",
+                           "23.1C", "23.1"}) {
+    EXPECT_EQ(logger_value(text, "degC"), 23.1) << text;
+  }
+  EXPECT_EQ(logger_value("1013.2 mbar", "hPa"), 1013.2);
+  EXPECT_EQ(logger_value("41 % rF", "%"), 41.0);
+  for (const char* title : {"Temp [K]",
+                            "Temp (\xC2\xB0"
+                            "F)",
+                            "Temp [%]"}) {
+    const auto reading = newest(fmt::format("Time;{}\n2026-03-01T12:00:00Z;23,1\n", title));
+    ASSERT_FALSE(reading) << title;
+    EXPECT_THAT(reading.error().message, HasSubstr("not in degC"));
+  }
+  EXPECT_TRUE(newest("Time;Temp (room)\n2026-03-01T12:00:00Z;23,1\n"));
+}
+
+TEST(LoggerFile, TakesNoneOfSeveralColumns) {
+  const std::string text = "Time;Temp in;Temp out\n2026-03-01T12:00:00Z;23,1;9\n";
+  const auto reading = newest(text);
+  ASSERT_FALSE(reading);
+  EXPECT_THAT(reading.error().message, HasSubstr("several columns begin with 'Temp'"));
+  EXPECT_EQ(newest(text, "Temp in")->value, 23.1);
+  EXPECT_EQ(newest("Time;Temp;Temp out\n2026-03-01T12:00:00Z;23,1;9\n")->value, 23.1);
 }
 
 TEST(LoggerFile, NamesAColumnThatIsNotThere) {
   const auto reading = newest("Time;Hum\n2026-03-01T12:00:00Z;4\n");
   ASSERT_FALSE(reading);
   EXPECT_THAT(reading.error().message, HasSubstr("room.csv: has no column 'Temp'"));
-  EXPECT_FALSE(newest_reading("/nowhere/room.csv", "Temp"));
+  EXPECT_FALSE(newest_reading("/nowhere/room.csv", {"Temp", "degC"}));
 }
 
 TEST(LoggerFile, KnowsTimesAsPeopleAndLoggersWriteThem) {

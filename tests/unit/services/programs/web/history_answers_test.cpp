@@ -92,9 +92,10 @@ TEST(HistoryAnswers, TakeOutWhatBothResultsHaveInCommon) {
     ASSERT_TRUE(added) << added.error().message;
   }
   const auto library = SensorLibrary::open(place);
-  ASSERT_TRUE(library && (*library)->add("[sensor]\nname = \"a\"\nmanufacturer = \"b\"\nmodel = "
-                                         "\"c\"\nserial = \"SN-9\"\ninterval_months = 12\n",
-                                         "s.toml", false));
+  ASSERT_TRUE(library && (*library)->add({{"[sensor]\nname = \"a\"\nmanufacturer = \"b\"\nmodel = "
+                                           "\"c\"\nserial = \"SN-9\"\ninterval_months = 12\n",
+                                           "s.toml"}},
+                                         false));
   HistoryAnswers answers(place);
   httplib::Request request;
   request.path = "/api/history";

@@ -21,10 +21,11 @@ protected:
     ASSERT_TRUE(library) << library.error().message;
     const std::string interval =
         interval_months == 0 ? "" : "interval_months = " + std::to_string(interval_months) + "\n";
-    const auto added = (*library)->add("[sensor]\nname = \"a\"\nmanufacturer = \"Works\"\n"
-                                       "model = \"MPU\"\nserial = \"" +
-                                           serial + "\"\n" + interval,
-                                       "s.toml", false);
+    const auto added = (*library)->add({{"[sensor]\nname = \"a\"\nmanufacturer = \"Works\"\n"
+                                         "model = \"MPU\"\nserial = \"" +
+                                             serial + "\"\n" + interval,
+                                         "s.toml"}},
+                                       false);
     ASSERT_TRUE(added) << added.error().message;
   }
   // Of a result in the store whose run ended in November 2023.
