@@ -136,7 +136,8 @@ class Memory(PageCase):
                 if view == "run/acc-1":
                     page.wait_for("document.querySelectorAll('[data-step]').length === 51")
                 if view == "history":
-                    page.wait_for("document.querySelectorAll('[data-panel=en] tr').length > 50")
+                    rows = "document.querySelectorAll('[data-panel=en] tbody tr')"
+                    page.wait_for(f"{rows}.length === 34")
 
         for _ in range(rounds // 3):
             go_round()
