@@ -2,14 +2,16 @@
 """Many benches on one network and one analysis: do they disturb each other, what do they cost?
 
     many_benches_campaign.py PROGRAMS [--benches 8] [--acs-rate-hz 50000] [--warm-s 60]
-                             [--rounds 2] [--vendors cyclonedds,...]
+                             [--rounds 2] [--vendors cyclonedds,...] [--secured]
 
 PROGRAMS is the folder of the built programs. The instruments of all benches and one service of each
 kind for all of them are on one host, the analysis on another, and 16 runs each on those of
 operators (a host holds 31 programs of a domain). The services run for --warm-s; then every bench
 begins a run in the same instant, --rounds times. Held: every run ends with 0 and every value valid,
 without loss and without flag; the analysis takes less than 30 % of a core and 200 MB (of 8 benches;
-in proportion with more). Printed: how long arming took, what the services used.
+in proportion with more). Printed: how long arming took, what the services used. With --secured
+each program has the folder of its role, and those of sources and operators are for all benches; how
+much the analysis takes is then printed alone.
 Exit status 1 if something did not hold, 77 where there are no network namespaces.
 """
 
@@ -23,6 +25,9 @@ import time
 import hosts
 from bench_laboratory import READY, SERVICES, VENDORS, BenchLaboratory, Failure
 from process_figures import figures
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "security"))
+from secured_bench import secured_environments  # noqa: E402
 
 MAX_CORE = 0.3
 MAX_RESIDENT_MB = 200.0
@@ -77,7 +82,7 @@ def used_of(services):
     return {name: figures(service.process.pid) for name, service in services.items()}
 
 
-def round_of(benches, services):
+def round_of(benches, services, limited):
     before, began_s = used_of(services), time.monotonic()
     runs = [bench.run() for bench in benches]
     arming_s = seconds_to_first_step(runs, began_s)
@@ -96,7 +101,7 @@ def round_of(benches, services):
             flush=True,
         )
         share = max(1.0, len(benches) / BENCHES_OF_THOSE)
-        if name == "dyncal-analysis" and (
+        if limited and name == "dyncal-analysis" and (
             core > share * MAX_CORE or now.resident_mb > share * MAX_RESIDENT_MB
         ):
             raise Failure("the analysis used more than it may")
@@ -116,6 +121,10 @@ def campaign(arguments, vendors):
     operators = (arguments.benches - 1) // RUNS_OF_AN_OPERATOR + 1
     network = hosts.Hosts(("bench", "analysis", *(f"operator{i}" for i in range(operators))))
     benches = []
+    environments = {}
+    if arguments.secured:
+        names = [f"b{number}" for number in range(arguments.benches)]
+        environments = secured_environments(arguments.programs, folder / "security", names)
     try:
         for number in range(arguments.benches):
             benches.append(
@@ -128,12 +137,13 @@ def campaign(arguments, vendors):
                     name=f"b{number}",
                     domain=benches[0].domain if benches else None,
                     acs_rate_hz=arguments.acs_rate_hz,
+                    environments=environments,
                 )
             )
         services = start_services(benches)
         time.sleep(arguments.warm_s)
         for _ in range(arguments.rounds):
-            round_of(benches, services)
+            round_of(benches, services, limited=not arguments.secured)
     except Failure as failure:
         print(f"{vendors}: {failure} (logs in {folder})", flush=True)
         return False
@@ -154,6 +164,7 @@ def main():
     parser.add_argument("--warm-s", type=float, default=60.0)
     parser.add_argument("--rounds", type=int, default=2)
     parser.add_argument("--vendors", type=lambda text: text.split(","), default=list(VENDORS))
+    parser.add_argument("--secured", action="store_true")
     arguments = parser.parse_args()
     arguments.programs = arguments.programs.resolve()
     if not hosts.can_be_made():

@@ -17,28 +17,37 @@ ROLES = {
 OF_A_BENCH = ("source", "guard", "operator")
 
 
+def call(programs, *arguments):
+    command = [str(pathlib.Path(programs) / "dyncal"), "security", *map(str, arguments)]
+    subprocess.run(command, check=True, capture_output=True)
+
+
+def issue(programs, folder, role, benches, output):
+    named = [word for bench in benches for word in ("--bench", bench)]
+    named = named if role in OF_A_BENCH else []
+    call(programs, "issue", folder / "authority", role, *named, "--output", folder / output)
+
+
+def secured_environments(programs, folder, benches):
+    """The variables of each program, by its name; makes an authority and a folder for each role."""
+    folder = pathlib.Path(folder)
+    folder.mkdir(parents=True)
+    call(programs, "init", folder / "authority")
+    for role in sorted({*ROLES.values()}):
+        issue(programs, folder, role, benches, role)
+    return {program: {"DYNCAL_SECURITY": str(folder / role)} for program, role in ROLES.items()}
+
+
 class SecuredBench(BenchLaboratory):
     """`options` as BenchLaboratory has them."""
 
     def __init__(self, programs, folder, vendors, **options):
         self.security = pathlib.Path(folder) / "security"
-        self.security.mkdir(parents=True)
-        self.call(programs, "init", self.security / "authority")
-        for role in sorted({*ROLES.values()}):
-            self.issue(programs, role, role)
-        environments = {
-            program: {"DYNCAL_SECURITY": str(self.security / role)}
-            for program, role in ROLES.items()
-        }
+        environments = secured_environments(programs, self.security, ["live"])
         super().__init__(programs, folder, vendors, environments=environments, **options)
 
     def call(self, programs, *arguments):
-        command = [str(pathlib.Path(programs) / "dyncal"), "security", *map(str, arguments)]
-        subprocess.run(command, check=True, capture_output=True)
+        call(programs, *arguments)
 
     def issue(self, programs, role, folder):
-        bench = ["--bench", "live"] if role in OF_A_BENCH else []
-        place = self.security / folder
-        self.call(
-            programs, "issue", self.security / "authority", role, *bench, "--output", place
-        )
+        issue(programs, self.security, role, ["live"], folder)
