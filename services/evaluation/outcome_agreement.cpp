@@ -108,6 +108,14 @@ std::string delay_difference(const TransferFunction& published, const TransferFu
                            a.delay_s - b.delay_s, true);
 }
 
+std::vector<TransferFunction> means_of_results(const RunOutcome& outcome) {
+  TransferSummary summary(*outcome.recipe);
+  for (const StepResult& result : outcome.results) {
+    summary.add(result);
+  }
+  return summary.transfer_functions();
+}
+
 } // namespace
 
 bool gives_again(const StepResult& again, const StepResult& published) {
@@ -138,11 +146,7 @@ std::string mean_difference(const TransferFunction& published, const TransferFun
 }
 
 std::vector<std::string> replace_foreign_means(RunOutcome& outcome) {
-  TransferSummary summary(*outcome.recipe);
-  for (const StepResult& result : outcome.results) {
-    summary.add(result);
-  }
-  const std::vector<TransferFunction> means = summary.transfer_functions();
+  const std::vector<TransferFunction> means = means_of_results(outcome);
   std::vector<std::string> differences;
   std::erase_if(outcome.transfer_functions, [&](TransferFunction& published) {
     const auto own = std::find_if(means.begin(), means.end(), [&](const TransferFunction& one) {
@@ -159,6 +163,19 @@ std::vector<std::string> replace_foreign_means(RunOutcome& outcome) {
     return false;
   });
   return differences;
+}
+
+void take_means_of_results(RunOutcome& outcome) {
+  std::vector<TransferFunction> means = means_of_results(outcome);
+  for (TransferFunction& mean : means) {
+    const auto published =
+        std::ranges::find(outcome.transfer_functions, mean.channel, &TransferFunction::channel);
+    if (published != outcome.transfer_functions.end() &&
+        mean_difference(*published, mean).empty()) {
+      mean = std::move(*published); // with its closures
+    }
+  }
+  outcome.transfer_functions = std::move(means);
 }
 
 OutcomeAgreement hold_against(const RunOutcome& published, const RunOutcome& again) {

@@ -37,4 +37,8 @@ struct OutcomeAgreement {
 // The one of its points takes its place, or none; a sentence for each. REQUIRES: a recipe
 [[nodiscard]] std::vector<std::string> replace_foreign_means(RunOutcome& outcome);
 
+// Of an outcome that lacks something that its analysis has published, or will: means are those of
+// the results that are there, also of channels whose mean has not come. REQUIRES: a recipe
+void take_means_of_results(RunOutcome& outcome);
+
 } // namespace dyncal::inline evaluation

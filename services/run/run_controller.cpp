@@ -116,9 +116,8 @@ Expected<RunOutcome> RunController::excite_and_collect(const std::stop_token& st
     watch_->set_state(state, message); // files go on RUNNING until the analysis has seen their end
   }
   const Expected<void> collected = ResultsWait(*watch_, sequence_ != nullptr).wait(stop);
-  if (collected) {
-    leave_out_foreign_means(); // all points are there
-  } else if (outcome_.problem.empty()) {
+  settle_means(collected.has_value());
+  if (!collected && outcome_.problem.empty()) {
     outcome_.problem = collected.error().message;
   }
   if (sequence_ && sequence_->output_may_be_on()) {
@@ -149,9 +148,7 @@ Expected<RunOutcome> RunController::collect_of_ended_run(const std::stop_token& 
                     "the host of its conductor",
                     name()));
   }
-  if (collected) {
-    leave_out_foreign_means();
-  }
+  settle_means(collected.has_value());
   outcome_.problem = collected ? lack_of_ended_run() : collected.error().message;
   outcome_.interrupted = stop.stop_requested();
   outcome_.ended_utc_ns = clock_.utc_now_ns();
@@ -182,8 +179,13 @@ std::string RunController::lack_of_ended_run() const {
                            name(), watch_->analysis()->service().c_str(), lacking, steps.size());
 }
 
-// Another version of the analysis may take means otherwise.
-void RunController::leave_out_foreign_means() {
+// Where some have not come, a mean may be of other results than those that are here. Another
+// version of the analysis may take means otherwise.
+void RunController::settle_means(bool all_results_came) {
+  if (!all_results_came) {
+    take_means_of_results(outcome_);
+    return;
+  }
   if (outcome_.analysis_software != software_version()) {
     return;
   }

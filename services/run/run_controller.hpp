@@ -70,7 +70,7 @@ private:
   Expected<void> check_before_first_step(const std::stop_token& stop);
   Expected<RunOutcome> excite_and_collect(const std::stop_token& stop);
   Expected<RunOutcome> collect_of_ended_run(const std::stop_token& stop);
-  void leave_out_foreign_means();
+  void settle_means(bool all_results_came);
   [[nodiscard]] std::string name() const; // of the run, for people
   [[nodiscard]] bool has_ended_at_analysis() const;
   // What an analysis that has ended the run does not give; empty where it gives all.

@@ -284,13 +284,19 @@ dut = ["dau/acceleration_x", "dau/acceleration_y", "dau/acceleration_z"]"""
     def result(self):
         return json.loads((self.folder / "run.json").read_text(encoding="utf-8"))
 
-    def expect_whole_result(self):
-        """Every value is there, valid, without loss and without flag; returns the values."""
+    def expect_whole_result(self, flagged_by_chance=0):
+        """Every value is there, valid, without loss and without flag; returns the values.
+
+        Noise passes each check of a value now and then (about 3e-4 of values): of a long run so
+        many may be flagged.
+        """
         points = self.result()["points"]
         if len(points) != len(self.frequencies) * self.channels:
             raise Failure(f"{self.name}: {len(points)} values")
+        flagged = 0
         for point in points:
-            if not point["valid"] or point["lost"] or point["flags"]:
+            flagged += bool(point["flags"])
+            if not point["valid"] or point["lost"] or flagged > flagged_by_chance:
                 raise Failure(f"{self.name}: {point['problem'] if not point['valid'] else point}")
         return points
 

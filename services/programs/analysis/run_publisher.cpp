@@ -1,5 +1,7 @@
 #include "services/programs/analysis/run_publisher.hpp"
 
+#include <algorithm>
+
 #include <spdlog/spdlog.h>
 
 #include "services/base/version.hpp"
@@ -10,7 +12,7 @@ namespace dyncal::inline programs {
 namespace {
 
 constexpr std::chrono::seconds write_limit{10}; // longer than the lease of a reader that was killed
-constexpr std::chrono::seconds settled_limit{10};
+constexpr std::chrono::milliseconds turn_limit{50}; // other benches and the status wait for it
 
 } // namespace
 
@@ -55,25 +57,69 @@ void RunPublisher::publish(const Recipe& recipe, const EvaluationOutput& output)
       spdlog::warn("bench {}, run {}, step {}, {}: {}", bench_, run_, result.step, result.channel,
                    result.problem);
     }
-    write(writers_.result, to_message(recipe, result));
-    results_ += result.attempt == 1 ? 1 : 0; // a later attempt has the same key
   }
-  for (const StepResult& result : output.settled) { // again: not counted
-    write(writers_.result, to_message(recipe, result));
+  queue(recipe, output);
+  hand_over();
+}
+
+void RunPublisher::queue(const Recipe& recipe, const EvaluationOutput& output) {
+  for (const StepResult& result : output.results) {
+    // A later attempt has the same key.
+    waiting_.push_back({to_message(recipe, result), result.attempt == 1});
+  }
+  for (const StepResult& result : output.settled) {
+    waiting_.push_back({to_message(recipe, result), false});
+  }
+  comes_once_more_ = comes_once_more_ || !output.settled.empty();
+  for (const TransferFunction& function : output.transfer_functions) {
+    functions_waiting_.push_back(to_message(recipe, function));
+  }
+  for (const ClockReport& report : output.clock_reports) {
+    reports_waiting_.push_back(to_message(recipe, report));
+  }
+}
+
+void RunPublisher::hand_over() {
+  const auto turn_ends = clock_->now() + turn_limit;
+  while (!waiting_.empty()) {
+    if (unacknowledged_ >= results_at_once && !are_acknowledged(turn_ends)) {
+      return;
+    }
+    write(writers_.result, waiting_.front().message);
+    results_ += waiting_.front().counts ? 1 : 0;
+    waiting_.pop_front();
+    waits_since_ = unacknowledged_++ == 0 ? clock_->now() : waits_since_;
   }
   // Topics have no order among each other, and nothing tells a reader of FINISHED that a result
   // comes once more: so it is there before.
-  if (!output.settled.empty() && !writers_.result.wait_for_acknowledgments(settled_limit)) {
-    spdlog::warn("bench {}, run {}: not everybody has acknowledged the last results", bench_, run_);
+  if (comes_once_more_ && unacknowledged_ > 0 && !are_acknowledged(turn_ends)) {
+    return;
   }
-  for (const TransferFunction& function : output.transfer_functions) {
-    write(writers_.transfer_function, to_message(recipe, function));
+  comes_once_more_ = false;
+  for (const wire::TransferFunction& function : functions_waiting_) {
+    write(writers_.transfer_function, function);
     ++transfer_functions_;
   }
-  for (const ClockReport& report : output.clock_reports) {
-    write(writers_.clock_report, to_message(recipe, report));
+  for (const wire::SampleClockReport& report : reports_waiting_) {
+    write(writers_.clock_report, report);
     ++clock_reports_;
   }
+  functions_waiting_.clear();
+  reports_waiting_.clear();
+}
+
+bool RunPublisher::are_acknowledged(bus::Clock::Instant turn_ends) {
+  const auto limit = std::max(bus::Clock::Instant::duration::zero(), turn_ends - clock_->now());
+  const bool acknowledged = writers_.result.wait_for_acknowledgments(limit);
+  if (!acknowledged && !is_unheard_ && clock_->now() - waits_since_ < acknowledgment_limit) {
+    return false;
+  }
+  if (!acknowledged && !is_unheard_) {
+    spdlog::warn("bench {}, run {}: not everybody has acknowledged the last results", bench_, run_);
+  }
+  is_unheard_ = !acknowledged;
+  unacknowledged_ = 0;
+  return true;
 }
 
 template <class Message>

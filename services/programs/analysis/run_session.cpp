@@ -160,9 +160,11 @@ void RunSession::work(const KnownSources& sources, RunSession* before) {
     arm(sources, now);
   }
   if (armed()) {
-    catch_up(now);
-    watch_sources(now);
-    watch_measurement();
+    if (!evaluator_->finished()) { // else its last results are on their way
+      catch_up(now);
+      watch_sources(now);
+      watch_measurement();
+    }
     evaluate(now);
     end_takeover(now);
   }
@@ -178,7 +180,8 @@ void RunSession::work(const KnownSources& sources, RunSession* before) {
 // With the results of all that was measured before: anyone who goes on with the run knows by them
 // what is left.
 void RunSession::end_takeover(Instant now) {
-  if (is<TakingOver>() && !lacks_samples(now) && !evaluator_->is_evaluating()) {
+  if (is<TakingOver>() && !lacks_samples(now) && !evaluator_->is_evaluating() &&
+      publisher_.has_published_all()) {
     enter(Attending{}, "");
   }
 }
@@ -316,7 +319,10 @@ void RunSession::evaluate(Instant now) {
     }
     publisher_.publish(evaluator_->recipe(), output);
   }
-  if (evaluator_->finished()) {
+  if (!publisher_.has_published_all()) {
+    last_progress_ = now;
+    wake_up_->ring();
+  } else if (evaluator_->finished()) {
     finish();
   } else {
     end_overdue(now);

@@ -10,17 +10,32 @@
 #include "services/checks/doctor/announcement_listener.hpp"
 #include "services/checks/doctor/laboratory_watch.hpp"
 #include "services/checks/doctor/unheard_analysis.hpp"
+#include "services/security/strangers.hpp"
 
 namespace dyncal::inline programs {
 namespace {
 
-// Looks at the laboratory for as long as the command says.
+// On busy computers two programs need some seconds to authenticate each other, and more where a
+// message was lost; until then each takes the other for a stranger.
+constexpr double authentication_s = 10.0;
+constexpr double answer_s = 2.0; // of a program that has just been authenticated
+
+// Looks at the laboratory for as long as the command says, and longer where a secured program has
+// yet to authenticate another.
 doctor::LaboratoryView look(doctor::LaboratoryWatch& watch, doctor::AnnouncementListener* listener,
-                            double seconds, const std::stop_token& stop) {
+                            double seconds, bool is_secured, const std::stop_token& stop) {
   using Clock = std::chrono::steady_clock;
   const auto began = Clock::now();
   const auto passed_s = [&] { return std::chrono::duration<double>(Clock::now() - began).count(); };
-  while (!stop.stop_requested() && passed_s() < seconds) {
+  double until_s = seconds;
+  const auto goes_on = [&] {
+    const double passed = passed_s();
+    if (is_secured && !without_endpoints(watch.view().discovery).empty()) {
+      until_s = std::clamp(passed + answer_s, until_s, seconds + authentication_s);
+    }
+    return passed < until_s;
+  };
+  while (!stop.stop_requested() && goes_on()) {
     watch.work();
     if (listener != nullptr) {
       listener->work();
@@ -98,7 +113,8 @@ Expected<void> look_at_laboratory(const NetworkOptions& network, double seconds,
   auto listener = open_listener(network, address, found.about_multicast);
   found.host = doctor::look_at_host(".");
   found.host.used_address = address;
-  found.view = look(*watch, listener ? &*listener : nullptr, seconds, stop);
+  found.view =
+      look(*watch, listener ? &*listener : nullptr, seconds, !network.security.empty(), stop);
   found.host.udp_after = doctor::udp_counters();
   found.host.link_changes_after = doctor::link_changes();
   found.host.queues_after = doctor::send_queues();

@@ -1,4 +1,5 @@
-// A look of some seconds at the laboratory and at this host, for doctor's judges. Blocks.
+// A look of some seconds at the laboratory and at this host, for doctor's judges. It takes up to
+// 10 s longer where a secured program has yet to authenticate another. Blocks.
 #pragma once
 
 #include <functional>

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "services/evaluation/transfer_summary.hpp"
+#include "services/evaluation/outcome_agreement.hpp"
 #include "services/views/report/result_json.hpp"
 #include "services/views/report/show_outcome.hpp"
 
@@ -16,14 +16,9 @@ constexpr const char* not_ended = "the run has not ended, or its program ended b
 void complete(RunOutcome& so_far) {
   sort_outcome(so_far);
   so_far.problem = not_ended;
-  if (!so_far.recipe || !so_far.transfer_functions.empty()) {
-    return;
+  if (so_far.recipe) {
+    take_means_of_results(so_far);
   }
-  TransferSummary summary(*so_far.recipe);
-  for (const StepResult& result : so_far.results) {
-    summary.add(result);
-  }
-  so_far.transfer_functions = summary.transfer_functions();
 }
 
 } // namespace

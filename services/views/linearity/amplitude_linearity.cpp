@@ -153,9 +153,10 @@ Expected<AmplitudeLinearity> amplitude_linearity_of(const StoredResult& result,
                                                     std::optional<double> reference_level_m_s2) {
   AmplitudeLinearity linearity;
   std::map<std::string, CommonParts> common;
-  for (const auto& [key, levelled] : lines_of(result, channels, linearity)) {
+  for (const auto& line : lines_of(result, channels, linearity)) {
+    const auto& levelled = line.second;
     const std::size_t reference = reference_of(levelled, reference_level_m_s2);
-    const std::string& channel = std::get<0>(key);
+    const std::string& channel = std::get<0>(line.first);
     if (reference == levelled.values.size()) {
       linearity.notes.push_back(in_all_languages([&](Language language) {
         return sentences::not_at_reference_level(

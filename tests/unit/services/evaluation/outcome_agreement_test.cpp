@@ -122,5 +122,27 @@ TEST_F(OutcomeAgreementTest, PutsTheMeanOfItsPointsInPlaceOfAnother) {
                    run_.transfer_functions[0].points[1].mean.magnitude);
 }
 
+TEST_F(OutcomeAgreementTest, MeansOfALackingOutcomeAreOfTheResultsThatCame) {
+  RunOutcome lacking = run_;
+  lacking.transfer_functions[0].flags.push_back(make_flag(ResultFlag::closure_open));
+  const std::size_t flags = lacking.transfer_functions[0].flags.size();
+  take_means_of_results(lacking);
+  ASSERT_EQ(lacking.transfer_functions.size(), 1U);
+  EXPECT_EQ(lacking.transfer_functions[0].flags.size(), flags) << "as published where it agrees";
+
+  lacking.results[1].u_magnitude = 0.5e-3; // before the last steps enlarged it
+  lacking.results[1].budget[0].u_magnitude_rel = 0.5e-3;
+  StepResult other = value(1, 20.0);
+  other.channel = "dau/y"; // whose mean has not come
+  lacking.results.push_back(other);
+  const std::vector<TransferFunction> own = means(lacking);
+  take_means_of_results(lacking);
+  ASSERT_EQ(lacking.transfer_functions.size(), 2U);
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    EXPECT_EQ(mean_difference(lacking.transfer_functions[i], own[i]), "");
+  }
+  EXPECT_NE(mean_difference(lacking.transfer_functions[0], run_.transfer_functions[0]), "");
+}
+
 } // namespace
 } // namespace dyncal::inline evaluation
