@@ -25,6 +25,7 @@
 #include "services/bus/fastdds/screen/discovery_heartbeats.hpp"
 #include "services/bus/fastdds/screen/fragment_repairs.hpp"
 #include "services/bus/fastdds/screen/message_check.hpp"
+#include "services/bus/fastdds/screen/participant_announcements.hpp"
 #include "services/bus/fastdds/screen/rtps_screen.hpp"
 #include "services/bus/fastdds/screen/split_message.hpp"
 #include "services/bus/qos_profiles.hpp"
@@ -155,6 +156,13 @@ public:
 #endif
     thread_local RtpsScreen screen(stamps_, progress_);
     if (const auto passed = screen.pass({bytes, count}); !passed.empty()) {
+      // Participants announce themselves by multicast and unicast at once. While Fast DDS 2.9 takes
+      // in a new one, the other copy empties the addresses that are being read: the participant is
+      // then known without any, and a secured one is never authenticated.
+      std::unique_lock one_at_a_time(announcement_, std::defer_lock);
+      if (announces_participant(passed)) {
+        one_at_a_time.lock();
+      }
       above->OnDataReceived(passed.data(), static_cast<std::uint32_t>(passed.size()), local,
                             remote);
     } else if (screen.refused()) {
@@ -167,6 +175,7 @@ private:
   MessageCheck check_;
   SampleStamps stamps_;
   ReaderProgress progress_;
+  std::mutex announcement_; // held while one is taken in
 
 #ifdef DYNCAL_FAST_DDS_3
   // In pieces; those of ACKNACKs are short.

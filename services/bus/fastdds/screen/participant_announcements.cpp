@@ -84,6 +84,17 @@ bool is_of(const std::optional<Bytes>& guid, const Prefix& prefix, bool is_parti
 
 } // namespace
 
+bool announces_participant(Bytes datagram) {
+  constexpr std::size_t writer_at = 8;
+  bool found = false;
+  visit_submessages(datagram, [&](const Submessage& one) {
+    found = one.id == data && one.body.size() >= writer_at + entity_bytes &&
+            std::ranges::equal(one.body.subspan(writer_at, entity_bytes), participant_writer);
+    return !found;
+  });
+  return found;
+}
+
 bool ParticipantAnnouncements::accepts(const Prefix& from, unsigned char flags, Bytes body,
                                        Instant now) {
   constexpr std::size_t writer_at = 8;

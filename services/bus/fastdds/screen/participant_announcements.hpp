@@ -79,4 +79,7 @@ private:
   std::map<EndpointGuid, Lasting<std::int64_t>> endpoints_; // numbers of their announcements
 };
 
+// Whether a participant announces itself, or leaves, in this datagram.
+[[nodiscard]] bool announces_participant(rtps_format::Bytes datagram);
+
 } // namespace dyncal::bus

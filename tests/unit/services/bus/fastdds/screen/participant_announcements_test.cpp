@@ -150,5 +150,17 @@ TEST_F(Announcements, OtherDataIsLeftToOthers) {
   EXPECT_TRUE(announcements_.accepts(from_, 0x05, Bytes(5, 0), now_)) << "not whole";
 }
 
+TEST(AnnouncesParticipant, WhereASubmessageIsOfTheWriterOfParticipants) {
+  const auto of_writer = [](const Bytes& writer) {
+    return submessage(0x15, 0x05, u16(0) + u16(16) + Bytes(4, 0) + writer + sequence(1));
+  };
+  const Bytes stamp = submessage(0x09, 0x01, Bytes(8, 0));
+  EXPECT_TRUE(announces_participant(header() + of_writer(participants)));
+  EXPECT_TRUE(announces_participant(header() + stamp + of_writer(participants) + stamp));
+  EXPECT_FALSE(announces_participant(header() + stamp + of_writer(publications)));
+  EXPECT_FALSE(announces_participant(header() + submessage(0x15, 0x05, Bytes(11, 0))));
+  EXPECT_FALSE(announces_participant(header()));
+}
+
 } // namespace
 } // namespace dyncal::bus
