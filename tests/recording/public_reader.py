@@ -30,8 +30,9 @@ def has_libraries(python, libraries):
         return False
 
 
-def interpreter(folder, libraries=("mcap",)):
-    """A Python that has the libraries; None where they cannot be had. `folder` may take them."""
+def interpreter(folder, libraries=("mcap",), limit_s=120):
+    """A Python that has the libraries; None where they cannot be had. `folder` may take them, for
+    which pip has `limit_s`."""
     installed = pathlib.Path(folder) / f"{'-'.join(libraries)}-library"
     candidates = [os.environ.get("DYNCAL_MCAP_PYTHON"), sys.executable, installed / "bin/python3"]
     for python in candidates:
@@ -44,7 +45,7 @@ def interpreter(folder, libraries=("mcap",)):
     )
     for step in steps:
         try:
-            done = subprocess.run(step, capture_output=True, check=False, timeout=120)
+            done = subprocess.run(step, capture_output=True, check=False, timeout=limit_s)
         except (OSError, subprocess.TimeoutExpired):
             return None
         if done.returncode != 0:

@@ -1,0 +1,1 @@
+"""Converts recorded series of other programs to HDF5 that dyncal reads."""
