@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "services/evaluation/closures/closures.hpp"
+#include "services/evaluation/method/channel_responses.hpp"
 #include "services/evaluation/method/monte_carlo_check.hpp"
 #include "services/evaluation/method/transverse_motion.hpp"
 #include "services/evaluation/record/described_source.hpp"
@@ -221,11 +222,12 @@ Evaluation RunEvaluator::completed(Evaluation evaluation, std::uint32_t attempt,
       return std::vector<StepResult>{};
     }
     std::vector<StepResult> results = evaluation(stop);
+    const std::vector<bool> has_other = take_channel_responses(*recipe, results);
     const std::vector<bool> has_more = add_transverse_motion(*recipe, results);
     for (std::size_t i = 0; i < results.size(); ++i) {
       results[i].attempt = attempt;
       results[i].temperature_degc = degc;
-      if (has_more[i]) {
+      if (has_other[i] || has_more[i]) {
         redo_monte_carlo_check(recipe->monte_carlo_trials, stop, results[i]);
       }
     }

@@ -71,6 +71,7 @@ Expected<Recipe> plan_recipe(const BenchFile& file, const std::string& run,
       file.excitation.level_deviation_rel.value_or(recipe.level_deviation_rel);
   recipe.reference_delay_s = file.corrections.reference_delay_s;
   recipe.reference_calibration = file.corrections.reference;
+  recipe.channel_responses = file.corrections.channel_responses;
   recipe.reference_standard = file.corrections.reference_standard;
   recipe.channel_axes = file.method.axes;
   recipe.transverse_motion = file.excitation.transverse_motion;

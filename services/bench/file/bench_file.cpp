@@ -12,6 +12,7 @@
 #include "services/bench/file/check_table.hpp"
 #include "services/bench/file/conditions_table.hpp"
 #include "services/bench/file/run_end_table.hpp"
+#include "services/bench/file/sensitivity_keys.hpp"
 #include "services/bench/file/toml_lines.hpp"
 #include "services/bench/file/toml_text.hpp"
 #include "services/contract/digest.hpp"
@@ -104,6 +105,9 @@ BenchFile read_tables(const toml::table& parsed, const std::filesystem::path& pa
   }
   if (auto corrections = root.table("corrections")) {
     file.corrections = read_corrections(std::move(*corrections), files);
+  }
+  if (auto sources = root.table("sources")) {
+    assign_sensitivities(std::move(*sources), file);
   }
   if (auto uncertainty = root.table("uncertainty")) {
     if (file.corrections.adc && uncertainty->has("adc_delay_s")) {

@@ -23,6 +23,7 @@
 #include "services/bench/file/source_settings.hpp"
 #include "services/contract/channel_axis.hpp"
 #include "services/contract/channel_name.hpp"
+#include "services/contract/channel_response.hpp"
 #include "services/contract/dut_phase.hpp"
 #include "services/contract/evaluation_method.hpp"
 #include "services/contract/reference_standard.hpp"
@@ -112,8 +113,9 @@ struct CorrectionSettings {
   ReferenceStandard reference_standard;     // as its file states it; without devices: it does not
   std::vector<std::string> reference_notes; // of its certificate
   bool reference_phase_in_rad = false;      // as stated, so that degrees may have been meant
-  double reference_delay_s = 0.0;           // of the reference's channel against the ACS's sync
-  double dso_delay_s = 0.0;                 // of the oscilloscope's trigger output
+  std::vector<ChannelResponse> channel_responses; // by the sources' `sensitivity`
+  double reference_delay_s = 0.0; // of the reference's channel against the ACS's sync
+  double dso_delay_s = 0.0;       // of the oscilloscope's trigger output
   double u_dso_delay_s = 0.0;
 };
 

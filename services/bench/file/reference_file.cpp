@@ -106,6 +106,7 @@ void CertificateReader::read_channel(TomlTable table) {
   if (!(channel_sensitivity_ > 0.0)) {
     table.refuse("sensitivity", "must be there and above 0: what the voltage is divided by");
   }
+  file_.channel_unit = fmt::format("{} {}", channel_sensitivity_, table.text("unit"));
   table.finish();
 }
 

@@ -1,5 +1,5 @@
-// Reads what is known of the reference of a bench: a table of its response alone (CSV,
-// reference_table.hpp), or its certificate as well (TOML):
+// Reads what is known of the reference of a bench, or of another channel: a table of its response
+// alone (CSV, reference_table.hpp), or its certificate as well (TOML):
 //
 //   [reference]            its certificate (calibrated_device.hpp); documents take it from here
 //   [response]             left out: its channel reads right, as that of an interferometer does
@@ -33,6 +33,7 @@ struct ReferenceFile {
   ReferenceStandard standard;     // without devices where the file is a table alone
   std::vector<std::string> notes; // of the certificate, on single values
   bool phase_in_rad = false;      // as stated, so that degrees may have been meant
+  std::string channel_unit{};     // "10.2 mV/(m/s^2)" of [channel]; empty without
 };
 
 // `name` as the bench file has it; further files are resolved from its folder.

@@ -18,6 +18,8 @@ using analysis::ReferenceContribution;
 
 enum class Quantity { frequency, level, magnitude, phase, u_magnitude, u_phase, freedom, coverage };
 
+enum class PhaseUnit { angle, delay }; // a delay d is the phase -2 pi f d
+
 // What values of a column may be, and what others suggest.
 struct ColumnRule {
   const char* name;
@@ -28,6 +30,7 @@ struct ColumnRule {
   double factor = 1.0; // to the unit that is kept
   bool expanded = false;
   bool absolute = false; // in the unit of the magnitude
+  PhaseUnit phase_unit = PhaseUnit::angle;
 };
 
 constexpr double infinite = analysis::infinite_degrees_of_freedom;
@@ -42,12 +45,16 @@ constexpr const char* in_percent = "in per cent of the magnitude";
 constexpr const char* in_its_unit = "in the unit of the magnitude";
 constexpr const char* in_rad = "in rad; is it given in degrees?";
 constexpr const char* in_deg = "in degrees";
+constexpr const char* in_s = "in seconds; is it given in microseconds?";
+constexpr double most_delay_s = 1.0;
 constexpr std::array rules{
     ColumnRule{"frequency_hz", Quantity::frequency, 1e-6, 1e9, "in Hz"},
     ColumnRule{"level_m_s2", Quantity::level, 0.0, 1e9, "in m/s^2"},
     ColumnRule{"magnitude", Quantity::magnitude, 1e-12, 1e12, "above 0"},
     ColumnRule{"phase_rad", Quantity::phase, -2.0 * pi, 2.0 * pi, in_rad},
     ColumnRule{"phase_deg", Quantity::phase, -360.0, 360.0, in_deg, rad_per_deg},
+    ColumnRule{"delay_s", Quantity::phase, -most_delay_s, most_delay_s, in_s, 1.0, false, false,
+               PhaseUnit::delay},
     ColumnRule{"u_magnitude_rel", Quantity::u_magnitude, 0.0, most_u_rel, of_magnitude},
     ColumnRule{"U_magnitude_rel", Quantity::u_magnitude, 0.0, most_u_rel, of_magnitude, 1.0, true},
     ColumnRule{"u_magnitude_percent", Quantity::u_magnitude, 0.0, 50.0, in_percent, per_percent},
@@ -59,6 +66,10 @@ constexpr std::array rules{
     ColumnRule{"U_phase_rad", Quantity::u_phase, 0.0, pi / 2.0, in_rad, 1.0, true},
     ColumnRule{"u_phase_deg", Quantity::u_phase, 0.0, 90.0, in_deg, rad_per_deg},
     ColumnRule{"U_phase_deg", Quantity::u_phase, 0.0, 90.0, in_deg, rad_per_deg, true},
+    ColumnRule{"u_delay_s", Quantity::u_phase, 0.0, most_delay_s, in_s, 1.0, false, false,
+               PhaseUnit::delay},
+    ColumnRule{"U_delay_s", Quantity::u_phase, 0.0, most_delay_s, in_s, 1.0, true, false,
+               PhaseUnit::delay},
     ColumnRule{"degrees_of_freedom", Quantity::freedom, 1e-3, infinite,
                "a number, \"infinite\" or nothing"},
     ColumnRule{"k", Quantity::coverage, 1.0, 15.0, "the coverage factor of columns U_..."}};
@@ -130,6 +141,7 @@ private:
   // The value of the first column of this quantity.
   [[nodiscard]] double first(Quantity quantity, const std::vector<double>& values,
                              double otherwise) const;
+  [[nodiscard]] double phase_in(const std::vector<double>& values, double frequency_hz) const;
   [[nodiscard]] Expected<ReferenceCalibrationPoint> point_of(std::string_view line) const;
   [[nodiscard]] Expected<void> add_whole(const ReferenceContribution& whole,
                                          ReferenceCalibrationPoint& point) const;
@@ -153,9 +165,10 @@ Expected<Column> Table::column_of(const Field& field) {
   if (rule == rules.end() || (named && dot == 0)) {
     return refuse(field.column,
                   fmt::format("column '{}' is not known; columns are frequency_hz, level_m_s2, "
-                              "magnitude, phase_rad or phase_deg, u_magnitude_rel, u_phase_rad "
-                              "(or U_..., ..._percent, ..._deg), degrees_of_freedom, k, and the "
-                              "uncertainties of a contribution, such as distortion.u_phase_rad",
+                              "magnitude, phase_rad, phase_deg or delay_s, u_magnitude_rel, "
+                              "u_phase_rad (or U_..., ..._percent, ..._deg, u_delay_s), "
+                              "degrees_of_freedom, k, and the uncertainties of a contribution, "
+                              "such as distortion.u_phase_rad",
                               field.text));
   }
   Column column{rule, std::nullopt};
@@ -262,6 +275,17 @@ double Table::first(Quantity quantity, const std::vector<double>& values, double
                                  : values[static_cast<std::size_t>(found - columns_.begin())];
 }
 
+// Lead, whatever the column is.
+double Table::phase_in(const std::vector<double>& values, double frequency_hz) const {
+  const double stated = first(Quantity::phase, values, 0.0);
+  const auto column = std::ranges::find_if(
+      columns_, [](const Column& one) { return one.rule->quantity == Quantity::phase; });
+  if (column != columns_.end() && column->rule->phase_unit == PhaseUnit::delay) {
+    return -2.0 * pi * frequency_hz * stated;
+  }
+  return settings_.phase_is_lag ? -stated : stated;
+}
+
 Expected<ReferenceCalibrationPoint> Table::point_of(std::string_view line) const {
   const std::vector<Field> fields = fields_of(line, separator_);
   if (fields.size() != columns_.size()) {
@@ -272,11 +296,10 @@ Expected<ReferenceCalibrationPoint> Table::point_of(std::string_view line) const
   for (std::size_t i = 0; i < fields.size(); ++i) {
     DYNCAL_TRY(values.emplace_back(), value_of(columns_[i], fields[i]));
   }
-  const double sign = settings_.phase_is_lag ? -1.0 : 1.0;
   ReferenceCalibrationPoint point{.frequency_hz = first(Quantity::frequency, values, 0.0),
                                   .level_m_s2 = first(Quantity::level, values, 0.0),
-                                  .magnitude = first(Quantity::magnitude, values, 1.0),
-                                  .phase_rad = sign * first(Quantity::phase, values, 0.0)};
+                                  .magnitude = first(Quantity::magnitude, values, 1.0)};
+  point.phase_rad = phase_in(values, point.frequency_hz);
   const double k = first(Quantity::coverage, values, settings_.coverage_factor.value_or(1.0));
   ReferenceContribution whole;
   for (const std::string& contribution : contributions_) {
@@ -290,7 +313,13 @@ Expected<ReferenceCalibrationPoint> Table::point_of(std::string_view line) const
     if (rule.quantity == Quantity::u_magnitude) {
       of.u_magnitude_rel = rule.absolute ? u / point.magnitude : u;
     } else if (rule.quantity == Quantity::u_phase) {
-      of.u_phase_rad = u;
+      const bool is_delay = rule.phase_unit == PhaseUnit::delay;
+      of.u_phase_rad = is_delay ? 2.0 * pi * point.frequency_hz * u : u;
+      if (!(of.u_phase_rad <= pi / 2.0)) {
+        return refuse(fields[i].column, fmt::format("{} = {} is more than a quarter of a period at "
+                                                    "{} Hz",
+                                                    rule.name, fields[i].text, point.frequency_hz));
+      }
     } else if (rule.quantity == Quantity::freedom) {
       of.degrees_of_freedom = values[i];
     }
@@ -345,7 +374,8 @@ Expected<ReferenceTable> Table::read(std::string_view text) {
     return refuse(1, valid.error().message);
   }
   const bool phase_in_rad = std::ranges::any_of(columns_, [](const Column& column) {
-    return column.rule->quantity == Quantity::phase && column.rule->factor == 1.0;
+    return column.rule->quantity == Quantity::phase && column.rule->factor == 1.0 &&
+           column.rule->phase_unit == PhaseUnit::angle;
   });
   return ReferenceTable{std::move(points), phase_in_rad};
 }

@@ -9,9 +9,10 @@
 //                         sensitivity or gain
 //   phase_rad, phase_deg  of the output against what is measured; left out: 0, and its uncertainty
 //                         is not stated
+//   delay_s               in place of the phase: -2 pi f delay_s, whatever the sign of phases
 //   u_magnitude_rel, u_magnitude_percent, u_magnitude (in its unit), u_phase_rad, u_phase_deg
-//                         standard uncertainties of the whole; with U for u: expanded, k times as
-//                         large
+//                         standard uncertainties of the whole, as is u_delay_s; with U for u:
+//                         expanded, k times as large
 //   k                     coverage factor of columns U_...
 //   degrees_of_freedom    of the whole; empty or "infinite": infinite
 //   NAME.u_..., NAME.U_..., NAME.degrees_of_freedom

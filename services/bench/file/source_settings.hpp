@@ -13,6 +13,7 @@
 #include "drivers/can/stream_settings.hpp"
 #include "drivers/sample_block.hpp"
 #include "services/contract/bench_file_origin.hpp"
+#include "services/bench/file/reference_file.hpp"
 #include "services/contract/device_identity.hpp"
 
 namespace dyncal::inline bench {
@@ -74,8 +75,9 @@ struct SourceSettings {
   std::string name;
   DriverSettings driver;
   DeviceIdentity identity;
-  std::map<std::string, std::string> channels; // device's name -> ours
-  std::map<std::string, std::string> units;    // our name -> D-SI
+  std::map<std::string, std::string> channels;          // device's name -> ours
+  std::map<std::string, std::string> units;             // our name -> D-SI
+  std::map<std::string, ReferenceFile> sensitivities{}; // by our name
   drivers::TimeBase time_base = drivers::TimeBase::utc;
   std::optional<double> nominal_rate_hz{}; // of an instrument, as it is set: for checks beforehand
   std::string where;                       // "bench.toml:21", for messages

@@ -11,6 +11,7 @@
 
 #include "services/bench/file/bench_name.hpp"
 #include "services/bench/file/driver_tables.hpp"
+#include "services/bench/file/sensitivity_keys.hpp"
 #include "services/contract/channel_unit.hpp"
 
 namespace dyncal::inline bench {
@@ -157,6 +158,9 @@ SourceSettings read_source(TomlTable table, const std::string& name, NamedFiles&
                          ? drivers::TimeBase::utc
                          : drivers::TimeBase::local;
   // What changes no sample is left out: how fast a file is played, and a rate to check against.
+  if (driver == "file" || driver == "socket" || driver == "alsa") {
+    read_sensitivities(table, files, source);
+  }
   source.origin.settings = table.lines_without(
       source.is<CanSourceSettings>() ? std::set<std::string>{"play"}
                                      : std::set<std::string>{"play", "nominal_rate_hz"});

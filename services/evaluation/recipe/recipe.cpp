@@ -20,6 +20,24 @@ tl::unexpected<Error> refuse(std::string sentence) {
   return fail(ErrorCode::bad_argument, std::move(sentence));
 }
 
+Expected<void> check_responses(const Recipe& recipe) {
+  for (const RecipeStep& step : recipe.steps) {
+    if (const auto reference = reference_response(recipe, step); !reference) {
+      return refuse(fmt::format("step {} of the recipe: {}", step.step, reference.error().message));
+    }
+    for (const ChannelResponse& one : recipe.channel_responses) {
+      const auto response =
+          analysis::reference_response_at(one.points, step.frequency.hz(), step.level_m_s2);
+      if (!response) {
+        return refuse(
+            fmt::format("step {} of the recipe: the sensitivity of {} is not stated there: {}",
+                        step.step, one.channel.text(), response.error().message));
+      }
+    }
+  }
+  return {};
+}
+
 } // namespace
 
 std::vector<ChannelName> Recipe::channels() const {
@@ -64,11 +82,7 @@ Expected<void> check_recipe(const Recipe& recipe) {
                       step.step, step.frequency_text_hz, step.settling_s, step.duration_s));
     }
   }
-  for (const RecipeStep& step : recipe.steps) {
-    if (const auto reference = reference_response(recipe, step); !reference) {
-      return refuse(fmt::format("step {} of the recipe: {}", step.step, reference.error().message));
-    }
-  }
+  DYNCAL_TRY(check_responses(recipe));
   if (recipe.whole_record && recipe.steps.size() != 1) {
     return refuse(
         fmt::format("the recipe evaluates whole records but has {} steps; only one is possible",

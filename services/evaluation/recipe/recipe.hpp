@@ -21,6 +21,7 @@
 #include "services/base/error.hpp"
 #include "services/contract/channel_axis.hpp"
 #include "services/contract/channel_name.hpp"
+#include "services/contract/channel_response.hpp"
 #include "services/contract/dut_phase.hpp"
 #include "services/contract/evaluation_method.hpp"
 #include "services/contract/reference_standard.hpp"
@@ -70,8 +71,9 @@ struct Recipe {
   std::vector<double> mains_hz{analysis::usual_mains_hz.begin(), analysis::usual_mains_hz.end()};
   double reference_delay_s = 0.0; // of the reference's channel against the ACS's sync
   std::vector<analysis::ReferenceCalibrationPoint> reference_calibration; // empty: it reads right
-  ReferenceStandard reference_standard;  // of documents; without devices: not stated
-  std::vector<ChannelAxis> channel_axes; // of channels whose names do not say it
+  std::vector<ChannelResponse> channel_responses; // of channels under calibration, taken from H
+  ReferenceStandard reference_standard;           // of documents; without devices: not stated
+  std::vector<ChannelAxis> channel_axes;          // of channels whose names do not say it
   TransverseMotion transverse_motion;
   analysis::SystematicUncertainty systematic;
   std::string text; // of the bench file, for those who read the message
@@ -95,8 +97,8 @@ struct Recipe {
 };
 
 // Fails (bad_argument) with what this version cannot evaluate: roles that the method does not
-// allow, no steps, settings that the method does not have, steps at which the reference was not
-// calibrated.
+// allow, no steps, settings that the method does not have, steps at which the reference, or a
+// channel whose response is stated, was not calibrated.
 [[nodiscard]] Expected<void> check_recipe(const Recipe& recipe);
 
 // Of the reference at the step's frequency and planned level, by its calibration; without one: 1.

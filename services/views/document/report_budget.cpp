@@ -73,12 +73,14 @@ struct BudgetRow {
   double degrees_of_freedom = analysis::infinite_degrees_of_freedom;
 };
 
-// |H| = A_sensor / A_reference x response of the reference x factors of 1.
+// |H| = A_sensor / A_reference x response of the reference / response of the channel x factors
+// of 1.
 struct MagnitudeModel {
   double magnitude = 0.0;
   double level_m_s2 = StoredPoint::nan_value; // amplitude of the reference, as its channel reads
   double reference_response = 1.0;
-  std::string sensor_unit{}; // empty: not known
+  double channel_factor = 1.0; // 1 over the response of the channel
+  std::string sensor_unit{};   // empty: not known
 
   [[nodiscard]] BudgetRow row_of(const Contribution& row, Language language) const;
 };
@@ -98,7 +100,8 @@ BudgetRow MagnitudeModel::row_of(const Contribution& row, Language language) con
   double estimate = row.kind == ContributionKind::reference ? reference_response : 1.0;
   shown.unit = "1";
   if (is_amplitude) {
-    estimate = of_sensor ? magnitude * level_m_s2 / reference_response : level_m_s2;
+    estimate =
+        of_sensor ? magnitude * level_m_s2 / (reference_response * channel_factor) : level_m_s2;
     shown.unit = of_sensor ? sensor_unit : "m/s²";
   }
   shown.estimate = decimal(language, fmt::format("{:.5g}", estimate));
@@ -180,14 +183,15 @@ const StoredPoint& reference_point(const std::vector<StoredPoint>& points) {
   });
 }
 
-// What the channel of the reference is multiplied by, at the step of a result; 1: as it reads.
-double reference_response(const StoredResult& result, const StoredPoint& point) {
+// What a correction multiplies |H| by, at the step of a result; 1: it is not applied.
+double applied_factor(const StoredResult& result, const StoredPoint& point,
+                      const std::string& name) {
   for (const StoredStep& step : result.steps) {
     if (step.step != point.step || step.repetition != point.repetition) {
       continue;
     }
     for (const StoredCorrection& correction : step.corrections) {
-      if (correction.name == "reference_response") {
+      if (correction.name == name) {
         return correction.magnitude_factor.value_or(1.0);
       }
     }
@@ -287,10 +291,12 @@ std::string budget_section(const ReportContents& contents, const std::string& ch
   });
   const std::string ratio_unit = short_form(point.unit);
   const std::string unit = ratio_unit == "1" ? "" : ratio_unit;
-  const MagnitudeModel model{.magnitude = point.magnitude,
-                             .level_m_s2 = point.measured_level_m_s2,
-                             .reference_response = reference_response(contents.result, point),
-                             .sensor_unit = unit_of_channel(contents.result, channel)};
+  const MagnitudeModel model{
+      .magnitude = point.magnitude,
+      .level_m_s2 = point.measured_level_m_s2,
+      .reference_response = applied_factor(contents.result, point, "reference_response"),
+      .channel_factor = applied_factor(contents.result, point, "channel_response " + channel),
+      .sensor_unit = unit_of_channel(contents.result, channel)};
   std::vector<BudgetRow> magnitudes;
   std::vector<BudgetRow> phases;
   for (const Contribution& row : point.budget) {

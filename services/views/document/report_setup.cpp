@@ -160,7 +160,10 @@ std::string correction_name(const std::string& name, Language language) {
       return sentence(language);
     }
   }
-  return name;
+  constexpr std::string_view of_channel = "channel_response ";
+  return name.starts_with(of_channel)
+             ? sentences::channel_response(language, name.substr(of_channel.size()))
+             : name;
 }
 
 // Each correction of the steps by name, with the range of what it does to the phase: of angles, so

@@ -93,6 +93,8 @@ inline constexpr Sentence largest_u{"largest <i>u</i> / °", "größtes <i>u</i>
 inline constexpr Sentence from_to{"{} to {}", "{} bis {}"};
 inline constexpr Sentence reference_response{"response of the reference",
                                              "Übertragungsfunktion des Bezugsnormals"};
+inline constexpr Sentence channel_response{"response of the channel {}",
+                                           "Übertragungsfunktion des Kanals {}"};
 inline constexpr Sentence adc_phase_lag{"phase lag of the sync ADC",
                                         "Phasenverzögerung des Sync-ADU"};
 inline constexpr Sentence software{"Annex: software and hashes", "Anhang: Software und Prüfsummen"};

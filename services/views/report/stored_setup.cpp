@@ -42,16 +42,18 @@ const StepResult* result_of(const RunOutcome& outcome, const RecipeStep& step) {
   return found == outcome.results.end() ? nullptr : &*found;
 }
 
-// What the response of the reference does to H, which is multiplied by it.
-StoredCorrection reference_correction(const analysis::ReferenceResponse& response) {
+// What a response does to H, which is multiplied by that of the reference and divided by that of a
+// channel under calibration.
+StoredCorrection response_correction(std::string name, const analysis::ReferenceResponse& response,
+                                     bool is_divisor) {
   double magnitude2 = 0.0;
   double phase2 = 0.0;
   for (const analysis::ReferenceContribution& one : response.contributions) {
     magnitude2 += one.u_magnitude_rel * one.u_magnitude_rel;
     phase2 += one.u_phase_rad * one.u_phase_rad;
   }
-  return {"reference_response", response.phase_rad, std::sqrt(phase2), response.magnitude,
-          std::sqrt(magnitude2)};
+  return {std::move(name), is_divisor ? -response.phase_rad : response.phase_rad, std::sqrt(phase2),
+          is_divisor ? 1.0 / response.magnitude : response.magnitude, std::sqrt(magnitude2)};
 }
 
 } // namespace
@@ -101,7 +103,14 @@ std::vector<StoredCorrection> applied_corrections(const Recipe& recipe, const Re
   std::vector<StoredCorrection> applied;
   if (!recipe.reference_calibration.empty()) {
     if (const auto response = reference_response(recipe, step)) {
-      applied.push_back(reference_correction(*response));
+      applied.push_back(response_correction("reference_response", *response, false));
+    }
+  }
+  for (const ChannelResponse& one : recipe.channel_responses) {
+    if (const auto response =
+            analysis::reference_response_at(one.points, step.frequency.hz(), step.level_m_s2)) {
+      applied.push_back(
+          response_correction("channel_response " + one.channel.text(), *response, true));
     }
   }
   if (recipe.reference_delay_s != 0.0) {

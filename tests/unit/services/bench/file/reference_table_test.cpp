@@ -45,6 +45,21 @@ TEST(ReferenceTable, GivesWhatTheFileSays) {
   EXPECT_TRUE(std::isinf(points->points.back().contributions[0].degrees_of_freedom));
 }
 
+TEST(ReferenceTable, TakesADelayForAPhase) {
+  const auto points = parse_reference_table("frequency_hz,magnitude,delay_s,U_delay_s,k\n"
+                                            "100,1,2e-6,2e-7,2\n1000,1,3e-6,4e-7,2\n",
+                                            "ref.csv", {.phase_is_lag = true});
+  ASSERT_TRUE(points) << points.error().message;
+  const double w = 2.0 * std::acos(-1.0) * 1000.0;
+  EXPECT_FALSE(points->phase_in_rad);
+  EXPECT_NEAR(points->points[1].phase_rad, -w * 3e-6, 1e-15);
+  EXPECT_NEAR(points->points[1].contributions[0].u_phase_rad, w * 2e-7, 1e-15);
+  EXPECT_THAT(problem_of("frequency_hz,magnitude,delay_s,u_delay_s\n10000,1,0,3e-5\n"),
+              HasSubstr("ref.csv:2:11: u_delay_s = 3e-5 is more than a quarter of a period"));
+  EXPECT_THAT(problem_of("frequency_hz,magnitude,delay_s,phase_deg\n10,1,0,0\n"),
+              HasSubstr("says what 'delay_s' says"));
+}
+
 TEST(ReferenceTable, WithoutTheWholeItIsMadeOfItsContributions) {
   const auto points = parse_reference_table(
       "frequency_hz,magnitude,phase_rad,drift.u_magnitude_rel\n10,1,0,1e-3\n", "ref.csv");
