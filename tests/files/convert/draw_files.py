@@ -37,7 +37,8 @@ def uff_set(draw, rng, name, count, rate_hz):
     data = pyuff.prepare_58(
         binary=int(is_binary), func_type=1, rsp_node=draw.randint(1, 99), rsp_dir=3,
         ref_dir=3, ref_node=1, ver_num=1, load_case_id=0, orddenom_spec_data_type=0,
-        ordinate_spec_data_type=12, abscissa_spec_data_type=17, z_axis_spec_data_type=0, data=values, x=np.arange(count) / rate_hz, id1=name,
+        ordinate_spec_data_type=12, abscissa_spec_data_type=17, z_axis_spec_data_type=0,
+        data=values, x=np.arange(count) / rate_hz, id1=name,
         rsp_ent_name="NONE", ref_ent_name="NONE", abscissa_spacing=1, abscissa_min=0.0,
         abscissa_inc=1.0 / rate_hz, num_pts=count, ord_data_type=4 if is_double else 2,
         ordinate_axis_units_lab=draw.choice(["m/s^2", "V"]))
