@@ -28,6 +28,7 @@ optional_build_packages=(
   libzstd-dev        # smaller recordings
   liblz4-dev         # recordings that others have compressed with LZ4
   libpqxx-dev        # results of runs in PostgreSQL
+  libasound2-dev     # sound devices as measuring instruments: driver "alsa"
   libhdf5-dev        # recordings as HDF5, files of the SmartUp receiver
   libxml2-dev libxmlsec1-dev # certificates: dyncal certify, dyncal verify
   libxlsxwriter-dev          # dyncal means: XLSX

@@ -6,7 +6,12 @@
 #include <fmt/core.h>
 
 #include "drivers/acs/socket_acs.hpp"
+#include "drivers/alsa/capture_source.hpp"
 #include "drivers/files/file_source.hpp"
+
+#ifdef DYNCAL_HAVE_ALSA
+#include "drivers/alsa/alsa_device.hpp"
+#endif
 #include "services/stream/play_of_run.hpp"
 
 namespace dyncal::inline instruments {
@@ -40,12 +45,32 @@ Expected<drivers::SourceDescription> describe(drivers::SampleSource& driver,
   return *description;
 }
 
+Expected<std::unique_ptr<drivers::SampleSource>> make_capture(const SourceSettings& settings) {
+#ifdef DYNCAL_HAVE_ALSA
+  const auto& alsa = std::get<AlsaSourceSettings>(settings.driver);
+  return std::make_unique<drivers::alsa::CaptureSource>(
+      drivers::alsa::CaptureSettings{.device = alsa,
+                                     .channels = settings.channels,
+                                     .units = settings.units,
+                                     .scale = alsa.scale},
+      drivers::alsa::make_alsa_device);
+#else
+  return fail(ErrorCode::bad_argument,
+              fmt::format("source '{}': this build cannot read sound devices (Debian: "
+                          "libasound2-dev)",
+                          settings.name));
+#endif
+}
+
 } // namespace
 
 Expected<std::unique_ptr<drivers::SampleSource>> make_driver(const SourceSettings& settings) {
   if (const auto* socket = settings.as<SocketSourceSettings>()) {
     return std::make_unique<drivers::acs::SocketAcs>(drivers::acs::SocketSettings{
         .address = socket->address, .channels = settings.channels, .units = settings.units});
+  }
+  if (settings.is<AlsaSourceSettings>()) {
+    return make_capture(settings);
   }
   const auto& played = std::get<FileSourceSettings>(settings.driver);
   drivers::files::FileSettings file;
@@ -83,14 +108,17 @@ SourceKind kind_of(const MethodSettings& method, const std::string& source) {
 }
 
 SourceOptions options_of(const BenchFile& bench, const SourceSettings& settings) {
+  const bool is_file = settings.is<FileSourceSettings>();
+  const bool is_held_back_by_tcp = settings.is<SocketSourceSettings>();
   return {.bench = bench.bench,
           .source = settings.name,
           .kind = kind_of(bench.method, settings.name),
           .identity = settings.identity,
           .origin = settings.origin,
-          .silent_after =
-              settings.is<FileSourceSettings>() ? std::chrono::seconds(0) : std::chrono::seconds(2),
-          .when_full = settings.is<FileSourceSettings>() ? WhenFull::wait : WhenFull::wait_briefly};
+          .silent_after = is_file ? std::chrono::seconds(0) : std::chrono::seconds(2),
+          .when_full = is_file               ? WhenFull::wait
+                       : is_held_back_by_tcp ? WhenFull::wait_briefly
+                                             : WhenFull::drop};
 }
 
 Expected<PlayedSource> PlayedSource::prepare(const SourceSettings& settings,

@@ -1,5 +1,5 @@
-// One source of a bench file whose driver is "socket" or "file", from its settings to its
-// publisher.
+// One source of a bench file whose driver is "socket", "alsa" or "file", from its settings
+// to its publisher.
 //
 // An instrument's stream is published as it comes. A file waits until a measurement of its bench is
 // RUNNING, is played as long as that run lasts, ends its stream, and waits for the next one. A file
@@ -45,8 +45,8 @@ private:
   drivers::SourceDescription description_;
 };
 
-// The driver of a source of a bench file whose driver is "socket" or "file", not opened yet. Fails
-// (bad_argument) with invalid settings.
+// The driver of a source of a bench file whose driver is "socket", "alsa" or "file", not opened
+// yet. Fails (bad_argument) with invalid settings.
 [[nodiscard]] Expected<std::unique_ptr<drivers::SampleSource>>
 make_driver(const SourceSettings& settings);
 

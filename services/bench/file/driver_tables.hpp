@@ -20,6 +20,16 @@ namespace dyncal::inline bench {
 //   scale = { sync = 10.0 }  factors of the values of its channels
 [[nodiscard]] FileSourceSettings read_file_source(TomlTable& table, NamedFiles& files);
 
+// driver = "alsa": a sound device of this computer (drivers/alsa/README.md).
+//
+//   address = "hw:CARD=Device,DEV=0"   as ALSA names it
+//   sample_rate_hz = 48000             format = "s24-3le"      channel_count = 2
+//   scale = { reference = 98.1 }       value of full scale, by channel
+[[nodiscard]] AlsaSourceSettings read_alsa_source(TomlTable& table);
+
+// The key `scale`: factors of channels.
+[[nodiscard]] std::map<std::string, double> read_scale(TomlTable& table);
+
 // The key `play`: times real time; 0: at once.
 [[nodiscard]] double read_play_speed(TomlTable& table);
 

@@ -23,6 +23,20 @@ double read_play_speed(TomlTable& table) {
   return table.one_of("play", {"at-once", "real-time"}, "at-once") == "real-time" ? 1.0 : 0.0;
 }
 
+std::map<std::string, double> read_scale(TomlTable& table) {
+  std::map<std::string, double> scale = table.number_map("scale");
+  std::size_t entry = 0;
+  for (const auto& [channel, factor] : scale) {
+    ++entry;
+    if (factor == 0.0) {
+      table.refuse_entry(
+          "scale", entry,
+          fmt::format("gives channel '{}' the factor 0: all its values would be 0", channel));
+    }
+  }
+  return scale;
+}
+
 namespace {
 
 constexpr double max_time_offset_s = 1e9; // more than 30 years
@@ -98,16 +112,7 @@ void read_adjustments(TomlTable& table, FileSourceSettings& file) {
   if (!(std::abs(file.time_offset_s) <= max_time_offset_s)) {
     table.refuse("time_offset_s", "must be from -1e9 to 1e9, in seconds");
   }
-  file.scale = table.number_map("scale");
-  std::size_t entry = 0;
-  for (const auto& [channel, factor] : file.scale) {
-    ++entry;
-    if (factor == 0.0) {
-      table.refuse_entry(
-          "scale", entry,
-          fmt::format("gives channel '{}' the factor 0: all its values would be 0", channel));
-    }
-  }
+  file.scale = read_scale(table);
 }
 
 } // namespace

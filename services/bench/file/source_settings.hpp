@@ -10,10 +10,11 @@
 #include <variant>
 #include <vector>
 
+#include "drivers/alsa/device_settings.hpp"
 #include "drivers/can/stream_settings.hpp"
 #include "drivers/sample_block.hpp"
-#include "services/contract/bench_file_origin.hpp"
 #include "services/bench/file/reference_file.hpp"
+#include "services/contract/bench_file_origin.hpp"
 #include "services/contract/device_identity.hpp"
 
 namespace dyncal::inline bench {
@@ -26,6 +27,10 @@ struct SmartupSourceSettings { // driver = "smartup"
 
 struct SocketSourceSettings { // driver = "socket"
   std::string address;
+};
+
+struct AlsaSourceSettings : drivers::alsa::DeviceSettings { // driver = "alsa"
+  std::map<std::string, double> scale{}; // our name of a channel -> value of full scale
 };
 
 struct NamedChannel {         // "FILE:CHANNEL"
@@ -67,9 +72,9 @@ struct SeriesSourceSettings { // driver = "series"
   std::filesystem::path path; // absolute; folder the series are written into
 };
 
-using DriverSettings =
-    std::variant<SmartupSourceSettings, SocketSourceSettings, FileSourceSettings, CanSourceSettings,
-                 OscilloscopeSourceSettings, SeriesSourceSettings>;
+using DriverSettings = std::variant<SmartupSourceSettings, SocketSourceSettings, AlsaSourceSettings,
+                                    FileSourceSettings, CanSourceSettings,
+                                    OscilloscopeSourceSettings, SeriesSourceSettings>;
 
 struct SourceSettings {
   std::string name;

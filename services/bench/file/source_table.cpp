@@ -64,6 +64,9 @@ DriverSettings read_driver(TomlTable& table, const std::string& driver, NamedFil
     // The TCP stream of an analogue calibration system (drivers/acs/README.md).
     return SocketSourceSettings{.address = table.required_text("address")};
   }
+  if (driver == "alsa") {
+    return read_alsa_source(table);
+  }
   if (driver == "can") {
     return read_can_source(table, files);
   }
@@ -138,8 +141,8 @@ SourceSettings read_source(TomlTable table, const std::string& name, NamedFiles&
   SourceSettings source;
   source.name = name;
   source.where = table.where("driver");
-  const std::string driver =
-      table.one_of("driver", {"smartup", "socket", "file", "can", "oscilloscope", "series"}, "");
+  const std::string driver = table.one_of(
+      "driver", {"smartup", "socket", "alsa", "file", "can", "oscilloscope", "series"}, "");
   source.driver = read_driver(table, driver, files);
   source.identity = {.device = table.text("device"),
                      .serial = table.text("serial"),
@@ -151,16 +154,19 @@ SourceSettings read_source(TomlTable table, const std::string& name, NamedFiles&
       table.refuse("nominal_rate_hz", "must be positive, in Hz");
     }
   }
+  if (const auto* alsa = source.as<AlsaSourceSettings>()) {
+    source.nominal_rate_hz = alsa->rate_hz;
+  }
   read_units(table, source);
+  if (driver == "file" || driver == "socket" || driver == "alsa") {
+    read_sensitivities(table, files, source);
+  }
   read_ranges(table, source);
   const std::string usual = driver == "smartup" || driver == "can" ? "utc" : "local";
   source.time_base = table.one_of("time_base", {"utc", "local"}, usual) == "utc"
                          ? drivers::TimeBase::utc
                          : drivers::TimeBase::local;
   // What changes no sample is left out: how fast a file is played, and a rate to check against.
-  if (driver == "file" || driver == "socket" || driver == "alsa") {
-    read_sensitivities(table, files, source);
-  }
   source.origin.settings = table.lines_without(
       source.is<CanSourceSettings>() ? std::set<std::string>{"play"}
                                      : std::set<std::string>{"play", "nominal_rate_hz"});

@@ -1,5 +1,5 @@
-// dyncal-acs BENCH.toml...: publishes analogue calibration systems (their TCP streams) and recorded
-// series of any source.
+// dyncal-acs BENCH.toml...: publishes analogue calibration systems (their TCP streams, or sound
+// devices) and recorded series of any source.
 #include <vector>
 
 #include <fmt/core.h>
@@ -22,7 +22,8 @@ Expected<Sources> prepare(const std::vector<BenchFile>& benches, const std::stop
   Sources sources;
   for (const BenchFile& bench : benches) {
     for (const SourceSettings& settings : bench.sources) {
-      if (!settings.is<SocketSourceSettings>() && !settings.is<FileSourceSettings>()) {
+      if (!settings.is<SocketSourceSettings>() && !settings.is<AlsaSourceSettings>() &&
+          !settings.is<FileSourceSettings>()) {
         continue; // dyncal-dau, dyncal-can or dyncal-dso publishes it
       }
       auto source = PlayedSource::prepare(settings, stop);
@@ -35,7 +36,7 @@ Expected<Sources> prepare(const std::vector<BenchFile>& benches, const std::stop
   }
   if (sources.empty()) {
     return fail(ErrorCode::bad_argument,
-                "no source with driver \"socket\" or \"file\" in the bench files given");
+                "no source with driver \"socket\", \"alsa\" or \"file\" in the bench files given");
   }
   return sources;
 }
@@ -54,6 +55,7 @@ int main(int argc, char** argv) {
       {.name = "dyncal-acs",
        .description =
            "Publishes the sources of bench files whose driver is \"socket\" (an analogue "
-           "calibration system's TCP stream) or \"file\" (a recorded series).",
+           "calibration system's TCP stream), \"alsa\" (a sound device) or \"file\" (a recorded "
+           "series).",
        .serve = serve});
 }
