@@ -9,20 +9,16 @@
 #include <filesystem>
 #include <numbers>
 #include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include "analysis/clock/stamp_beat.hpp"
-#include "analysis/sine/disturbances.hpp"
-#include "analysis/sine/extended_sine_fit.hpp"
-#include "analysis/sine/frequency_estimate.hpp"
-#include "analysis/sine/sine_fit.hpp"
-#include "analysis/sine/sine_residuals.hpp"
-#include "analysis/sine/stamp_scatter.hpp"
-#include "analysis/uncertainty/found_resolution.hpp"
+#include "analysis/method/record_fit.hpp"
 #include "services/base/json_text.hpp"
 #include "services/base/printable_text.hpp"
 #include "services/base/rounding.hpp"
@@ -65,19 +61,10 @@ void add_fit(CLI::App& command, FitOptions& fit) {
   command.add_flag("--json", fit.json, "print JSON");
 }
 
-// The estimate is good to this many bins 1/T (analysis/sine/frequency_estimate.hpp).
-constexpr double estimate_bins = 1.5;
-// Part of u of an amplitude from which on it is corrected for scatter of the stamps.
-constexpr double worth_correcting = 0.1;
-
 struct Fit {
-  analysis::Frequency frequency = analysis::Frequency::from_hz(1.0); // until it is known
-  std::optional<double> u_frequency_hz;
-  std::int64_t reference_ns = 0;
+  analysis::RecordFit record;
   std::size_t out_of_order = 0; // samples left out for their stamps
   std::vector<std::string> names;
-  std::vector<analysis::SineFit> fits;
-  std::vector<double> shortening_rel; // put back, for each of them; 0: nothing to be seen
 };
 
 Expected<std::vector<std::span<const double>>>
@@ -96,119 +83,48 @@ void replace_stamps(double rate_hz, std::vector<std::int64_t>& stamps_ns) {
   }
 }
 
-analysis::Expected<analysis::ExtendedBasis> basis_of(const FitOptions& command) {
-  analysis::ExtendedBasis basis;
-  basis.drift_order = command.drift;
-  basis.max_harmonic = command.harmonics;
+analysis::Expected<analysis::RecordFitSettings> settings_of(const FitOptions& command) {
+  analysis::RecordFitSettings settings;
+  settings.phase_origin_ns = command.reference_time_ns;
+  settings.basis.drift_order = command.drift;
+  settings.basis.max_harmonic = command.harmonics;
   for (const std::string& text : command.hum) {
     DYNCAL_TRY(const auto line, analysis::Frequency::parse(text));
-    basis.lines.push_back(line);
+    settings.basis.lines.push_back(line);
   }
-  return basis;
-}
-
-analysis::Expected<void> find_frequency(const FitOptions& command, const SeriesFile& series,
-                                        const std::vector<std::span<const double>>& columns,
-                                        WorkCount& count, Fit& fit) {
   if (!command.frequency.empty()) {
-    return analysis::Frequency::parse(command.frequency)
-        .map([&](const analysis::Frequency& frequency) { fit.frequency = frequency; });
+    DYNCAL_TRY(settings.frequency, analysis::Frequency::parse(command.frequency));
   }
-  count.begin("estimating the frequency", "columns", columns.size());
-  const auto start = analysis::estimate_frequency(series.stamps_ns, columns,
-                                                  [&](double /*share*/) { count.add_done(); });
-  if (!start) {
-    const bool no_sine = start.error().code == analysis::ErrorCode::no_excitation;
-    return fail(start.error().code,
-                start.error().message + (no_sine ? "; if you know its frequency, give --frequency, "
-                                                   "and --column for the columns that have it"
-                                                 : ""));
-  }
-  const double duration_s =
-      static_cast<double>(series.stamps_ns.back() - series.stamps_ns.front()) * 1e-9;
-  const double search_rel = std::min(estimate_bins / (start->hz() * duration_s), 0.9);
-  count.begin("fitting the frequency", "", 0);
-  return analysis::fit_sine_and_frequency(*start, search_rel, fit.reference_ns, series.stamps_ns,
-                                          columns)
-      .map([&](analysis::FrequencyFit found) {
-        fit.frequency = found.frequency;
-        fit.u_frequency_hz = found.u_frequency_hz;
-        fit.fits = std::move(found.channels);
-      });
+  return settings;
 }
 
-analysis::Expected<void> fit_columns(const FitOptions& command, const SeriesFile& series,
-                                     const std::vector<std::span<const double>>& columns,
-                                     WorkCount& count, Fit& fit) {
-  DYNCAL_TRY(const auto basis, basis_of(command));
-  if (basis.drift_order == 0 && basis.max_harmonic <= 1 && basis.lines.empty()) {
-    if (!fit.fits.empty()) {
-      return {};
-    }
-    count.begin("fitting", "", 0);
-    return analysis::fit_sine(fit.frequency, fit.reference_ns, series.stamps_ns, columns)
-        .map([&](auto fits) { fit.fits = std::move(fits); });
+analysis::Expected<analysis::RecordFit>
+fit_series(const FitOptions& command, const SeriesFile& series,
+           const std::vector<std::span<const double>>& columns, WorkCount& count) {
+  DYNCAL_TRY(const auto settings, settings_of(command));
+  const analysis::RecordFitStages begin = [&](std::string_view stage) -> analysis::Progress {
+    count.begin(std::string(stage), "", 0);
+    return [&count, stage = std::string(stage), has_share = false](double share) mutable {
+      if (!std::exchange(has_share, true)) {
+        count.begin_share(stage);
+      }
+      count.set_share_done(share);
+    };
+  };
+  auto record = analysis::fit_record(settings, series.stamps_ns, columns, begin);
+  if (!record && command.frequency.empty() &&
+      record.error().code == analysis::ErrorCode::no_excitation) {
+    return fail(record.error().code, record.error().message +
+                                         "; if you know its frequency, give --frequency, and "
+                                         "--column for the columns that have it");
   }
-  count.begin_share("fitting");
-  return analysis::fit_sine_extended(fit.frequency, basis, analysis::Weighting::none,
-                                     fit.reference_ns, series.stamps_ns, columns,
-                                     [&](double share) { count.set_share_done(share); })
-      .map([&](const std::vector<analysis::ExtendedFit>& fits) {
-        fit.fits.clear();
-        for (const analysis::ExtendedFit& one : fits) {
-          fit.fits.push_back(one.fundamental);
-        }
-      });
-}
-
-// The amplitude without what scatter of the stamps took off it, and what is not known of that.
-void lengthen(const analysis::StampScatter& scatter, analysis::SineFit& fit) {
-  const double factor = 1.0 / (1.0 - scatter.correction_rel());
-  const double u_rel = scatter.u_correction_rel();
-  fit.sine *= factor;
-  fit.cosine *= factor;
-  fit.covariance[0] += std::pow(u_rel * fit.sine, 2);
-  fit.covariance[1] += u_rel * u_rel * fit.sine * fit.cosine;
-  fit.covariance[3] += std::pow(u_rel * fit.cosine, 2);
-}
-
-// Each column is looked at beside its harmonics, hum and drift, which are no scatter. Where that
-// cannot be fitted, nothing is corrected.
-void correct_scatter(const SeriesFile& series, const std::vector<std::span<const double>>& columns,
-                     Fit& fit) {
-  fit.shortening_rel.assign(columns.size(), 0.0);
-  const std::int64_t middle_ns = analysis::middle_of_record_ns(series.stamps_ns);
-  const auto beside =
-      analysis::fit_sine_beside_disturbances(fit.frequency, middle_ns, series.stamps_ns, columns);
-  for (std::size_t i = 0; beside && i < columns.size(); ++i) {
-    const analysis::CleanedFit& clean = (*beside)[i];
-    const std::span<const double> values =
-        clean.values.empty() ? columns[i] : std::span<const double>(clean.values);
-    const analysis::StampScatter scatter = analysis::measure_stamp_scatter(
-        fit.frequency, clean.fit, middle_ns, series.stamps_ns, values,
-        analysis::found_resolution(columns[i]), analysis::SlowScatter::counts);
-    analysis::SineFit& one = fit.fits[i];
-    if (scatter.correction_rel() * one.amplitude() > worth_correcting * one.u_amplitude()) {
-      fit.shortening_rel[i] = scatter.correction_rel();
-      lengthen(scatter, one);
-    }
-  }
-}
-
-// What errors of the stamps that are in step with the sine may do to it, in any direction.
-void allow_for_beat(const SeriesFile& series, Fit& fit) {
-  const double bound_rel = analysis::stamp_beat(fit.frequency, series.stamps_ns).in_step_rad;
-  for (analysis::SineFit& one : fit.fits) {
-    const double variance = std::pow(bound_rel * one.amplitude(), 2) / 3.0;
-    one.covariance[0] += variance;
-    one.covariance[3] += variance;
-  }
+  return record;
 }
 
 void print_json(const Fit& fit) {
   nlohmann::ordered_json columns = nlohmann::ordered_json::object();
   for (std::size_t i = 0; i < fit.names.size(); ++i) {
-    const analysis::SineFit& one = fit.fits[i];
+    const analysis::SineFit& one = fit.record.fits[i];
     columns[fit.names[i]] = {{"A_sin", one.sine},
                              {"B_cos", one.cosine},
                              {"C", one.offset},
@@ -224,36 +140,36 @@ void print_json(const Fit& fit) {
                              {"covariance", one.covariance}, // AA, AB, AC, BB, BC, CC
                              {"rss", one.rss},
                              {"samples", one.samples}};
-    if (fit.shortening_rel[i] > 0.0) {
-      columns[fit.names[i]]["corrected_shortening_rel"] = fit.shortening_rel[i];
+    if (fit.record.shortening_rel[i] > 0.0) {
+      columns[fit.names[i]]["corrected_shortening_rel"] = fit.record.shortening_rel[i];
     }
   }
-  nlohmann::ordered_json json{{"frequency_hz", fit.frequency.hz()}};
-  if (fit.u_frequency_hz) {
-    json["u_frequency_hz"] = *fit.u_frequency_hz;
+  nlohmann::ordered_json json{{"frequency_hz", fit.record.frequency.hz()}};
+  if (fit.record.u_frequency_hz) {
+    json["u_frequency_hz"] = *fit.record.u_frequency_hz;
   }
-  json["reference_time_ns"] = fit.reference_ns;
+  json["reference_time_ns"] = fit.record.phase_origin_ns;
   json["out_of_order"] = fit.out_of_order;
   json["columns"] = std::move(columns);
   fmt::print("{}\n", json_text(json, 1));
 }
 
 void print_table(const Fit& fit) {
-  const double frequency_hz = fit.frequency.hz();
-  if (fit.u_frequency_hz) {
-    const RoundedValue frequency = round_by_uncertainty(frequency_hz, *fit.u_frequency_hz);
+  const double frequency_hz = fit.record.frequency.hz();
+  if (fit.record.u_frequency_hz) {
+    const RoundedValue frequency = round_by_uncertainty(frequency_hz, *fit.record.u_frequency_hz);
     fmt::print("frequency {} Hz (u {} Hz)", frequency.value, frequency.u);
   } else {
     fmt::print("frequency {} Hz", frequency_hz);
   }
-  fmt::print(", reference time {} ns\n", fit.reference_ns);
+  fmt::print(", reference time {} ns\n", fit.record.phase_origin_ns);
   if (fit.out_of_order > 0) {
     fmt::print("{} samples left out, their stamps do not rise\n", fit.out_of_order);
   }
   fmt::print("{:>20} {:>16} {:>10} {:>16} {:>10} {:>14} {:>10} {:>10}\n", "column", "amplitude",
              "u", "phase / rad", "u / rad", "offset", "u", "samples");
   for (std::size_t i = 0; i < fit.names.size(); ++i) {
-    const analysis::SineFit& one = fit.fits[i];
+    const analysis::SineFit& one = fit.record.fits[i];
     const RoundedValue amplitude = round_by_uncertainty(one.amplitude(), one.u_amplitude());
     const RoundedValue phase = round_phase(one.phase_rad(), one.u_phase_rad()).radians;
     const RoundedValue offset = round_by_uncertainty(one.offset, std::sqrt(one.covariance[5]));
@@ -262,10 +178,10 @@ void print_table(const Fit& fit) {
                one.samples);
   }
   for (std::size_t i = 0; i < fit.names.size(); ++i) {
-    if (fit.shortening_rel[i] > 0.0) {
+    if (fit.record.shortening_rel[i] > 0.0) {
       fmt::print("{}: its stamps scatter or its phase wanders, which had shortened the sine by "
                  "{:.2g} %; corrected\n",
-                 one_line(fit.names[i]), 100.0 * fit.shortening_rel[i]);
+                 one_line(fit.names[i]), 100.0 * fit.record.shortening_rel[i]);
     }
   }
 }
@@ -286,17 +202,12 @@ Expected<Fit> fit_file(const FitOptions& command) {
     return fail(ErrorCode::bad_file,
                 fmt::format("{}: the file has no samples", command.file.string()));
   }
-  fit.reference_ns = command.reference_time_ns.value_or(series.stamps_ns.front());
-  WorkCount& count = *progress.count();
-  const auto fitted = find_frequency(command, series, columns, count, fit).and_then([&] {
-    return fit_columns(command, series, columns, count, fit);
-  });
-  if (!fitted) {
+  auto record = fit_series(command, series, columns, *progress.count());
+  if (!record) {
     return fail(ErrorCode::bad_file,
-                fmt::format("{}: {}", command.file.string(), fitted.error().message));
+                fmt::format("{}: {}", command.file.string(), record.error().message));
   }
-  correct_scatter(series, columns, fit);
-  allow_for_beat(series, fit);
+  fit.record = *std::move(record);
   return fit;
 }
 
