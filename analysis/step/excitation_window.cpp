@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 #include <numbers>
+#include <utility>
 
 #include "analysis/base/phasor.hpp"
 #include "analysis/base/statistics.hpp"
+#include "analysis/sine/separated_lines.hpp"
 #include "analysis/step/frame_sine.hpp"
 #include "analysis/step/phase_line.hpp"
 
@@ -21,12 +24,20 @@ constexpr double max_residual_power = 0.1; // of the power of the sine: 10 dB
 constexpr double louder_than_hum = 1.3;    // in amplitude
 constexpr double off_phase = 0.5;          // likewise: ten decibels of noise are 0.32
 constexpr double phase_margin_rad = 0.15;
+constexpr double turns_between_lines = 2.0;      // in a frame, of the nearest lines of a multi-sine
 constexpr double steady_phase_margin_rad = 0.02; // of frames that the sine fills from end to end
 
-std::int64_t frame_length_ns(const Frequency& frequency) {
+std::int64_t frame_length_ns(const Frequency& frequency, const std::vector<Frequency>& beside) {
   const double period_ns = 1e9 / frequency.hz();
-  return std::llround(
-      std::max(period_ns, std::min(static_cast<double>(max_frame_ns), max_periods * period_ns)));
+  double frame_ns =
+      std::max(period_ns, std::min(static_cast<double>(max_frame_ns), max_periods * period_ns));
+  std::vector<double> hz{frequency.hz()};
+  std::ranges::transform(beside, std::back_inserter(hz), &Frequency::hz);
+  std::ranges::sort(hz);
+  for (std::size_t i = 1; i < hz.size(); ++i) {
+    frame_ns = std::max(frame_ns, 1e9 * turns_between_lines / (hz[i] - hz[i - 1]));
+  }
+  return std::llround(frame_ns);
 }
 
 std::int64_t floor_divide(std::int64_t value, std::int64_t divisor) {
@@ -37,8 +48,10 @@ std::int64_t floor_divide(std::int64_t value, std::int64_t divisor) {
 } // namespace
 
 ExcitationWindowFinder::ExcitationWindowFinder(const Frequency& frequency,
-                                               const ExcitationWindowSettings& settings)
-    : frequency_(frequency), settings_(settings), frame_ns_(frame_length_ns(frequency)) {}
+                                               const ExcitationWindowSettings& settings,
+                                               std::vector<Frequency> beside)
+    : frequency_(frequency), settings_(settings), beside_(std::move(beside)),
+      frame_ns_(frame_length_ns(frequency, beside_)) {}
 
 void ExcitationWindowFinder::push(std::span<const std::int64_t> stamps_ns,
                                   std::span<const double> sync) {
@@ -139,7 +152,9 @@ ExcitationWindowFinder::Frame ExcitationWindowFinder::approximate() const {
     return frame;
   }
   const std::int64_t begin_ns = open_index_ * frame_ns_;
-  const auto fit = fit_frame(frequency_, begin_ns, frame_ns_, stamps_ns_, values_);
+  const auto fit = beside_.empty() ? fit_frame(frequency_, begin_ns, frame_ns_, stamps_ns_, values_)
+                                   : fit_frame(frequency_, begin_ns, frame_ns_, stamps_ns_,
+                                               values_without_others());
   if (!fit) {
     return frame;
   }
@@ -153,6 +168,16 @@ ExcitationWindowFinder::Frame ExcitationWindowFinder::approximate() const {
       wrap_phase(fit->phase_rad - 2.0 * pi * frequency_.reduced_turns(centre_ns - *origin_ns_));
   frame.usable = true;
   return frame;
+}
+
+// As they are where the lines cannot be told apart in the frame, or do not show.
+std::vector<double> ExcitationWindowFinder::values_without_others() const {
+  std::vector<Frequency> lines{frequency_};
+  lines.insert(lines.end(), beside_.begin(), beside_.end());
+  const std::span<const double> values = values_;
+  const auto separated =
+      SeparatedLines::make(lines, stamps_ns_, std::span(&values, 1), LinesMayOverlap::somewhat);
+  return separated ? separated->only(0, 0) : values_;
 }
 
 bool ExcitationWindowFinder::starts(const Frame& frame) const {

@@ -19,6 +19,9 @@
 // sample; memory: the samples of one frame and some 80 bytes a frame of the excitation. Samples
 // that are not finite or not later than the one before are left out and counted.
 //
+// A multi-sine is found in one of its lines: in every frame all lines are approximated together,
+// and the others are taken away first. Its frames are two turns of the nearest lines long.
+//
 // No window: no stretch of at least two frames and `min_duration_s`; fewer than eight samples in a
 // frame; a frequency at a multiple of half the sample rate. One thread; no shared state.
 #pragma once
@@ -62,8 +65,10 @@ struct ExcitationWindow {
 
 class ExcitationWindowFinder {
 public:
+  // `beside`: the other lines that are excited at once.
   explicit ExcitationWindowFinder(const Frequency& frequency,
-                                  const ExcitationWindowSettings& settings = {});
+                                  const ExcitationWindowSettings& settings = {},
+                                  std::vector<Frequency> beside = {});
 
   // The next samples of the stream, in order. REQUIRES: equal sizes. Ignored once the excitation
   // has ended.
@@ -97,6 +102,7 @@ private:
   void begin_frame_or_ignore(std::int64_t stamp_ns, double sync);
   void close_frame();
   [[nodiscard]] Frame approximate() const;
+  [[nodiscard]] std::vector<double> values_without_others() const;
   void take(const Frame& frame);
   [[nodiscard]] bool starts(const Frame& frame) const;
   [[nodiscard]] bool continues(const Frame& frame, double& unwrapped_rad) const;
@@ -119,6 +125,7 @@ private:
 
   Frequency frequency_;
   ExcitationWindowSettings settings_;
+  std::vector<Frequency> beside_;
   std::int64_t frame_ns_;
   std::optional<std::int64_t> origin_ns_; // start of the first frame
   std::int64_t first_stamp_ns_ = 0;

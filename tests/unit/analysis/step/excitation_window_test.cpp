@@ -325,5 +325,44 @@ TEST(ExcitationWindow, LeavesOutSamplesThatCannotBe) {
   expect_within_part(*finder.window(), stream, 1, 63.0);
 }
 
+// Three lines at once, which a search for one of them would take for noise.
+Stream record_multisine(const std::vector<double>& lines_hz, double quiet_s, double on_s) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0.0, 1e-3);
+  Stream stream;
+  for (int i = 0; i < std::lround(1000.0 * (2.0 * quiet_s + on_s)); ++i) {
+    const double t = 1e-3 * i;
+    double y = noise(random);
+    for (std::size_t k = 0; k < lines_hz.size() && t >= quiet_s && t < quiet_s + on_s; ++k) {
+      y += std::sin(2.0 * std::numbers::pi * lines_hz[k] * t + static_cast<double>(k * k));
+    }
+    stream.stamps_ns.push_back(second_ns * 1000 + 1'000'000L * i);
+    stream.values.push_back(y);
+  }
+  return stream;
+}
+
+TEST(ExcitationWindow, FindsAMultisineInOneOfItsLines) {
+  const Stream stream = record_multisine({10.1, 12.3, 16.1}, 3.0, 15.0);
+  ExcitationWindowFinder alone(hz(10.1));
+  alone.push(stream.stamps_ns, stream.values);
+  alone.finish();
+  EXPECT_FALSE(alone.window().has_value());
+
+  ExcitationWindowFinder finder(hz(10.1), {}, {hz(12.3), hz(16.1)});
+  finder.push(stream.stamps_ns, stream.values);
+  EXPECT_TRUE(finder.ended()) << "its end shows in what follows";
+  const auto window = finder.window();
+  ASSERT_TRUE(window.has_value());
+  EXPECT_NEAR(window->amplitude, 1.0, 0.01);
+  EXPECT_NEAR(window->frequency_hz, 10.1, 1e-4);
+  const double begin_s = 1e-9 * static_cast<double>(window->begin_ns - stream.stamps_ns.front());
+  const double end_s = 1e-9 * static_cast<double>(window->end_ns - stream.stamps_ns.front());
+  EXPECT_GE(begin_s, 3.0);
+  EXPECT_LE(begin_s, 3.0 + 2e-9 * static_cast<double>(finder.frame_ns()));
+  EXPECT_LE(end_s, 18.0);
+  EXPECT_GE(end_s, 18.0 - 2e-9 * static_cast<double>(finder.frame_ns()));
+}
+
 } // namespace
 } // namespace dyncal::analysis
