@@ -47,6 +47,12 @@ AcsInstrument::AcsInstrument(const AcsSettings& settings)
                       1.0 + gain_error_};
 }
 
+double AcsInstrument::sync_amplitude_v(const Motion& motion) const {
+  return settings_.sync_is_first_output ? motion.generator_v
+         : motion.sync_on               ? settings_.sync_amplitude_v * motion.sync_part
+                                        : 0.0;
+}
+
 void AcsInstrument::sample_until(double time_s, const Excitation& excitation, AcsSamples& samples) {
   if (samples.counts.empty()) {
     samples.first_sample = next_sample_;
@@ -55,15 +61,18 @@ void AcsInstrument::sample_until(double time_s, const Excitation& excitation, Ac
   for (double at_s = static_cast<double>(next_sample_) * interval_s; at_s < time_s;
        at_s = static_cast<double>(++next_sample_) * interval_s) {
     const Motion motion = excitation.motion(at_s);
+    double acceleration = 0.0;
+    double sync_sine_v = 0.0;
+    for (std::size_t line = 0; line < excitation.lines(); ++line) {
+      const Motion one = line == 0 ? motion : excitation.motion(at_s, line);
+      acceleration += excitation.acceleration(one, reference_gains_);
+      sync_sine_v += sync_amplitude_v(one) * one.sine;
+    }
     const double hum = std::sin(2.0 * std::numbers::pi * hum_hz * at_s + hum_phase_rad_);
-    const double reference =
-        reference_disturbance_.cut(excitation.acceleration(motion, reference_gains_)) +
-        reference_hum_m_s2 * hum + noise_.normal(reference_noise_m_s2) +
-        reference_disturbance_.added(at_s, motion);
-    const double sync_v = settings_.sync_is_first_output ? motion.generator_v
-                          : motion.sync_on               ? settings_.sync_amplitude_v
-                                                         : 0.0;
-    const double sync = sync_v * motion.sine + sync_hum_v * hum + noise_.normal(sync_noise_v) +
+    const double reference = reference_disturbance_.cut(acceleration) + reference_hum_m_s2 * hum +
+                             noise_.normal(reference_noise_m_s2) +
+                             reference_disturbance_.added(at_s, motion);
+    const double sync = sync_sine_v + sync_hum_v * hum + noise_.normal(sync_noise_v) +
                         sync_disturbance_.added(at_s, motion);
     samples.counts.push_back(static_cast<std::int32_t>(
         reference_disturbance_.held(to_counts(reference, reference_scale_), at_s)));

@@ -76,6 +76,8 @@ private:
   double reference_scale_ = 0.0;
   double sync_range_v_ = 0.0;
   double sync_scale_ = 0.0;
+  [[nodiscard]] double sync_amplitude_v(const Motion& motion) const;
+
   HarmonicGains reference_gains_;
   std::uint64_t next_sample_ = 0;
   std::uint64_t uncounted_ = 0; // samples that were lost and that its numbers do not show

@@ -8,6 +8,12 @@ namespace dyncal::drivers::virtual_bench {
 namespace {
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
+constexpr double crest_factor = 3.6; // of a multi-sine: sync stays within its amplitude
+
+bool same_frequencies(const Drive& one, const Drive& other) {
+  return std::ranges::equal(one.lines, other.lines, {}, &DriveLine::frequency_hz,
+                            &DriveLine::frequency_hz);
+}
 
 } // namespace
 
@@ -24,12 +30,12 @@ HarmonicGains harmonic_gains(const AxisResponse& response, double frequency_hz) 
           response.magnitude_at(2.0 * frequency_hz), response.magnitude_at(3.0 * frequency_hz)};
 }
 
-const Excitation::Segment& Excitation::segment_at(double time_s) const {
-  std::size_t i = segments_.size() - 1;
-  while (i > 0 && segments_[i].begin_s > time_s) {
+const Excitation::Segment& Excitation::segment_at(const Line& line, double time_s) {
+  std::size_t i = line.size() - 1;
+  while (i > 0 && line[i].begin_s > time_s) {
     --i;
   }
-  return segments_[i];
+  return line[i];
 }
 
 std::complex<double> Excitation::envelope(const Segment& segment, double time_s) const {
@@ -46,26 +52,45 @@ double Excitation::wandering(double time_s) const {
 }
 
 void Excitation::change(double time_s, const Drive& drive) {
-  const Segment& last = segments_.back();
+  std::vector<DriveLine> lines = drive.lines;
+  if (lines.empty()) {
+    lines.push_back({drive.frequency_hz, drive.amplitude_v, 0.0});
+  }
+  const bool keeps_phases = drive.lines.empty() || (drive_.on && same_frequencies(drive_, drive));
+  lines_.resize(std::max(lines_.size(), lines.size()), Line{Segment{}});
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    const bool is_driven = i < lines.size();
+    const DriveLine line = is_driven ? lines[i] : DriveLine{lines_[i].back().frequency_hz};
+    change(lines_[i], time_s, line, drive.on && is_driven, keeps_phases || !is_driven);
+    lines_[i].back().sync_part =
+        drive.lines.empty()
+            ? 1.0
+            : 1.0 / (crest_factor * std::sqrt(0.5 * static_cast<double>(lines.size())));
+  }
+  drive_ = drive;
+}
+
+void Excitation::change(Line& line, double time_s, const DriveLine& drive, bool on,
+                        bool keeps_phase) const {
+  const Segment& last = line.back();
   Segment next;
   next.begin_s = time_s;
-  const double turns = last.turns + (time_s - last.begin_s) * last.frequency_hz;
+  const double turns = keeps_phase ? last.turns + (time_s - last.begin_s) * last.frequency_hz
+                                   : drive.phase_rad / two_pi;
   next.turns = turns - std::floor(turns);
   next.frequency_hz = drive.frequency_hz;
   next.initial = envelope(last, time_s);
-  next.target =
-      drive.on ? drive.amplitude_v * exciter_.at(drive.frequency_hz) : std::complex<double>{};
-  next.on = drive.on;
-  next.amplitude_v = drive.on ? drive.amplitude_v : 0.0;
-  drive_ = drive;
-  segments_.push_back(next);
-  while (segments_.size() > 2 && segments_[1].begin_s < time_s - memory_s) {
-    segments_.pop_front();
+  next.target = on ? drive.amplitude_v * exciter_.at(drive.frequency_hz) : std::complex<double>{};
+  next.on = on;
+  next.amplitude_v = on ? drive.amplitude_v : 0.0;
+  line.push_back(next);
+  while (line.size() > 2 && line[1].begin_s < time_s - memory_s) {
+    line.pop_front();
   }
 }
 
-Motion Excitation::motion(double time_s) const {
-  const Segment& segment = segment_at(time_s);
+Motion Excitation::motion(double time_s, std::size_t line) const {
+  const Segment& segment = segment_at(lines_[line], time_s);
   const double turns = segment.turns + (time_s - segment.begin_s) * segment.frequency_hz;
   const double angle = two_pi * (turns - std::floor(turns));
   return {.sine = std::sin(angle),
@@ -74,6 +99,7 @@ Motion Excitation::motion(double time_s) const {
           .frequency_hz = segment.frequency_hz,
           .sync_on = segment.on,
           .generator_v = segment.amplitude_v,
+          .sync_part = segment.sync_part,
           .since_change_s = std::max(0.0, time_s - segment.begin_s)};
 }
 

@@ -8,22 +8,36 @@
 // exp(-t/ring-down time) when the output is switched off. Second and third harmonic are in a fixed
 // ratio to the fundamental.
 //
+// An arbitrary waveform is a set of lines at once, each as if it were alone; its phases are those
+// at the instant at which the output is switched on. The sync output has all lines with equal
+// amplitudes then.
+//
 // Bench time is in seconds from the start of the bench. Times may be asked for up to `memory_s`
 // before the newest change. One thread.
 #pragma once
 
 #include <complex>
 #include <deque>
+#include <vector>
 
 #include "drivers/virtual_bench/model/response.hpp"
 
 namespace dyncal::drivers::virtual_bench {
 
+struct DriveLine { // of an arbitrary waveform
+  double frequency_hz = 0.0;
+  double amplitude_v = 0.0;
+  double phase_rad = 0.0; // of its sine, lead
+
+  bool operator==(const DriveLine&) const = default;
+};
+
 struct Drive { // what the generator is set to
   double frequency_hz = 100.0;
   double amplitude_v = 0.0; // zero to peak
   bool on = false;
-  bool rectangle = false; // of the sync line only; the exciter keeps its sine
+  bool rectangle = false;         // of the sync line only; the exciter keeps its sine
+  std::vector<DriveLine> lines{}; // in place of the sine; empty: none
 };
 
 struct ExciterModel {
@@ -50,6 +64,7 @@ struct Motion {
   double frequency_hz = 0.0;
   bool sync_on = false;
   double generator_v = 0.0;    // amplitude of the generator's first output, zero to peak
+  double sync_part = 1.0;      // of the amplitude of sync, what this line has
   double since_change_s = 0.0; // since the generator was last changed
 };
 
@@ -67,14 +82,17 @@ public:
   static constexpr double memory_s = 1.0;
 
   explicit Excitation(const ExciterModel& exciter)
-      : exciter_(exciter), second_(std::polar(exciter.second_harmonic, exciter.second_phase_rad)),
+      : exciter_(exciter), lines_(1, Line{Segment{}}),
+        second_(std::polar(exciter.second_harmonic, exciter.second_phase_rad)),
         third_(std::polar(exciter.third_harmonic, exciter.third_phase_rad)) {}
 
   // From `time_s` on; REQUIRES: not before the last change.
   void change(double time_s, const Drive& drive);
 
   [[nodiscard]] const Drive& drive() const { return drive_; }
-  [[nodiscard]] Motion motion(double time_s) const;
+  // Lines that were excited at once so far, in their order; of a sine one.
+  [[nodiscard]] std::size_t lines() const { return lines_.size(); }
+  [[nodiscard]] Motion motion(double time_s, std::size_t line = 0) const;
   // Acceleration of the moving table in m/s^2 as something with these gains sees it.
   [[nodiscard]] double acceleration(const Motion& motion, const HarmonicGains& gains) const;
 
@@ -87,16 +105,19 @@ private:
     std::complex<double> target;  // envelope in the end
     std::complex<double> initial; // envelope at the beginning
     bool on = false;
+    double sync_part = 1.0;
   };
-  [[nodiscard]] const Segment& segment_at(double time_s) const;
+  using Line = std::deque<Segment>;
+  void change(Line& line, double time_s, const DriveLine& drive, bool on, bool keeps_phase) const;
+  [[nodiscard]] static const Segment& segment_at(const Line& line, double time_s);
   [[nodiscard]] double wandering(double time_s) const;
   [[nodiscard]] std::complex<double> envelope(const Segment& segment, double time_s) const;
 
   ExciterModel exciter_;
+  std::vector<Line> lines_;
   std::complex<double> second_; // harmonics relative to the fundamental
   std::complex<double> third_;
   Drive drive_;
-  std::deque<Segment> segments_{Segment{}};
 };
 
 } // namespace dyncal::drivers::virtual_bench

@@ -122,24 +122,34 @@ float SensorUnit::quantised(double value, double step, double range) const {
 }
 
 const HarmonicGains& SensorUnit::gains(std::size_t axis, double frequency_hz) {
-  if (gains_frequency_hz_[axis] != frequency_hz) {
-    gains_[axis] = harmonic_gains(settings_.preset.axes[axis], frequency_hz);
-    gains_frequency_hz_[axis] = frequency_hz;
+  const auto [known, is_new] = gains_[axis].try_emplace(frequency_hz);
+  if (is_new) {
+    known->second = harmonic_gains(settings_.preset.axes[axis], frequency_hz);
   }
-  return gains_[axis];
+  return known->second;
+}
+
+// Of one line, as this axis feels it.
+double SensorUnit::felt(std::size_t axis, double time_s, const Excitation& excitation,
+                        std::size_t line) {
+  Motion motion = excitation.motion(time_s - settings_.preset.axes[axis].delay_s, line);
+  const DelayChange& change = settings_.delay_change;
+  if (change.by_s != 0.0 && motion.since_change_s > change.after_s) {
+    motion = excitation.motion(time_s - settings_.preset.axes[axis].delay_s - change.by_s, line);
+  }
+  return excitation.acceleration(motion, gains(axis, motion.frequency_hz));
 }
 
 void SensorUnit::measure_acceleration(UnitSample& sample, double time_s,
                                       const Excitation& excitation) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    Motion motion = excitation.motion(time_s - settings_.preset.axes[axis].delay_s);
-    const DelayChange& change = settings_.delay_change;
-    if (change.by_s != 0.0 && motion.since_change_s > change.after_s) {
-      motion = excitation.motion(time_s - settings_.preset.axes[axis].delay_s - change.by_s);
+    double acceleration = 0.0;
+    for (std::size_t line = 0; line < excitation.lines(); ++line) {
+      acceleration += felt(axis, time_s, excitation, line);
     }
-    const double value = sensor_disturbances_[axis].cut(
-                             excitation.acceleration(motion, gains(axis, motion.frequency_hz))) +
-                         offset_m_s2_[axis] + noise_.normal(noise_m_s2_) +
+    const Motion motion = excitation.motion(time_s - settings_.preset.axes[axis].delay_s);
+    const double value = sensor_disturbances_[axis].cut(acceleration) + offset_m_s2_[axis] +
+                         noise_.normal(noise_m_s2_) +
                          sensor_disturbances_[axis].added(time_s, motion);
     sample.data[axis] = static_cast<float>(
         sensor_disturbances_[axis].held(quantised(value, step_m_s2_, range_m_s2_), time_s));
@@ -163,10 +173,14 @@ void SensorUnit::measure_rest(UnitSample& sample, double temperature_degc) {
 
 void SensorUnit::measure_adcs(UnitSample& sample, double time_s, const Excitation& excitation) {
   const Motion motion = excitation.motion(time_s - settings_.adc.lag_s);
-  const double amplitude_v = settings_.sync_is_first_output ? motion.generator_v
-                             : motion.sync_on               ? settings_.sync_amplitude_v
-                                                            : 0.0;
-  const double sync_v = amplitude_v * motion.sine;
+  double sync_v = 0.0;
+  for (std::size_t line = 0; line < excitation.lines(); ++line) {
+    const Motion one = line == 0 ? motion : excitation.motion(time_s - settings_.adc.lag_s, line);
+    const double amplitude_v = settings_.sync_is_first_output ? one.generator_v
+                               : one.sync_on ? settings_.sync_amplitude_v * one.sync_part
+                                             : 0.0;
+    sync_v += amplitude_v * one.sine;
+  }
   for (std::size_t adc = 0; adc < 3; ++adc) {
     const bool is_sync = adc == 0;
     const double input_v = (is_sync ? sync_v + sync_disturbance_.added(time_s, motion) : 0.0) +

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -80,6 +81,8 @@ private:
   void measure_adcs(UnitSample& sample, double time_s, const Excitation& excitation);
   [[nodiscard]] float quantised(double value, double step, double range) const;
   [[nodiscard]] const HarmonicGains& gains(std::size_t axis, double frequency_hz);
+  [[nodiscard]] double felt(std::size_t axis, double time_s, const Excitation& excitation,
+                            std::size_t line);
 
   SensorUnitSettings settings_;
   Random noise_;
@@ -97,8 +100,7 @@ private:
   double sync_range_v_ = 0.0;
   double noise_m_s2_ = 0.0; // standard deviation
   std::array<double, 3> offset_m_s2_{};
-  std::array<HarmonicGains, 3> gains_;
-  std::array<double, 3> gains_frequency_hz_{};
+  std::array<std::map<double, HarmonicGains>, 3> gains_; // by frequency
   std::optional<SensorEdge> edge_;
   std::uint32_t sample_number_ = 0;
 };
