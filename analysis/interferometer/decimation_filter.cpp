@@ -11,9 +11,16 @@ namespace dyncal::analysis {
 namespace {
 
 constexpr std::size_t largest_stage = 512;
-constexpr std::size_t half_lengths = 4; // half the filter, in new intervals
-constexpr double kaiser_beta = 7.0;
-constexpr double relative_cut_off = 0.45;
+
+struct Shape {
+  std::size_t half_lengths; // half the filter, in new intervals
+  double kaiser_beta;
+  double relative_cut_off;
+};
+
+Shape shape_of(PassBand pass_band) {
+  return pass_band == PassBand::flat ? Shape{10, 16.0, 0.4} : Shape{4, 7.0, 0.45};
+}
 
 // I_0 by its series.
 double modified_bessel(double x) {
@@ -26,25 +33,26 @@ double modified_bessel(double x) {
   return sum;
 }
 
-double filter_shape(double intervals) { // from the middle, in new intervals
-  const double angle = 2.0 * std::numbers::pi * relative_cut_off * intervals;
+double coefficient_at(const Shape& shape, double intervals) { // from the middle, in new intervals
+  const double angle = 2.0 * std::numbers::pi * shape.relative_cut_off * intervals;
   const double low_pass = angle == 0.0 ? 1.0 : std::sin(angle) / angle;
-  const double place = intervals / static_cast<double>(half_lengths);
+  const double place = intervals / static_cast<double>(shape.half_lengths);
   const double window =
-      modified_bessel(kaiser_beta * std::sqrt(std::max(0.0, 1.0 - place * place)));
+      modified_bessel(shape.kaiser_beta * std::sqrt(std::max(0.0, 1.0 - place * place)));
   return low_pass * window;
 }
 
 } // namespace
 
-DecimationFilter::Stage DecimationFilter::stage_of(std::size_t factor) {
+DecimationFilter::Stage DecimationFilter::stage_of(std::size_t factor, PassBand pass_band) {
+  const Shape shape = shape_of(pass_band);
   Stage stage;
   stage.factor = factor;
-  const std::size_t middle = half_lengths * factor;
+  const std::size_t middle = shape.half_lengths * factor;
   double sum = 0.0;
   for (std::size_t k = 0; k <= 2 * middle; ++k) {
     const double samples = static_cast<double>(k) - static_cast<double>(middle);
-    stage.coefficients.push_back(filter_shape(samples / static_cast<double>(factor)));
+    stage.coefficients.push_back(coefficient_at(shape, samples / static_cast<double>(factor)));
     sum += stage.coefficients.back();
   }
   for (double& coefficient : stage.coefficients) {
@@ -53,15 +61,15 @@ DecimationFilter::Stage DecimationFilter::stage_of(std::size_t factor) {
   return stage;
 }
 
-DecimationFilter::DecimationFilter(std::size_t factor) {
+DecimationFilter::DecimationFilter(std::size_t factor, PassBand pass_band) {
   assert(factor >= 1);
   if (factor == 1) {
     return;
   }
   const std::size_t second = (factor + largest_stage - 1) / largest_stage;
-  stages_.push_back(stage_of(factor / second));
+  stages_.push_back(stage_of(factor / second, pass_band));
   if (second > 1) {
-    stages_.push_back(stage_of(second));
+    stages_.push_back(stage_of(second, pass_band));
   }
 }
 
@@ -106,8 +114,8 @@ std::size_t DecimationFilter::first_sample() const {
   std::size_t first = 0;
   std::size_t interval = 1;
   for (const Stage& stage : stages_) {
+    first += stage.coefficients.size() / 2 * interval;
     interval *= stage.factor;
-    first += half_lengths * interval;
   }
   return first;
 }
@@ -116,7 +124,7 @@ double DecimationFilter::gain(double cycles_per_sample) const {
   double gain = 1.0;
   double cycles = cycles_per_sample;
   for (const Stage& stage : stages_) {
-    const double middle = static_cast<double>(half_lengths * stage.factor);
+    const double middle = static_cast<double>(stage.coefficients.size() / 2);
     double sum = 0.0;
     for (std::size_t k = 0; k < stage.coefficients.size(); ++k) {
       sum += stage.coefficients[k] *

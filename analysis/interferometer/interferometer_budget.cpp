@@ -7,49 +7,39 @@
 namespace dyncal::analysis {
 namespace {
 
-// Periodic errors of the phase as variances of amplitude, and so of their effect on a magnitude.
-double periodic_variance(double mean_square_error_rad, int order, double phase_amplitude_rad) {
-  const double change = largest_periodic_change(1.0, order, phase_amplitude_rad);
-  return mean_square_error_rad * change * change / 2.0;
-}
-
-// Sum of the variances of cosine and sine of the phase error of orders 1 and 2. By the model's
-// derivatives: dp and r dq move the centre, dr / r and dalpha squeeze the circle by half of it.
-double ellipse_variance(const EllipseFit& fit, double phase_amplitude_rad) {
+// By the model's derivatives: dp and r dq move the centre, dr / r and dalpha squeeze the circle by
+// half of it. Variances of cosine and sine of the error, in sum.
+std::array<double, 2> ellipse_errors(const EllipseFit& fit) {
   const auto& v = fit.covariance;
   const Ellipse& e = fit.ellipse;
   const double square = e.radius * e.radius;
-  const double first = (v[0][0] + e.r * e.r * v[1][1]) / square;
-  const double second = (v[2][2] / (e.r * e.r) + v[3][3]) / 4.0;
-  return periodic_variance(first, 1, phase_amplitude_rad) +
-         periodic_variance(second, 2, phase_amplitude_rad);
+  return {std::sqrt((v[0][0] + e.r * e.r * v[1][1]) / square),
+          std::sqrt((v[2][2] / (e.r * e.r) + v[3][3]) / 4.0)};
 }
 
-double residual_variance(const RadiusHarmonics& radius, double phase_amplitude_rad) {
+template <std::size_t orders>
+Contribution periodic_row(ContributionKind kind, Distribution distribution,
+                          const std::array<double, orders>& error_rad, double phase_amplitude_rad,
+                          double periods) {
   double variance = 0.0;
-  for (std::size_t i = 0; i < radius_orders; ++i) {
-    const double error_rad = radius.amplitude[i] / radius.mean;
-    variance +=
-        periodic_variance(error_rad * error_rad, static_cast<int>(i) + 1, phase_amplitude_rad);
+  for (std::size_t i = 0; i < orders; ++i) {
+    const double change =
+        largest_periodic_change(error_rad[i], static_cast<int>(i) + 1, phase_amplitude_rad);
+    variance += change * change / 2.0;
   }
-  return variance;
-}
-
-InterferometerRow periodic_row(std::string_view name, Distribution distribution, double variance,
-                               double periods) {
   const double u = std::sqrt(variance);
-  const double of_ends = 1.0 / std::max(1.0, std::numbers::pi * periods);
-  return {name, distribution, Repeats::common, infinite_degrees_of_freedom, u, u * of_ends};
+  return {.kind = kind,
+          .distribution = distribution,
+          .u_magnitude_rel = u,
+          .u_phase_rad = u / std::max(1.0, std::numbers::pi * periods)};
 }
 
-InterferometerRow bandwidth_row(double frequency_hz, double bandwidth_hz) {
+Contribution bandwidth_row(double frequency_hz, double bandwidth_hz) {
   const double ratio = frequency_hz / bandwidth_hz;
-  return {"bandwidth of the detectors",
-          Distribution::rectangular,
-          Repeats::common,
-          infinite_degrees_of_freedom,
-          ratio * ratio / 2.0 / std::sqrt(3.0),
-          ratio / std::sqrt(3.0)};
+  return {.kind = ContributionKind::detector_bandwidth,
+          .distribution = Distribution::rectangular,
+          .u_magnitude_rel = ratio * ratio / 2.0 / std::sqrt(3.0),
+          .u_phase_rad = ratio / std::sqrt(3.0)};
 }
 
 } // namespace
@@ -59,39 +49,43 @@ double largest_periodic_change(double error_rad, int order, double phase_amplitu
          phase_amplitude_rad;
 }
 
-Expected<std::vector<InterferometerRow>> interferometer_rows(const InterferometerStep& step,
-                                                             const RecordEllipse& ellipse,
-                                                             const AirWavelength& wavelength,
-                                                             const DetectorSettings& detectors,
-                                                             const SineFit& acceleration) {
-  if (!(step.frequency_hz > 0.0) || !(step.phase_amplitude_rad > 0.0) || !(step.periods > 0.0)) {
-    return fail(ErrorCode::invalid_argument,
-                "frequency, phase amplitude and periods of an interferometer's step must be given");
-  }
+Expected<InterferometerErrors> interferometer_errors(const RecordEllipse& ellipse,
+                                                     double displacement_per_turn_m,
+                                                     const AirWavelength& wavelength,
+                                                     const DetectorSettings& detectors) {
   if (!ellipse.radius) {
     return fail(ErrorCode::ill_conditioned,
                 "the ellipse of the interferometer comes from a record of less than one turn, "
                 "which does not show its residual periodic error. Use the ellipse of a step that "
                 "covers a turn, or of a file");
   }
-  const double m = step.phase_amplitude_rad;
-  const double w = 2.0 * std::numbers::pi * step.frequency_hz;
-  std::vector<InterferometerRow> rows;
-  rows.push_back(periodic_row("ellipse of the interferometer", Distribution::normal,
-                              ellipse_variance(ellipse.fit, m), step.periods));
-  rows.push_back(periodic_row("periodic error of the interferometer", Distribution::arcsine,
-                              residual_variance(*ellipse.radius, m), step.periods));
-  rows.push_back({"wavelength in air", Distribution::normal, Repeats::common,
-                  infinite_degrees_of_freedom, wavelength.u_rel, 0.0});
-  if (detectors.bandwidth_hz) {
-    rows.push_back(bandwidth_row(step.frequency_hz, *detectors.bandwidth_hz));
+  InterferometerErrors errors{.displacement_per_turn_m = displacement_per_turn_m,
+                              .ellipse_rad = ellipse_errors(ellipse.fit),
+                              .u_wavelength_rel = wavelength.u_rel,
+                              .detectors = detectors};
+  for (std::size_t i = 0; i < radius_orders; ++i) {
+    errors.periodic_rad[i] = ellipse.radius->amplitude[i] / ellipse.radius->mean;
   }
-  rows.push_back({"skew of the detectors", Distribution::normal, Repeats::common,
-                  infinite_degrees_of_freedom, 0.0, w * detectors.u_skew_s / 2.0});
-  rows.push_back({"noise of the interferometer", Distribution::normal, Repeats::anew,
-                  acceleration.degrees_of_freedom,
-                  step.noise_factor * acceleration.u_amplitude() / acceleration.amplitude(),
-                  step.noise_factor * acceleration.u_phase_rad()});
+  return errors;
+}
+
+std::vector<Contribution> interferometer_rows(const InterferometerStep& step,
+                                              const InterferometerErrors& errors) {
+  const double turn_m = std::abs(errors.displacement_per_turn_m);
+  const double m = 2.0 * std::numbers::pi * step.displacement_m / turn_m;
+  const double w = 2.0 * std::numbers::pi * step.frequency_hz;
+  const double of_skew = m > 2.0 * std::numbers::pi ? 0.5 : 1.0;
+  std::vector<Contribution> rows{
+      periodic_row(ContributionKind::interferometer_ellipse, Distribution::normal,
+                   errors.ellipse_rad, m, step.periods),
+      periodic_row(ContributionKind::periodic_error, Distribution::arcsine, errors.periodic_rad, m,
+                   step.periods),
+      {.kind = ContributionKind::wavelength, .u_magnitude_rel = errors.u_wavelength_rel},
+      {.kind = ContributionKind::detector_skew,
+       .u_phase_rad = of_skew * w * errors.detectors.u_skew_s}};
+  if (errors.detectors.bandwidth_hz) {
+    rows.push_back(bandwidth_row(step.frequency_hz, *errors.detectors.bandwidth_hz));
+  }
   return rows;
 }
 

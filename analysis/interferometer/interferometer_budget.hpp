@@ -16,55 +16,54 @@
 //   bandwidth        one pole at f_c delays the phase by 0 to 1 / (2 pi f_c), less the faster the
 //                    fringes are, and takes up to (f / f_c)^2 / 2 off the amplitude. Neither is
 //                    corrected: half-widths of rectangular distributions
-//   skew             of the two channels: w dt / 2 in phase
-//   noise            of the sine fit, times the factor of its filter
+//   skew             of the two channels: w dt / 2 in phase, up to w dt on arcs below a fringe
 //
-// Rows are those of the budget (uncertainty/contribution.hpp) but for a kind of their own. Any
-// thread.
+// The noise is that of the sine fit. Plain functions, any thread.
 #pragma once
 
+#include <array>
 #include <optional>
-#include <string_view>
 #include <vector>
 
 #include "analysis/base/error.hpp"
 #include "analysis/interferometer/air_wavelength.hpp"
 #include "analysis/interferometer/record_ellipse.hpp"
-#include "analysis/sine/sine_fit.hpp"
 #include "analysis/uncertainty/contribution.hpp"
 
 namespace dyncal::analysis {
 
-struct InterferometerRow {
-  std::string_view name;
-  Distribution distribution = Distribution::normal;
-  Repeats repeats = Repeats::common;
-  double degrees_of_freedom = infinite_degrees_of_freedom;
-  double u_magnitude_rel = 0.0;
-  double u_phase_rad = 0.0;
+struct DetectorSettings {
+  std::optional<double> bandwidth_hz; // of the slower one; empty: fast enough not to matter
+  double u_skew_s = 0.0;              // of the delay of u2 after u1
 };
+
+// Of a displacement that was made of quadrature signals, whatever the step.
+struct InterferometerErrors {
+  double displacement_per_turn_m = 0.0;
+  std::array<double, 2> ellipse_rad{};              // orders 1 and 2: standard uncertainty
+  std::array<double, radius_orders> periodic_rad{}; // e_k: amplitude
+  double u_wavelength_rel = 0.0;
+  DetectorSettings detectors;
+};
+
+// Fails (ill_conditioned) where the ellipse came from a record that covers less than a turn: then
+// nobody knows the residual periodic error.
+[[nodiscard]] Expected<InterferometerErrors>
+interferometer_errors(const RecordEllipse& ellipse, double displacement_per_turn_m,
+                      const AirWavelength& wavelength, const DetectorSettings& detectors);
 
 struct InterferometerStep {
   double frequency_hz = 0.0;
-  double phase_amplitude_rad = 0.0; // M
-  double periods = 0.0;             // in the record
-  double noise_factor = 1.0;        // reference_motion.hpp
-};
-
-struct DetectorSettings {
-  std::optional<double> bandwidth_hz; // of the slower one; empty: fast enough not to matter
-  double u_skew_s = 0.0;              // of the delay of u2 after u1, once corrected
+  double displacement_m = 0.0; // amplitude
+  double periods = 0.0;        // in the record
 };
 
 // Largest relative change of an amplitude by a periodic error of order k. REQUIRES: M > 0.
 [[nodiscard]] double largest_periodic_change(double error_rad, int order,
                                              double phase_amplitude_rad);
 
-// Fails (ill_conditioned) where the ellipse came from a record that covers less than a turn: then
-// nobody knows the residual periodic error. (invalid_argument) without frequency, M or periods.
-[[nodiscard]] Expected<std::vector<InterferometerRow>>
-interferometer_rows(const InterferometerStep& step, const RecordEllipse& ellipse,
-                    const AirWavelength& wavelength, const DetectorSettings& detectors,
-                    const SineFit& acceleration);
+// REQUIRES: a frequency, an amplitude, a displacement per turn.
+[[nodiscard]] std::vector<Contribution> interferometer_rows(const InterferometerStep& step,
+                                                            const InterferometerErrors& errors);
 
 } // namespace dyncal::analysis

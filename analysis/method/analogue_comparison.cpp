@@ -17,14 +17,15 @@ Budget noise_of(const RecordedChannel& reference) {
   return budget;
 }
 
-Budget systematic_rows(double w, const ReferenceResponse& response,
-                       const ComparisonUncertainty& systematic) {
+template <class Input>
+Budget systematic_rows(const Input& input, const RecordedChannel& reference) {
+  const ComparisonUncertainty& systematic = input.systematic;
   Budget budget;
   budget.add({.kind = ContributionKind::channel_delay,
               .subject = "the channels",
-              .u_phase_rad = w * systematic.channel_delay_s});
-  add_reference_rows(budget, response, systematic.reference_magnitude_rel,
-                     systematic.reference_phase_rad);
+              .u_phase_rad = reference.result.frequency.angular() * systematic.channel_delay_s});
+  add_reference_rows(budget, reference, input.frequency, input.reference_response,
+                     systematic.reference_magnitude_rel, systematic.reference_phase_rad);
   return budget;
 }
 
@@ -48,9 +49,9 @@ Expected<ComparisonResult> evaluate_analogue(const AnalogueInput& input) {
   DYNCAL_TRY(require_excitation(reference));
   const double w = reference.result.frequency.angular();
   const std::complex<double> link = std::polar(1.0, w * input.channel_delay_s) /
-                                    reference.phasor() * input.reference_response.phasor();
+                                    reference.excitation() * input.reference_response.phasor();
   const Budget noise = noise_of(reference);
-  const Budget systematic = systematic_rows(w, input.reference_response, input.systematic);
+  const Budget systematic = systematic_rows(input, reference);
   ComparisonResult result{
       reference.result, by_sync ? std::optional(system.pilot.result) : std::nullopt, {}, {}};
   add_knock(reference, result.findings);
@@ -83,13 +84,13 @@ Expected<ComparisonResult> evaluate_absolute_time(const AbsoluteTimeInput& input
   add_knock(reference, result.findings);
   const double w = reference.result.frequency.angular();
   const Budget noise = noise_of(reference);
-  Budget systematic = systematic_rows(w, input.reference_response, input.systematic);
+  Budget systematic = systematic_rows(input, reference);
   add_beat_rows(
       systematic, "the reference's", w,
       stamp_beat(input.frequency, input.reference_stamps_ns, input.systematic.reference_tick_s),
       {});
   const std::complex<double> link = std::polar(1.0, w * input.channel_delay_s) /
-                                    reference.phasor() * input.reference_response.phasor();
+                                    reference.excitation() * input.reference_response.phasor();
   const OwnClockUncertainty clock{
       .clock_offset_s = input.systematic.clock_offset_s,
       .stamp_jitter_s = input.systematic.stamp_jitter_s,

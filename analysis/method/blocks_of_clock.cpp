@@ -20,7 +20,7 @@ constexpr double known_noise_freedom = 6.0;
 constexpr double known_slope_periods = 4.0;
 
 FittedValues fitted(const RecordedChannel& channel) {
-  return {channel.values(), channel.result.fit};
+  return {channel.values(), channel.fit_of_values()};
 }
 
 double periods_of(const RecordedChannel& channel) {
@@ -29,14 +29,15 @@ double periods_of(const RecordedChannel& channel) {
 }
 
 bool shows_noise(const RecordedChannel& channel) {
-  return channel.result.fit.residual_sd() > hides_steps * channel.samples.resolution;
+  return !channel.motion_stamps_ns.empty() ||
+         channel.result.fit.residual_sd() > hides_steps * channel.samples.resolution;
 }
 
 NoiseNearSignal noise_of(const RecordedChannel& channel, std::span<const PhasorBlock> blocks) {
   const ChannelFit& result = channel.result;
   return periods_of(channel) < few_periods
-             ? noise_of_few_periods(result.frequency, result.phase_origin_ns, channel.stamps_ns,
-                                    channel.values(), result.fit)
+             ? noise_of_few_periods(result.frequency, result.phase_origin_ns, channel.stamps(),
+                                    channel.values(), channel.fit_of_values())
              : noise_from_blocks(blocks, result.fit);
 }
 
@@ -94,9 +95,49 @@ bool may_be_disturbed(std::span<const PhasorBlock> blocks) {
 
 void find_knock(RecordedChannel& channel, std::span<const PhasorBlock> blocks) {
   if (may_be_disturbed(blocks)) {
-    channel.knock =
-        find_short_disturbance(channel.result.frequency, channel.stamps_ns, channel.samples.values);
+    const bool moves = !channel.motion_stamps_ns.empty();
+    channel.knock = find_short_disturbance(channel.result.frequency, channel.stamps(),
+                                           moves ? channel.values() : channel.samples.values);
   }
+}
+
+// Of a channel that has stamps of its own, on the axis of the others.
+std::vector<PhasorBlock> blocks_of(const RecordedChannel& channel) {
+  const FittedValues values[] = {fitted(channel)};
+  auto blocks = phasors_in_blocks(channel.result.frequency, channel.result.phase_origin_ns,
+                                  channel.stamps(), values);
+  const double later_s =
+      static_cast<double>(channel.stamps().front() - channel.stamps_ns.front()) * 1e-9;
+  for (PhasorBlock& block : blocks.front()) {
+    block.centre_s += later_s;
+  }
+  return std::move(blocks.front());
+}
+
+// The pilot's first. In one pass, but for the channels that have stamps of their own.
+std::vector<std::vector<PhasorBlock>> blocks_of(const ChannelsOfOneClock& system) {
+  std::vector<const RecordedChannel*> channels{&system.pilot};
+  for (const RecordedChannel& other : system.others) {
+    channels.push_back(&other);
+  }
+  std::vector<FittedValues> together;
+  for (const RecordedChannel* channel : channels) {
+    if (channel->motion_stamps_ns.empty()) {
+      together.push_back(fitted(*channel));
+    }
+  }
+  const ChannelFit& pilot = system.pilot.result;
+  std::vector<std::vector<PhasorBlock>> blocks;
+  if (!together.empty()) {
+    blocks =
+        phasors_in_blocks(pilot.frequency, pilot.phase_origin_ns, system.pilot.stamps_ns, together);
+  }
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    if (!channels[i]->motion_stamps_ns.empty()) {
+      blocks.insert(blocks.begin() + static_cast<std::ptrdiff_t>(i), blocks_of(*channels[i]));
+    }
+  }
+  return blocks;
 }
 
 std::optional<BlockSeries> learn(RecordedChannel& channel, std::span<const PhasorBlock> blocks) {
@@ -116,13 +157,7 @@ std::optional<BlockSeries> BlocksOfClock::beside_pilot(std::size_t other) const 
 }
 
 BlocksOfClock learn_from_blocks(ChannelsOfOneClock& system) {
-  const RecordedChannel& pilot = system.pilot;
-  std::vector<FittedValues> channels{fitted(pilot)};
-  for (const RecordedChannel& other : system.others) {
-    channels.push_back(fitted(other));
-  }
-  const auto blocks = phasors_in_blocks(pilot.result.frequency, pilot.result.phase_origin_ns,
-                                        pilot.stamps_ns, channels);
+  const std::vector<std::vector<PhasorBlock>> blocks = blocks_of(system);
   widen_frequency(system, blocks.front());
   BlocksOfClock result{learn(system.pilot, blocks.front()), {}};
   for (std::size_t i = 0; i < system.others.size(); ++i) {
@@ -132,18 +167,11 @@ BlocksOfClock learn_from_blocks(ChannelsOfOneClock& system) {
 }
 
 void learn_frequency_noise(ChannelsOfOneClock& system) {
-  const RecordedChannel& pilot = system.pilot;
-  const FittedValues values[] = {fitted(pilot)};
-  widen_frequency(system, phasors_in_blocks(pilot.result.frequency, pilot.result.phase_origin_ns,
-                                            pilot.stamps_ns, values)
-                              .front());
+  widen_frequency(system, blocks_of(system.pilot));
 }
 
 std::optional<BlockSeries> learn_from_blocks(RecordedChannel& channel) {
-  const FittedValues values[] = {fitted(channel)};
-  const auto blocks = phasors_in_blocks(channel.result.frequency, channel.result.phase_origin_ns,
-                                        channel.stamps_ns, values);
-  return learn(channel, blocks.front());
+  return learn(channel, blocks_of(channel));
 }
 
 std::optional<RatioInBlocks> compare(const std::optional<BlockSeries>& numerator,

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "analysis/base/phasor.hpp"
+#include "analysis/method/motion_channel.hpp"
 #include "analysis/sine/disturbances.hpp"
 #include "analysis/sine/sine_solve.hpp"
 #include "analysis/uncertainty/found_resolution.hpp"
@@ -183,7 +184,38 @@ fit_channels_of_pilot(const Frequency& nominal, double frequency_search_rel,
                                  std::move(pilot->channels));
 }
 
+// A pilot that is itself a displacement or velocity shows its frequency without the slow motion.
+Expected<std::vector<RecordedChannel>> fit_samples(const Frequency& nominal,
+                                                   double frequency_search_rel,
+                                                   std::span<const std::int64_t> stamps_ns,
+                                                   std::span<const ChannelSamples> all,
+                                                   const ChannelSamples& pilot) {
+  if (!(frequency_search_rel > 0.0)) {
+    return fit_channels(nominal, 0.0, stamps_ns, all);
+  }
+  if (!is_differentiated(pilot)) {
+    return fit_channels_of_pilot(nominal, frequency_search_rel, stamps_ns, all);
+  }
+  DYNCAL_TRY(const MotionFrequency found,
+             frequency_of_motion(nominal, frequency_search_rel, stamps_ns, pilot));
+  return fit_channels(found.frequency, found.u_frequency_hz, stamps_ns, all);
+}
+
 } // namespace
+
+SineFit RecordedChannel::fit_of_values() const {
+  SineFit fit = result.fit;
+  if (!motion_stamps_ns.empty()) {
+    fit.offset = 0.0;
+  }
+  return fit;
+}
+
+std::complex<double> RecordedChannel::excitation() const {
+  return samples.motion ? phasor() * motion_factor(samples.motion->measured, samples.motion->per,
+                                                   result.frequency.angular())
+                        : phasor();
+}
 
 Expected<ChannelsOfOneClock> fit_channels_of_one_clock(const Frequency& nominal,
                                                        double frequency_search_rel,
@@ -192,10 +224,22 @@ Expected<ChannelsOfOneClock> fit_channels_of_one_clock(const Frequency& nominal,
                                                        std::span<const ChannelSamples> others) {
   std::vector<ChannelSamples> all{pilot};
   all.insert(all.end(), others.begin(), others.end());
+  DYNCAL_TRY(values_of(all, stamps_ns));
+  std::vector<std::vector<double>> periodic(all.size());
+  std::vector<ChannelSamples> looked_at = all;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (is_differentiated(all[i])) {
+      periodic[i] = without_slow_motion(nominal.hz(), stamps_ns, all[i].values);
+      looked_at[i].values = periodic[i];
+    }
+  }
   DYNCAL_TRY(auto recorded,
-             frequency_search_rel > 0.0
-                 ? fit_channels_of_pilot(nominal, frequency_search_rel, stamps_ns, all)
-                 : fit_channels(nominal, 0.0, stamps_ns, all));
+             fit_samples(nominal, frequency_search_rel, stamps_ns, looked_at, pilot));
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (is_differentiated(all[i])) {
+      DYNCAL_TRY(take_motion(all[i].values, recorded[i]));
+    }
+  }
   DYNCAL_TRY(require_excitation(recorded.front()));
   ChannelsOfOneClock system{std::move(recorded.front()), {}};
   system.others.assign(std::make_move_iterator(recorded.begin() + 1),
@@ -261,8 +305,25 @@ void add_sensor_rows(Budget& budget, const RecordedChannel& recorded, double jit
   }
 }
 
-void add_reference_rows(Budget& budget, const ReferenceResponse& response, double magnitude_rel,
-                        double phase_rad) {
+void add_reference_rows(Budget& budget, const RecordedChannel& reference, const Frequency& nominal,
+                        const ReferenceResponse& response, double magnitude_rel, double phase_rad) {
+  if (const auto& motion = reference.samples.motion) {
+    const int powers = static_cast<int>(motion->measured) - static_cast<int>(motion->per);
+    budget.add({.kind = ContributionKind::motion_frequency,
+                .distribution = Distribution::rectangular,
+                .u_magnitude_rel =
+                    std::abs(powers * (reference.result.frequency.hz() / nominal.hz() - 1.0)) /
+                    std::sqrt(3.0)});
+    if (motion->interferometer) {
+      const double seconds =
+          static_cast<double>(reference.stamps_ns.back() - reference.stamps_ns.front()) * 1e-9;
+      const double f = reference.result.frequency.hz();
+      for (const Contribution& row :
+           interferometer_rows({f, reference.amplitude(), f * seconds}, *motion->interferometer)) {
+        budget.add(row);
+      }
+    }
+  }
   budget.add({.kind = ContributionKind::reference,
               .u_magnitude_rel = magnitude_rel,
               .u_phase_rad = phase_rad});

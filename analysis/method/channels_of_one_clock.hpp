@@ -12,6 +12,9 @@
 //                 them, they are looked for in the values (found_resolution.hpp)
 //   stamp jitter  what scatter of the stamps took off the amplitude, where its residuals show it
 //                 (stamp_scatter.hpp), is put back, and its uncertainty is a row
+//   motion        displacement and velocity of a reference are fitted without the slow motion of
+//   the
+//                 table (motion_channel.hpp), in the unit that they have
 //   Rice          u^2 / (2 A^2), how much noise alone lengthens a weak phasor (below 10 u); its
 //                 phase is that of phasor.hpp
 //
@@ -45,6 +48,8 @@ struct RecordedChannel {
   bool noise_unknown = false;            // slow, and the record too short to know it
   int drift_order = 0;                   // of the polynomial that was fitted beside the signal
   std::optional<ShortDisturbance> knock{};
+  // Of `cleaned`, where that is the motion of a step (reference_motion.hpp).
+  std::vector<std::int64_t> motion_stamps_ns{};
 
   [[nodiscard]] double noise_freedom() const {
     return noise_degrees_of_freedom > 0.0 ? noise_degrees_of_freedom
@@ -53,11 +58,18 @@ struct RecordedChannel {
   [[nodiscard]] std::span<const double> values() const {
     return cleaned.empty() ? samples.values : std::span<const double>(cleaned);
   }
+  // Of values().
+  [[nodiscard]] std::span<const std::int64_t> stamps() const {
+    return motion_stamps_ns.empty() ? stamps_ns : std::span<const std::int64_t>(motion_stamps_ns);
+  }
+  [[nodiscard]] SineFit fit_of_values() const;
   // Of the sine before the scatter of stamps shortened it.
   [[nodiscard]] std::complex<double> phasor() const {
     return std::complex<double>(result.fit.sine, result.fit.cosine) * lengthening;
   }
   [[nodiscard]] double amplitude() const { return result.fit.amplitude() * lengthening; }
+  // Of the quantity that the response is per.
+  [[nodiscard]] std::complex<double> excitation() const;
 
   double lengthening = 1.0;
 };
@@ -91,9 +103,12 @@ void add_signal_rows(Budget& budget, const std::string& what, const RecordedChan
 // Noise, quantisation and Rice's lengthening of a channel under calibration, however weak.
 void add_sensor_rows(Budget& budget, const RecordedChannel& channel, double jitter_s);
 
-// The reference's calibration: a row for every contribution, and one for what is stated beside it.
-void add_reference_rows(Budget& budget, const ReferenceResponse& response, double magnitude_rel,
-                        double phase_rad);
+// The reference's calibration: a row for every contribution, and one for what is stated beside it;
+// one for the frequency, where the phasor of another quantity is made with it: by how much the
+// clock and the nominal frequency differ; and those of an interferometer
+// (interferometer_budget.hpp).
+void add_reference_rows(Budget& budget, const RecordedChannel& reference, const Frequency& nominal,
+                        const ReferenceResponse& response, double magnitude_rel, double phase_rad);
 
 // H = P_dut * link with the budget's uncertainty. |link| is 1 / the reference's true amplitude.
 [[nodiscard]] TransferPoint transfer_point(const RecordedChannel& dut, std::complex<double> link,

@@ -44,8 +44,8 @@ Budget systematic_rows(const SampleStampingInput& input, const ChannelsOfOneCloc
   budget.add({.kind = ContributionKind::channel_delay,
               .subject = "the ACS channels",
               .u_phase_rad = w * systematic.acs_delay_s});
-  add_reference_rows(budget, input.reference_response, systematic.reference_magnitude_rel,
-                     systematic.reference_phase_rad);
+  add_reference_rows(budget, acs.others.front(), input.frequency, input.reference_response,
+                     systematic.reference_magnitude_rel, systematic.reference_phase_rad);
   const BeatReach reach =
       reach_on_ratio(acs.others.front().result.fit.phase_rad(), acs.pilot.result.fit.phase_rad());
   add_beat_rows(
@@ -140,7 +140,7 @@ std::complex<double> link_of(const SampleStampingInput& input, const ChannelsOfO
   const std::complex<double> late =
       std::polar(1.0, input.frequency.angular() * input.reference_delay_s);
   return unit_phasor(acs.pilot.phasor()) / (unit_phasor(sync_dau.phasor()) / adc) /
-         (acs.others.front().phasor() * late / input.reference_response.phasor());
+         (acs.others.front().excitation() * late / input.reference_response.phasor());
 }
 
 // Of a sensor with a clock of its own.

@@ -152,8 +152,8 @@ Budget common_budget(const SeriesStampingInput& input, const ChannelsOfOneClock&
   budget.add({.kind = ContributionKind::channel_delay,
               .subject = "the ACS channels",
               .u_phase_rad = w * input.acs_delay_s});
-  add_reference_rows(budget, input.reference_response, input.reference_magnitude_rel,
-                     input.reference_phase_rad);
+  add_reference_rows(budget, acs.others.front(), input.frequency, input.reference_response,
+                     input.reference_magnitude_rel, input.reference_phase_rad);
   return budget;
 }
 
@@ -283,7 +283,7 @@ Expected<SeriesStampingResult> evaluate_series_stamping(const SeriesStampingInpu
   // Everything that is the same for all shots: the reference's phasor against sync, and the way
   // from trigger point to sample 0.
   const std::complex<double> link =
-      unit_phasor(acs.pilot.phasor()) / reference.phasor() * input.reference_response.phasor() *
+      unit_phasor(acs.pilot.phasor()) / reference.excitation() * input.reference_response.phasor() *
       std::polar(1.0, -w * (input.dso_delay_s + input.start_latency_s + input.reference_delay_s));
   const Budget common = common_budget(input, acs, w,
                                       std::numbers::pi * 1e-9 * static_cast<double>(stamps.back()) *

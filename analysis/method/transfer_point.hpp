@@ -13,6 +13,8 @@
 #include <vector>
 
 #include "analysis/base/frequency.hpp"
+#include "analysis/interferometer/interferometer_budget.hpp"
+#include "analysis/interferometer/reference_motion.hpp"
 #include "analysis/sine/mains.hpp"
 #include "analysis/sine/sine_fit.hpp"
 #include "analysis/sine/stamp_scatter.hpp"
@@ -22,6 +24,14 @@
 
 namespace dyncal::analysis {
 
+// Of a reference: the quantity that it measures, and the one that the response is per. Displacement
+// and velocity are taken without the slow motion of the table (reference_motion.hpp).
+struct ReferenceQuantity {
+  MotionQuantity measured = MotionQuantity::acceleration;
+  MotionQuantity per = MotionQuantity::acceleration;
+  std::optional<InterferometerErrors> interferometer{}; // of a displacement that one measured
+};
+
 struct ChannelSamples {
   std::string name;
   std::span<const double> values;
@@ -30,6 +40,7 @@ struct ChannelSamples {
   SignalExpectation expected{};
   std::span<const double> mains_hz = usual_mains_hz; // lines that are looked for beside the sine
   RisingSine rise{}; // of the same channel, before these samples; empty where it is not known
+  std::optional<ReferenceQuantity> motion{}; // empty: another quantity, or none of a reference
 };
 
 struct ChannelFit { // the sine fitted to one recorded channel

@@ -10,6 +10,9 @@ bool is_common_to_results(ContributionKind kind) {
   case ContributionKind::trigger_delay:
   case ContributionKind::trace_clock:
   case ContributionKind::transverse_motion:
+  case ContributionKind::wavelength:
+  case ContributionKind::detector_bandwidth:
+  case ContributionKind::detector_skew:
     return true;
   case ContributionKind::fit_noise:
   case ContributionKind::quantisation:
@@ -26,6 +29,9 @@ bool is_common_to_results(ContributionKind kind) {
   case ContributionKind::mains_hum:
   case ContributionKind::folded_harmonic:
   case ContributionKind::background:
+  case ContributionKind::motion_frequency:
+  case ContributionKind::interferometer_ellipse:
+  case ContributionKind::periodic_error:
   case ContributionKind::other:
     break;
   }

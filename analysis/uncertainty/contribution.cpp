@@ -50,6 +50,18 @@ constexpr std::array rows{
     Row{ContributionKind::background, "background", "background in", true, Repeats::anew},
     Row{ContributionKind::transverse_motion, "transverse_motion",
         "transverse motion of the exciter", false, Repeats::common},
+    Row{ContributionKind::motion_frequency, "motion_frequency",
+        "frequency between displacement, velocity and acceleration", false, Repeats::common},
+    Row{ContributionKind::interferometer_ellipse, "interferometer_ellipse",
+        "ellipse of the interferometer", false, Repeats::common},
+    Row{ContributionKind::periodic_error, "periodic_error", "periodic error of the interferometer",
+        false, Repeats::common},
+    Row{ContributionKind::wavelength, "wavelength", "wavelength of the laser in air", false,
+        Repeats::common},
+    Row{ContributionKind::detector_bandwidth, "detector_bandwidth",
+        "bandwidth of the interferometer's detectors", false, Repeats::common_delay},
+    Row{ContributionKind::detector_skew, "detector_skew", "skew of the interferometer's detectors",
+        false, Repeats::common_delay},
     Row{ContributionKind::other, "other", "other", false, Repeats::common}};
 
 constexpr bool in_order() {

@@ -48,8 +48,14 @@ enum class ContributionKind {
   mains_hum,       // a mains line too near the excitation to be told from it; subject: the channel
   folded_harmonic, // a harmonic that sampling folds onto the excitation; subject: the channel
   background,      // what else there is at the excitation's frequency; subject: the channel
-  transverse_motion, // of the exciter, in a channel across the excited axis
-  other              // a row that this version does not know; its subject is its name
+  transverse_motion,      // of the exciter, in a channel across the excited axis
+  motion_frequency,       // by which displacement, velocity and acceleration are made of each other
+  interferometer_ellipse, // what its covariance leaves of the periodic error
+  periodic_error,         // of an interferometer's phase, which no ellipse corrects
+  wavelength,             // of the laser, in air
+  detector_bandwidth,     // delay and loss of an interferometer's photodetectors
+  detector_skew,          // delay of one of its signals against the other
+  other                   // a row that this version does not know; its subject is its name
 };
 
 enum class Repeats { anew, common, common_delay };

@@ -35,6 +35,12 @@ constexpr auto kinds = std::to_array<std::pair<ContributionKind, wire::Contribut
     {ContributionKind::folded_harmonic, wire::CONTRIBUTION_FOLDED_HARMONIC},
     {ContributionKind::background, wire::CONTRIBUTION_BACKGROUND},
     {ContributionKind::transverse_motion, wire::CONTRIBUTION_TRANSVERSE_MOTION},
+    {ContributionKind::motion_frequency, wire::CONTRIBUTION_MOTION_FREQUENCY},
+    {ContributionKind::interferometer_ellipse, wire::CONTRIBUTION_INTERFEROMETER_ELLIPSE},
+    {ContributionKind::periodic_error, wire::CONTRIBUTION_PERIODIC_ERROR},
+    {ContributionKind::wavelength, wire::CONTRIBUTION_WAVELENGTH},
+    {ContributionKind::detector_bandwidth, wire::CONTRIBUTION_DETECTOR_BANDWIDTH},
+    {ContributionKind::detector_skew, wire::CONTRIBUTION_DETECTOR_SKEW},
 });
 static_assert(kinds.size() == static_cast<std::size_t>(ContributionKind::other) + 1);
 

@@ -39,6 +39,14 @@ constexpr Sentence kinds[] = {
      "{}, Klirren (durch Abtastung gefaltete Oberschwingungen)"},
     {"{}, background vibration and interference", "{}, Störschwingungen und Störsignale"},
     {"transverse motion of the exciter", "Querbewegung des Schwingungserregers"},
+    {"frequency of the excitation, between displacement, velocity and acceleration",
+     "Frequenz der Anregung, zwischen Weg, Geschwindigkeit und Beschleunigung"},
+    {"interferometer, ellipse of the quadrature signals",
+     "Interferometer, Ellipse der Quadratursignale"},
+    {"interferometer, residual periodic error", "Interferometer, periodische Restabweichung"},
+    {"interferometer, wavelength in air", "Interferometer, Wellenlänge in Luft"},
+    {"interferometer, bandwidth of the detectors", "Interferometer, Bandbreite der Detektoren"},
+    {"interferometer, skew of the detectors", "Interferometer, Laufzeitunterschied der Detektoren"},
     {"{}", "{}"},
 };
 static_assert(std::size(kinds) == static_cast<std::size_t>(analysis::ContributionKind::other) + 1);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -62,47 +63,48 @@ RecordEllipse ellipse_with_fourth_harmonic() {
   return ellipse;
 }
 
-SineFit ten_of_acceleration() {
-  SineFit fit;
-  fit.sine = 10.0;
-  fit.covariance = {1e-6, 0.0, 0.0, 1e-6, 0.0, 1e-6};
-  fit.degrees_of_freedom = 97.0;
-  return fit;
+InterferometerErrors errors_with_fourth_harmonic() {
+  const auto errors = interferometer_errors(ellipse_with_fourth_harmonic(), -316.4e-9,
+                                            {632.8e-9, 8e-6}, {1e6, 1e-8});
+  EXPECT_TRUE(errors);
+  return errors.value_or(InterferometerErrors{});
+}
+
+const Contribution& row(const std::vector<Contribution>& rows, ContributionKind kind) {
+  return *std::ranges::find(rows, kind, &Contribution::kind);
 }
 
 TEST(InterferometerBudget, HasARowForEachInfluence) {
-  const auto rows = interferometer_rows({160.0, 1.0, 100.0, 1.1}, ellipse_with_fourth_harmonic(),
-                                        {632.8e-9, 8e-6}, {1e6, 1e-8}, ten_of_acceleration());
-  ASSERT_TRUE(rows);
-  ASSERT_EQ(rows->size(), 6u);
-  const auto row = [&](std::string_view name) {
-    return *std::find_if(rows->begin(), rows->end(),
-                         [&](const InterferometerRow& one) { return one.name == name; });
-  };
+  const double one_radian_m = 316.4e-9 / (2.0 * std::numbers::pi);
+  const auto rows =
+      interferometer_rows({160.0, one_radian_m, 100.0}, errors_with_fourth_harmonic());
+  ASSERT_EQ(rows.size(), 5u);
   // J1(1) = 0.44005, |J1(4)| = 0.06604
-  EXPECT_NEAR(row("ellipse of the interferometer").u_magnitude_rel,
+  EXPECT_NEAR(row(rows, ContributionKind::interferometer_ellipse).u_magnitude_rel,
               1e-3 * 2.0 * 0.44005 / std::sqrt(2.0), 1e-8);
-  EXPECT_NEAR(row("periodic error of the interferometer").u_magnitude_rel,
-              0.0073 * 2.0 * 0.06604 / std::sqrt(2.0), 1e-7);
-  EXPECT_NEAR(row("periodic error of the interferometer").u_phase_rad,
-              0.0073 * 2.0 * 0.06604 / std::sqrt(2.0) / (100.0 * std::numbers::pi), 1e-9);
-  EXPECT_EQ(row("wavelength in air").u_magnitude_rel, 8e-6);
-  EXPECT_NEAR(row("bandwidth of the detectors").u_phase_rad, 1.6e-4 / std::sqrt(3.0), 1e-12);
-  EXPECT_NEAR(row("skew of the detectors").u_phase_rad, 2.0 * std::numbers::pi * 160.0 * 1e-8 / 2.0,
+  const Contribution& periodic = row(rows, ContributionKind::periodic_error);
+  const double expected = 0.0073 * 2.0 * 0.06604 / std::sqrt(2.0);
+  EXPECT_NEAR(periodic.u_magnitude_rel, expected, 1e-7);
+  EXPECT_NEAR(periodic.u_phase_rad, expected / (100.0 * std::numbers::pi), 1e-9);
+  EXPECT_EQ(row(rows, ContributionKind::wavelength).u_magnitude_rel, 8e-6);
+  EXPECT_NEAR(row(rows, ContributionKind::detector_bandwidth).u_phase_rad, 1.6e-4 / std::sqrt(3.0),
               1e-12);
-  EXPECT_NEAR(row("noise of the interferometer").u_magnitude_rel, 1.1e-4, 1e-12);
-  EXPECT_EQ(row("noise of the interferometer").degrees_of_freedom, 97.0);
+  EXPECT_NEAR(row(rows, ContributionKind::detector_skew).u_phase_rad,
+              2.0 * std::numbers::pi * 160.0 * 1e-8, 1e-12);
+}
+
+TEST(InterferometerBudget, ManyFringesSeeHalfTheSkew) {
+  const auto rows = interferometer_rows({160.0, 1e-5, 100.0}, errors_with_fourth_harmonic());
+  EXPECT_NEAR(row(rows, ContributionKind::detector_skew).u_phase_rad,
+              2.0 * std::numbers::pi * 160.0 * 1e-8 / 2.0, 1e-12);
 }
 
 TEST(InterferometerBudget, RefusesAnEllipseThatDoesNotShowThePeriodicError) {
   RecordEllipse ellipse = ellipse_with_fourth_harmonic();
   ellipse.radius.reset();
-  const auto rows = interferometer_rows({160.0, 1.0, 100.0, 1.0}, ellipse, {632.8e-9, 8e-6}, {},
-                                        ten_of_acceleration());
-  ASSERT_FALSE(rows);
-  EXPECT_EQ(rows.error().code, ErrorCode::ill_conditioned);
-  EXPECT_FALSE(interferometer_rows({160.0, 0.0, 100.0, 1.0}, ellipse_with_fourth_harmonic(),
-                                   {632.8e-9, 8e-6}, {}, ten_of_acceleration()));
+  const auto errors = interferometer_errors(ellipse, 316.4e-9, {632.8e-9, 8e-6}, {});
+  ASSERT_FALSE(errors);
+  EXPECT_EQ(errors.error().code, ErrorCode::ill_conditioned);
 }
 
 } // namespace

@@ -4,6 +4,7 @@
 #include <complex>
 #include <cstdint>
 #include <numbers>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,7 @@ using simulated::Motion;
 using simulated::simulate;
 using simulated::true_acceleration;
 
-MotionSettings settings_of(const Motion& motion) {
+simulated::ChainSettings settings_of(const Motion& motion) {
   return {motion.frequency_hz, motion.sample_rate_hz,
           displacement_per_turn_m(simulated::wavelength_m, 1)};
 }
@@ -96,52 +97,109 @@ TEST(ReferenceMotion, SlowMotionOfTheTableIsNoExcitation) {
   EXPECT_LT(std::abs(ratio - 1.0), 0.05);
 }
 
-TEST(ReferenceMotion, SyncKeepsAmplitudeAndPhase) {
-  for (const double rate_hz : {1000.0, 1e4, 2e5}) {
-    Motion motion;
-    motion.sample_rate_hz = rate_hz;
-    motion.seconds = 0.2;
-    motion.acceleration_m_s2 = 0.5;
-    const auto result = run(motion, 2);
-    ASSERT_TRUE(result);
-    EXPECT_NEAR(std::abs(result->sync), 1.0, 1e-4) << rate_hz;
-    EXPECT_NEAR(std::arg(result->sync), simulated::sync_phase_rad, 1e-4) << rate_hz;
-  }
-}
-
 TEST(ReferenceMotion, TheDirectionTurnsTheAcceleration) {
   const Motion motion;
   const Detectors detectors;
   const auto signals = simulate(motion, detectors, 3);
-  MotionSettings settings = settings_of(motion);
+  simulated::ChainSettings settings = settings_of(motion);
   settings.displacement_per_turn_m = -settings.displacement_per_turn_m;
   const auto turned = chain(settings, detectors.ellipse, signals.u1, signals.u2, signals.sync);
   ASSERT_TRUE(turned);
   EXPECT_LT(std::abs(turned->acceleration / true_acceleration(motion) + 1.0), 1e-5);
 }
 
+// A sine beside a straight line, of as many samples.
+struct Record {
+  std::vector<std::int64_t> stamps_ns;
+  std::vector<double> values;
+};
+
+Record record_of(double rate_hz, std::size_t samples, double frequency_hz) {
+  Record record;
+  for (std::size_t i = 0; i < samples; ++i) {
+    record.stamps_ns.push_back(std::llround(static_cast<double>(i) * 1e9 / rate_hz));
+    const double t = static_cast<double>(record.stamps_ns.back()) * 1e-9;
+    record.values.push_back(3.0 * std::sin(2.0 * std::numbers::pi * frequency_hz * t + 0.3) +
+                            20.0 * t);
+  }
+  return record;
+}
+
+Expected<StepMotion> motion_of(const Record& record, double frequency_hz,
+                               MotionQuantity quantity = MotionQuantity::displacement) {
+  return motion_of_step(quantity, Frequency::from_hz(frequency_hz), record.stamps_ns,
+                        record.values);
+}
+
+std::complex<double> phasor_in(const StepMotion& motion, double frequency_hz) {
+  const std::span<const double> values[] = {motion.values};
+  const auto fit = fit_sine(Frequency::from_hz(frequency_hz), 0, motion.stamps_ns, values);
+  EXPECT_TRUE(fit);
+  return fit ? simulated::phasor_of(fit->front()) : 0.0;
+}
+
 TEST(ReferenceMotion, DecimatesToFourToEightTimesTheFrequency) {
-  for (double rate_hz = 640.0; rate_hz < 2e7; rate_hz *= 1.07) {
-    const auto motion = ReferenceMotion::of_step({160.0, rate_hz, 3e-7});
-    ASSERT_TRUE(motion);
-    EXPECT_GE(motion->decimated_rate_hz(), 640.0 * (1.0 - 1e-12)) << rate_hz;
-    EXPECT_LE(motion->decimated_rate_hz(), 1280.0 * (1.0 + 1e-12)) << rate_hz;
+  for (double rate_hz = 640.0; rate_hz < 4e5; rate_hz *= 1.07) {
+    const auto motion = motion_of(record_of(rate_hz, 20000, 160.0), 160.0);
+    ASSERT_TRUE(motion) << motion.error().message;
+    EXPECT_GE(motion->rate_hz, 640.0 * (1.0 - 1e-6)) << rate_hz;
+    EXPECT_LE(motion->rate_hz, 1280.0 * (1.0 + 1e-6)) << rate_hz;
+    EXPECT_LT(std::abs(phasor_in(*motion, 160.0) - std::polar(3.0, 0.3)), 1e-5) << rate_hz;
   }
 }
 
+TEST(ReferenceMotion, GapsAndSamplesThatAreMissingChangeNothing) {
+  Record record = record_of(5000.0, 20000, 40.0);
+  for (const std::size_t at : {15000, 9000, 8990, 100}) {
+    record.stamps_ns.erase(record.stamps_ns.begin() + static_cast<std::ptrdiff_t>(at));
+    record.values.erase(record.values.begin() + static_cast<std::ptrdiff_t>(at));
+  }
+  const auto motion = motion_of(record, 40.0);
+  ASSERT_TRUE(motion);
+  EXPECT_GT(motion->values.size(), 600u);
+  EXPECT_LT(std::abs(phasor_in(*motion, 40.0) - std::polar(3.0, 0.3)), 1e-6);
+}
+
+TEST(ReferenceMotion, StampsNeedNotBeEven) {
+  std::mt19937_64 random(7);
+  std::uniform_int_distribution<std::int64_t> jitter_ns(-20000, 20000);
+  Record record = record_of(5000.0, 20000, 40.0);
+  for (std::size_t i = 0; i < record.values.size(); ++i) {
+    record.stamps_ns[i] += jitter_ns(random);
+    const double t = static_cast<double>(record.stamps_ns[i]) * 1e-9;
+    record.values[i] = 3.0 * std::sin(2.0 * std::numbers::pi * 40.0 * t + 0.3);
+  }
+  const auto motion = motion_of(record, 40.0);
+  ASSERT_TRUE(motion);
+  const std::complex<double> phasor = phasor_in(*motion, 40.0);
+  // A white jitter of 11.5 us turns 2.9 mrad a sample, and every value is of about thirty.
+  EXPECT_LT(std::abs(phasor - std::polar(3.0, 0.3)), 3e-4);
+}
+
+TEST(ReferenceMotion, AQuantityIsItsDerivativeOverTheFrequency) {
+  constexpr auto displacement = MotionQuantity::displacement;
+  constexpr auto velocity = MotionQuantity::velocity;
+  constexpr auto acceleration = MotionQuantity::acceleration;
+  EXPECT_EQ(motion_factor(displacement, acceleration, 2.0), std::complex<double>(-4.0, 0.0));
+  EXPECT_EQ(motion_factor(velocity, acceleration, 2.0), std::complex<double>(0.0, 2.0));
+  EXPECT_EQ(motion_factor(displacement, velocity, 2.0), std::complex<double>(0.0, 2.0));
+  EXPECT_EQ(motion_factor(velocity, displacement, 2.0), std::complex<double>(0.0, -0.5));
+  EXPECT_EQ(motion_factor(acceleration, displacement, 2.0), std::complex<double>(-0.25, 0.0));
+  EXPECT_EQ(motion_factor(velocity, velocity, 2.0), std::complex<double>(1.0, 0.0));
+}
+
 TEST(ReferenceMotion, RefusesWhatItCannotDo) {
-  const auto slow = ReferenceMotion::of_step({160.0, 500.0, 3e-7});
+  const auto slow = motion_of(record_of(500.0, 5000, 160.0), 160.0);
   ASSERT_FALSE(slow);
   EXPECT_EQ(slow.error().code, ErrorCode::frequency_out_of_range);
-  EXPECT_FALSE(ReferenceMotion::of_step({0.0, 500.0, 3e-7}));
-  EXPECT_FALSE(ReferenceMotion::of_step({10.0, 500.0, 0.0}));
-  auto empty = ReferenceMotion::of_step({160.0, 1e6, 3e-7});
-  ASSERT_TRUE(empty);
-  empty->push_turns(std::vector<double>(5000, 1.0));
-  empty->push_sync(std::vector<double>(5000, 1.0));
-  const auto decimated = empty->decimated();
-  ASSERT_FALSE(decimated);
-  EXPECT_EQ(decimated.error().code, ErrorCode::too_few_samples);
+  const auto short_one = motion_of(record_of(1e5, 1000, 160.0), 160.0);
+  ASSERT_FALSE(short_one);
+  EXPECT_EQ(short_one.error().code, ErrorCode::too_few_samples);
+  Record backwards = record_of(1e4, 5000, 160.0);
+  std::swap(backwards.stamps_ns[7], backwards.stamps_ns[8]);
+  const auto turned = motion_of(backwards, 160.0);
+  ASSERT_FALSE(turned);
+  EXPECT_EQ(turned.error().code, ErrorCode::invalid_argument);
 }
 
 } // namespace

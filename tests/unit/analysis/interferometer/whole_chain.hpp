@@ -25,43 +25,51 @@ struct ChainResult {
   PhaseStatistics phase;
 };
 
-// About an instant that lies `earlier_rad` before that of the fit.
-inline std::complex<double> phasor_before(const SineFit& fit, double earlier_rad) {
-  return std::complex<double>(fit.sine, fit.cosine) * std::polar(1.0, -earlier_rad);
+struct ChainSettings {
+  double frequency_hz = 0.0;
+  double sample_rate_hz = 0.0;
+  double displacement_per_turn_m = 0.0; // its sign is the direction
+};
+
+inline std::complex<double> phasor_of(const SineFit& fit) {
+  return {fit.sine, fit.cosine};
 }
 
-inline std::optional<ChainResult> chain(const MotionSettings& settings, const Ellipse& ellipse,
+inline std::optional<ChainResult> chain(const ChainSettings& settings, const Ellipse& ellipse,
                                         std::span<const std::int16_t> u1,
                                         std::span<const std::int16_t> u2,
                                         std::span<const double> sync) {
   QuadraturePhase phase(ellipse);
-  std::vector<double> turns(u1.size());
-  auto motion = ReferenceMotion::of_step(settings);
-  if (!motion || !phase.push(u1, u2, turns)) {
+  std::vector<double> displacement(u1.size());
+  if (!phase.push(u1, u2, displacement)) {
     ADD_FAILURE() << "no phase";
     return std::nullopt;
   }
-  motion->push_turns(turns);
-  motion->push_sync(sync);
-  const auto decimated = motion->decimated();
-  if (!decimated) {
-    ADD_FAILURE() << decimated.error().message;
+  for (double& value : displacement) {
+    value *= settings.displacement_per_turn_m;
+  }
+  const EquidistantAxis axis(1.0 / settings.sample_rate_hz);
+  const auto stamps = axis.stamps_ns(displacement.size());
+  const Frequency frequency = axis.on_axis(settings.frequency_hz);
+  const auto motion = motion_of_step(MotionQuantity::displacement, frequency, stamps, displacement);
+  if (!motion) {
+    ADD_FAILURE() << motion.error().message;
     return std::nullopt;
   }
-  const EquidistantAxis axis(decimated->interval_s);
-  const auto stamps = axis.stamps_ns(decimated->sync.size());
-  const std::span<const double> channels[] = {decimated->acceleration_m_s2, decimated->sync};
-  const auto fits = fit_sine(axis.on_axis(settings.frequency_hz), 0, stamps, channels);
-  if (!fits) {
-    ADD_FAILURE() << fits.error().message;
+  const std::span<const double> of_motion[] = {motion->values};
+  const std::span<const double> of_sync[] = {sync};
+  const auto fit = fit_sine(frequency, 0, motion->stamps_ns, of_motion);
+  const auto sync_fit = fit_sine(frequency, 0, stamps, of_sync);
+  if (!fit || !sync_fit) {
+    ADD_FAILURE() << "no sine";
     return std::nullopt;
   }
-  const SineFit& acceleration = (*fits)[0];
-  const double earlier_rad = 2.0 * std::numbers::pi * settings.frequency_hz * decimated->first_s;
+  const SineFit& one = fit->front();
   return ChainResult{
-      phasor_before(acceleration, earlier_rad), phasor_before((*fits)[1], earlier_rad),
-      decimated->noise_factor * acceleration.u_amplitude() / acceleration.amplitude(),
-      decimated->noise_factor * acceleration.u_phase_rad(), phase.statistics()};
+      phasor_of(one) * motion_factor(MotionQuantity::displacement, MotionQuantity::acceleration,
+                                     2.0 * std::numbers::pi * settings.frequency_hz),
+      phasor_of(sync_fit->front()), motion->noise_factor * one.u_amplitude() / one.amplitude(),
+      motion->noise_factor * one.u_phase_rad(), phase.statistics()};
 }
 
 } // namespace dyncal::analysis::simulated

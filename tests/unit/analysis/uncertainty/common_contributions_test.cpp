@@ -19,8 +19,9 @@ TEST(CommonContributions, AreThoseOfCalibrationsAlone) {
       EXPECT_NE(repeats_of(kind), Repeats::anew) << identifier_of(kind);
     }
   }
-  const std::set<std::string_view> expected{"adc_phase",   "channel_delay",     "reference",
-                                            "trace_clock", "transverse_motion", "trigger_delay"};
+  const std::set<std::string_view> expected{
+      "adc_phase",   "channel_delay",     "detector_bandwidth", "detector_skew", "reference",
+      "trace_clock", "transverse_motion", "trigger_delay",      "wavelength"};
   EXPECT_EQ(common, expected);
 }
 
