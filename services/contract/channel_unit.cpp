@@ -123,8 +123,8 @@ double ChannelUnit::factor_from(const std::string& own) const {
   const auto own_v = own == volt               ? std::optional(1.0)
                      : own == R"(\milli\volt)" ? std::optional(1e-3)
                      : own == R"(\micro\volt)" ? std::optional(1e-6)
-                                               : std::nullopt;
-  return factor * own_v.value_or(from_v) / from_v;
+                                               : volts_of(own); // "V", as a file writes it
+  return factor * (own_v.value_or(0.0) > 0.0 ? *own_v : from_v) / from_v;
 }
 
 Expected<ChannelUnit> parse_channel_unit(const std::string& written) {

@@ -54,6 +54,9 @@ TEST(ChannelUnit, TakesVoltagesByWhatTheInstrumentSays) {
   EXPECT_DOUBLE_EQ(0.1 * unit->factor_from(R"(\volt)"), g);
   EXPECT_DOUBLE_EQ(100.0 * unit->factor_from(R"(\milli\volt)"), g);
   EXPECT_DOUBLE_EQ(100.0 * unit->factor_from(""), g);
+  EXPECT_DOUBLE_EQ(0.1 * unit->factor_from("V"), g); // as the heading of a file has it
+  EXPECT_DOUBLE_EQ(100.0 * unit->factor_from("mV"), g);
+  EXPECT_DOUBLE_EQ(100.0 * unit->factor_from("LSB"), g);
   EXPECT_DOUBLE_EQ(unit->named, g);
   EXPECT_TRUE(parse_channel_unit("1000 mV/V")->is_conversion());
 }
