@@ -51,6 +51,7 @@ Expected<std::vector<SineFit>> fit_columns(const Frequency& frequency, const Ext
   DYNCAL_TRY(const auto extended, fit_sine_extended(frequency, basis, Weighting::none, origin_ns,
                                                     stamps_ns, columns, progress));
   std::vector<SineFit> fits;
+  fits.reserve(extended.size());
   for (const ExtendedFit& one : extended) {
     fits.push_back(one.fundamental);
   }

@@ -143,7 +143,7 @@ void bind_phase(nb::module_& module) {
       "Raises Error (invalid_argument). Source: Boensch and Potulski, Metrologia 35 (1998) 133");
 }
 
-void bind_motion(nb::module_& module) {
+void bind_decimation(nb::module_& module) {
   nb::class_<DecimationFilter>(module, "DecimationFilter",
                                "A low-pass filter that keeps every D-th value, in blocks.\n"
                                "Source: analysis/interferometer/decimation_filter.hpp")
@@ -169,6 +169,9 @@ void bind_motion(nb::module_& module) {
                    "input sample of the first output; as many are lost at the end")
       .def("gain", &DecimationFilter::gain, "cycles_per_sample"_a,
            "at a frequency in cycles per sample of the input");
+}
+
+void bind_motion(nb::module_& module) {
   nb::class_<DecimatedMotion>(module, "DecimatedMotion")
       .def_ro("interval_s", &DecimatedMotion::interval_s)
       .def_ro("first_s", &DecimatedMotion::first_s, "after the first sample of the record")
@@ -213,6 +216,7 @@ void bind_motion(nb::module_& module) {
 void bind_interferometer(nb::module_& module) {
   bind_ellipse(module);
   bind_phase(module);
+  bind_decimation(module);
   bind_motion(module);
 }
 
