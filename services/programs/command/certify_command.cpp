@@ -81,8 +81,8 @@ void print_made(const CertificateFileRequest& request, const CertificateContents
     fmt::print("number {} is not taken: the certificate is not signed\n",
                one_line(contents.number));
   }
-  for (const std::string& objection : contents.objections) {
-    fmt::print("forced in spite of: {}\n", objection);
+  for (const TranslatedText& objection : contents.objections) {
+    fmt::print("forced in spite of: {}\n", objection.english);
   }
 }
 

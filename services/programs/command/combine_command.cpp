@@ -15,6 +15,7 @@
 #include "services/programs/command/work_progress.hpp"
 #include "services/records/provenance/result_provenance.hpp"
 #include "services/records/store/store.hpp"
+#include "services/views/language/translated_texts.hpp"
 #include "services/views/report/combined_result.hpp"
 #include "services/views/report/result_json.hpp"
 
@@ -43,7 +44,8 @@ Expected<std::vector<StoredResult>> read_runs(const CombineOptions& options,
     DYNCAL_TRY(auto held, read_held_result(run, options.store.text_for(run), count, stop));
     if (!held.objections.empty()) {
       return fail(ErrorCode::no_result,
-                  fmt::format("{}: {}", run.string(), fmt::join(held.objections, "; ")));
+                  fmt::format("{}: {}", run.string(),
+                              fmt::join(texts_in(Language::english, held.objections), "; ")));
     }
     runs.push_back(std::move(held.result));
   }

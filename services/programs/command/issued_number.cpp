@@ -64,7 +64,7 @@ Expected<void> require_proof(const HeldResult& held) {
   }
   return fail(ErrorCode::no_result,
               fmt::format("{}: nothing is signed or issued of it, forced or not: {}",
-                          held.result.file.string(), held.objections.front()));
+                          held.result.file.string(), held.objections.front().english));
 }
 
 Expected<void> enter_document(const std::string& place, const IssuedDocument& document) {

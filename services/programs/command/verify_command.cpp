@@ -21,6 +21,7 @@
 #include "services/records/store/document_register.hpp"
 #include "services/records/store/store.hpp"
 #include "services/views/certificate/verification.hpp"
+#include "services/views/language/translated_texts.hpp"
 #include "services/views/report/amendments.hpp"
 
 namespace dyncal::inline programs {
@@ -110,13 +111,9 @@ VerificationFinding said_by_records(const VerifyOptions& options, const std::sto
   if (!held) {
     return {Verification::measured, false, held.error().message};
   }
-  std::vector<std::string> sentences = held->objections;
-  const bool holds = sentences.empty();
-  for (const TranslatedText& statement : held->statements) {
-    if (holds) {
-      sentences.push_back(statement.english);
-    }
-  }
+  const bool holds = held->objections.empty();
+  const std::vector<std::string> sentences =
+      texts_in(Language::english, holds ? held->statements : held->objections);
   return {Verification::measured, holds, fmt::format("{}", fmt::join(sentences, " "))};
 }
 

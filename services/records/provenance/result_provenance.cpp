@@ -8,6 +8,7 @@
 #include "services/records/exchange/opened_recording.hpp"
 #include "services/records/provenance/repeated_evaluation.hpp"
 #include "services/records/store/store.hpp"
+#include "services/views/language/objection_sentences.hpp"
 #include "services/views/language/statement_sentences.hpp"
 #include "services/views/report/amendments.hpp"
 #include "services/views/report/mean_check.hpp"
@@ -16,6 +17,10 @@ namespace dyncal::inline records {
 namespace {
 
 constexpr std::size_t shown_of_hash = 12;
+
+std::string utc_in(Language language, const std::string& utc) {
+  return language == Language::english ? utc : instant_text(language, utc);
+}
 
 // Empty: nothing is known of it there.
 Expected<TranslatedText> said_by_store(const StoredResult& result, const std::string& place) {
@@ -38,10 +43,8 @@ Expected<TranslatedText> said_by_store(const StoredResult& result, const std::st
                             kept->sha256.substr(0, shown_of_hash)));
   }
   return in_all_languages([&](Language language) {
-    return sentences::kept_in_store(
-        language,
-        language == Language::english ? kept->since_utc : instant_text(language, kept->since_utc),
-        result.sha256.substr(0, shown_of_hash));
+    return sentences::kept_in_store(language, utc_in(language, kept->since_utc),
+                                    result.sha256.substr(0, shown_of_hash));
   });
 }
 
@@ -76,9 +79,10 @@ Expected<std::vector<JournalEntry>> held_journal(const std::filesystem::path& ru
   }
   for (const JournalEntry& entry : journal) {
     if (entry.kind == JournalKind::amendment && !is_in(kept, entry)) {
-      held.objections.push_back(fmt::format("the store does not have the amendment of {} ('dyncal "
-                                            "store add {}')",
-                                            entry.utc, run.string()));
+      held.objections.push_back(in_all_languages([&](Language language) {
+        return sentences::amendment_not_in_store(language, utc_in(language, entry.utc),
+                                                 run.string());
+      }));
     }
   }
   return journal;
@@ -111,8 +115,10 @@ TranslatedText said_of(const RepeatedEvaluation& repeated, const StoredResult& r
 // A recording that lacks some of the samples speaks for the rest, where the store has the file.
 void add_recording(Expected<RepeatedEvaluation> repeated, bool is_kept, HeldResult& held) {
   if (!repeated) {
-    held.objections.push_back(fmt::format(
-        "the recording of the run cannot be evaluated once more: {}", repeated.error().message));
+    held.objections.push_back(in_all_languages([&](Language language) {
+      return sentences::not_evaluated_again(
+          language, language == Language::english ? ": " + repeated.error().message : "");
+    }));
     return;
   }
   if (repeated->missing < repeated->values) {
@@ -122,11 +128,7 @@ void add_recording(Expected<RepeatedEvaluation> repeated, bool is_kept, HeldResu
     TranslatedText lack = in_all_languages([&](Language language) {
       return sentences::recording_lacks(language, repeated->missing, repeated->values);
     });
-    if (is_kept) {
-      held.statements.push_back(std::move(lack));
-    } else {
-      held.objections.push_back(std::move(lack.english));
-    }
+    (is_kept ? held.statements : held.objections).push_back(std::move(lack));
   }
 }
 
@@ -148,7 +150,7 @@ Expected<HeldResult> read_held_file(const std::filesystem::path& run, const std:
   if (!result.combined.empty()) {
     held.statements.push_back(said_of_mountings(result));
     if (kept.empty()) {
-      held.objections.push_back("the store does not have the combined result ('dyncal store add')");
+      held.objections.push_back(sentences::combined_not_in_store.translated());
     }
     return held;
   }
@@ -160,10 +162,10 @@ Expected<HeldResult> read_held_file(const std::filesystem::path& run, const std:
     }
     add_recording(std::move(repeated), !kept.empty(), held);
   } else if (kept.empty()) {
-    held.objections.push_back(fmt::format(
-        "nothing shows that {} is what was measured: there is no recording beside it, and the "
-        "store{} does not have it ('dyncal store add', or --store)",
-        result.file.filename().string(), store.empty() ? "" : " " + without_password(store)));
+    held.objections.push_back(in_all_languages([&](Language language) {
+      return sentences::nothing_shows(language, result.file.filename().string(),
+                                      store.empty() ? "" : " " + without_password(store));
+    }));
   } else {
     held.statements.push_back(sentences::no_recording.translated());
   }

@@ -15,6 +15,7 @@
 #include "services/views/certificate/ratio_unit.hpp"
 #include "services/views/conformity/asked_conformity.hpp"
 #include "services/views/lab_file/documented_conditions.hpp"
+#include "services/views/language/translated_texts.hpp"
 #include "services/views/objections/objections.hpp"
 #include "services/views/objections/subject_objections.hpp"
 #include "services/views/report/stated_value.hpp"
@@ -192,11 +193,13 @@ Expected<void> refuse_unless_forced(const CertificateRequest& request,
   if (contents.objections.empty() || request.force) {
     return {};
   }
-  return fail(ErrorCode::no_result,
-              fmt::format("{}: no certificate: {}. Measure again, leave channels out with "
-                          "--channel, or --force a certificate that says all this",
-                          contents.result.file.string(),
-                          fmt::join(first_of(contents.objections, max_shown), "; ")));
+  return fail(
+      ErrorCode::no_result,
+      fmt::format(
+          "{}: no certificate: {}. Measure again, leave channels out with "
+          "--channel, or --force a certificate that says all this",
+          contents.result.file.string(),
+          fmt::join(first_of(texts_in(Language::english, contents.objections), max_shown), "; ")));
 }
 
 } // namespace

@@ -63,10 +63,10 @@ struct CertificateContents {
   std::string ended;
   std::string issued;
   std::string software;
-  std::string recording_sha256;        // empty: no recording in the run folder
-  std::vector<std::string> objections; // in spite of which it is issued
-  std::vector<TranslatedText> flags;   // that are stated beside the values
-  bool has_monte_carlo = false;        // a check for every value
+  std::string recording_sha256;           // empty: no recording in the run folder
+  std::vector<TranslatedText> objections; // in spite of which it is issued
+  std::vector<TranslatedText> flags;      // that are stated beside the values
+  bool has_monte_carlo = false;           // a check for every value
 };
 
 [[nodiscard]] Expected<CertificateContents> gather_certificate(const CertificateRequest& request);

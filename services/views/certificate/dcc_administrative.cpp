@@ -100,7 +100,8 @@ std::vector<Person> persons_of(const CertificateContents& contents) {
   const auto& conducted_by = contents.result.conducted_by;
   if (conducted_by && !conducted_by->name.empty() &&
       std::ranges::find(persons, conducted_by->name, &Person::name) == persons.end()) {
-    persons.push_back({.name = conducted_by->name, .role = "performed the measurement"});
+    persons.push_back({.name = conducted_by->name,
+                       .role = sentences::performed_measurement(contents.languages.front())});
   }
   return persons;
 }
@@ -117,13 +118,13 @@ void add_persons(XmlElement parent, const std::vector<Person>& persons) {
   }
 }
 
-void add_forced(XmlElement list, const std::vector<std::string>& objections) {
+void add_forced(XmlElement list, const std::vector<TranslatedText>& objections) {
   XmlElement statement = list.add("dcc:statement").attribute("refType", "dyncal_forced");
   add_text(statement, "dcc:name", sentences::issued_in_spite);
   XmlElement declaration = statement.add("dcc:declaration");
   add_content(declaration, sentences::certificate_forced.translated());
-  for (const std::string& objection : objections) {
-    add_content(declaration, {objection, objection});
+  for (const TranslatedText& objection : objections) {
+    add_content(declaration, objection);
   }
   statement.add("dcc:valid", "false");
 }

@@ -12,6 +12,7 @@
 #include "services/views/document/html.hpp"
 #include "services/views/lab_file/documented_conditions.hpp"
 #include "services/views/language/report_sentences.hpp"
+#include "services/views/language/translated_texts.hpp"
 #include "services/views/objections/objections.hpp"
 #include "services/views/objections/subject_objections.hpp"
 #include "services/views/report/amendments.hpp"
@@ -120,11 +121,13 @@ Expected<void> check_issue(const ReportRequest& request, ReportContents& content
   if (contents.objections.empty() || request.force) {
     return {};
   }
-  return fail(ErrorCode::no_result,
-              fmt::format("{}: no report is issued: {}. Measure again, leave channels out with "
-                          "--channel, or --force a report that says all this",
-                          result.file.string(),
-                          fmt::join(first_of(contents.objections, max_shown), "; ")));
+  return fail(
+      ErrorCode::no_result,
+      fmt::format(
+          "{}: no report is issued: {}. Measure again, leave channels out with "
+          "--channel, or --force a report that says all this",
+          result.file.string(),
+          fmt::join(first_of(texts_in(Language::english, contents.objections), max_shown), "; ")));
 }
 
 // Texts that stand at the edges of every page.

@@ -9,8 +9,10 @@
 #include "services/views/document/html.hpp"
 #include "services/views/lab_file/documented_conditions.hpp"
 #include "services/views/language/journal_sentences.hpp"
+#include "services/views/language/reason_text.hpp"
 #include "services/views/language/report_sentences.hpp"
 #include "services/views/language/statement_sentences.hpp"
+#include "services/views/objections/objections.hpp"
 #include "services/views/objections/subject_objections.hpp"
 #include "services/views/report/amendments.hpp"
 #include "services/views/report/daily_check.hpp"
@@ -216,17 +218,17 @@ std::string warnings(const ReportContents& contents) {
   if (!contents.objections.empty()) {
     html += element("p", sentences::forced, language);
   }
-  for (const std::string& objection : contents.objections) {
-    html += element("p", objection);
+  for (const TranslatedText& objection : contents.objections) {
+    html += element("p", objection.in(language));
   }
   if (result.interrupted) {
     html += element("p", sentences::interrupted, language);
   }
   if (!result.problem.empty()) {
-    html += element("p", sentences::ended_early(language, result.problem));
+    html += element("p", sentences::ended_early(language, reason_text(language, result.problem)));
   }
-  for (const std::string& open : result.open_closures(contents.channels)) {
-    html += element("p", sentences::does_not_hold(language, open));
+  for (const TranslatedText& open : open_closures_of(result, contents.channels)) {
+    html += element("p", sentences::does_not_hold(language, open.in(language)));
   }
   const auto invalid = std::ranges::count_if(result.points, [&](const StoredPoint& point) {
     return !point.valid &&

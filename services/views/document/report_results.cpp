@@ -15,6 +15,7 @@
 #include "services/views/figures/deviation.hpp"
 #include "services/views/language/flag_text.hpp"
 #include "services/views/language/report_sentences.hpp"
+#include "services/views/objections/objections.hpp"
 #include "services/views/report/stated_value.hpp"
 #include "services/views/report/transfer_data.hpp"
 
@@ -180,7 +181,8 @@ std::string missing_values(const ReportContents& contents, const std::string& ch
                              sentences::why_no_value(language)});
   for (const StoredPoint& point : contents.result.points_of(channel)) {
     if (!point.valid) {
-      table.row({place_cell(contents, point), std::to_string(point.repetition), point.problem});
+      table.row({place_cell(contents, point), std::to_string(point.repetition),
+                 why_without_value(point).in(language)});
     }
   }
   return table.empty()

@@ -30,7 +30,7 @@ struct ReportContents {
   std::string replaces;                        // number of the report whose place it takes
   bool is_draft = true;                        // not issued: every page says so
   std::vector<TranslatedText> provenance;      // what the result was held against
-  std::vector<std::string> objections;         // in spite of which it is issued
+  std::vector<TranslatedText> objections;      // in spite of which it is issued
   std::string issued;                          // YYYY-MM-DD
   std::string software;                        // that makes the report
   std::vector<Language> languages{Language::english};

@@ -15,8 +15,10 @@
 #include "services/views/lab_file/documented_conditions.hpp"
 #include "services/views/language/closure_text.hpp"
 #include "services/views/language/journal_sentences.hpp"
+#include "services/views/language/reason_text.hpp"
 #include "services/views/language/report_sentences.hpp"
 #include "services/views/language/setup_sentences.hpp"
+#include "services/views/language/translated_texts.hpp"
 #include "services/views/report/run_equipment.hpp"
 #include "services/views/report/stated_value.hpp"
 
@@ -65,7 +67,8 @@ std::string pauses_of(const ReportContents& contents) {
                                                sentences::pause_reason}));
   for (const RunPause& pause : contents.result.pauses) {
     table.row({instant_text(language, utc_text(pause.began_utc_ns)),
-               instant_text(language, utc_text(pause.ended_utc_ns)), pause.reason});
+               instant_text(language, utc_text(pause.ended_utc_ns)),
+               reason_text(language, pause.reason)});
   }
   return table.empty() ? "" : table.finish();
 }
@@ -286,7 +289,8 @@ std::string clock_section(const ReportContents& contents) {
                         escaped(picture.data_uri()), escaped(picture.file_name));
   }
   for (const std::string& reason : contents.left_out) {
-    html += element("p", sentences::figure_left_out(language, reason), "warning");
+    const std::string why = language == Language::english ? ": " + reason : "";
+    html += element("p", sentences::figure_left_out(language, why), "warning");
   }
   return html;
 }
@@ -340,11 +344,6 @@ std::string devices_section(const ReportContents& contents) {
 std::string software_section(const ReportContents& contents) {
   const Language language = contents.language;
   const StoredResult& result = contents.result;
-  std::vector<std::string> provenance;
-  provenance.reserve(contents.provenance.size());
-  for (const TranslatedText& statement : contents.provenance) {
-    provenance.push_back(statement.in(language));
-  }
   DefinitionTable table(language);
   table.add(sentences::run_conducted_by, result.conducted_by ? text_of(*result.conducted_by) : "");
   table.add(sentences::conducted_with, result.software);
@@ -352,7 +351,8 @@ std::string software_section(const ReportContents& contents) {
   table.add(sentences::on_host, result.analysis_host);
   table.add(sentences::dds_of_analysis, result.analysis_dds);
   table.add(sentences::made_by, contents.software);
-  table.add(sentences::held_against, fmt::format("{}", fmt::join(provenance, " ")));
+  table.add(sentences::held_against,
+            fmt::format("{}", fmt::join(texts_in(language, contents.provenance), " ")));
   const auto add_hash = [&](const Sentence& name, const std::string& hash) {
     table.add_html(name.in(language), fmt::format("<code>{}</code>", escaped(hash)));
   };
@@ -367,10 +367,12 @@ std::string journal_section(const ReportContents& contents) {
   HtmlTable table("legend", {sentences::instant_column(language), sentences::kind_column(language),
                              sentences::by_column(language), sentences::text_column(language)});
   for (const JournalEntry& entry : contents.result.journal) {
-    const std::string text =
-        entry.kind == JournalKind::amendment
-            ? fmt::format("{}", fmt::join(amendment_sentences(entry, language), "; "))
-            : entry.text;
+    std::string text = entry.text;
+    if (entry.kind == JournalKind::amendment) {
+      text = fmt::format("{}", fmt::join(amendment_sentences(entry, language), "; "));
+    } else if (entry.kind == JournalKind::event) {
+      text = sentences::said_by_program(language, entry.text);
+    }
     const Sentence& kind =
         per_enumerator(entry.kind, {sentences::note, sentences::event, sentences::amendment});
     table.row({entry.utc, kind(language), name_of(entry.by), text});

@@ -1,59 +1,71 @@
 #include "services/views/lab_file/documented_conditions.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
 #include "services/base/parsed_number.hpp"
 #include "services/views/language/journal_sentences.hpp"
+#include "services/views/language/reason_text.hpp"
 #include "services/views/report/amendments.hpp"
+#include "services/views/report/combined_conditions.hpp"
+#include "services/views/report/condition_keys.hpp"
 
 namespace dyncal::inline views {
 namespace {
 
-struct ConditionKeys {
-  const char* quantity; // of a logged condition
+struct NamedCondition : ConditionKeys {
   Sentence name;
   std::optional<MeasuredCondition> Conditions::*member;
-  const char* value; // keys of laboratory file and amendment
-  const char* expanded;
 };
-constexpr ConditionKeys condition_keys[] = {
-    {"temperature", sentences::temperature, &Conditions::temperature_degc, "temperature_degc",
-     "U_temperature_k"},
-    {"humidity", sentences::humidity, &Conditions::humidity_percent, "humidity_percent",
-     "U_humidity_percent"},
-    {"pressure", sentences::pressure, &Conditions::pressure_hpa, "pressure_hpa", "U_pressure_hpa"}};
+constexpr NamedCondition named_conditions[] = {
+    {condition_keys[0], sentences::temperature, &Conditions::temperature_degc},
+    {condition_keys[1], sentences::humidity, &Conditions::humidity_percent},
+    {condition_keys[2], sentences::pressure, &Conditions::pressure_hpa}};
 
-TranslatedText measured_sentence(const LoggedCondition& logged, const Sentence& name) {
+// What a result combines; 0: it is of one run.
+std::string runs_text(std::size_t stating, std::size_t combined, Language language) {
+  if (combined == 0) {
+    return sentences::the_run(language);
+  }
+  return stating == combined ? sentences::all_runs(language, combined)
+                             : sentences::some_runs(language, stating, combined);
+}
+
+TranslatedText measured_sentence(const JoinedCondition& joined, const Sentence& name,
+                                 std::size_t combined) {
+  const LoggedCondition& logged = joined.logged;
   return in_all_languages([&](Language language) {
     const auto number = [&](double value) {
       return decimal(language, fmt::format("{:.4g}", value));
     };
     return sentences::was_measured(
-        language, name(language), logged.source, number(logged.minimum), number(logged.maximum),
-        logged.unit, number(logged.mean), logged.unit, logged.count,
-        logged.problem.empty() ? "" : sentences::some_missing(language, logged.problem));
+        language, name(language), runs_text(joined.runs, combined, language), logged.source,
+        number(logged.minimum), number(logged.maximum), logged.unit,
+        combined == 0 ? "" : sentences::of_means_of_runs(language), number(logged.mean),
+        logged.unit, logged.count,
+        logged.problem.empty()
+            ? ""
+            : sentences::some_missing(language, reason_text(language, logged.problem)));
   });
 }
 
 void take_logged(const StoredResult& result, DocumentedConditions& documented,
                  std::vector<Sentence>& typed) {
-  for (const ConditionKeys& keys : condition_keys) {
-    const auto logged =
-        std::ranges::find(result.conditions, keys.quantity, &LoggedCondition::quantity);
+  for (const NamedCondition& keys : named_conditions) {
+    const auto joined = joined_condition(result.conditions, keys.quantity);
     auto& condition = documented.conditions.*keys.member;
-    if (logged != result.conditions.end() && logged->count > 0 && std::isfinite(logged->mean)) {
-      condition = MeasuredCondition{logged->mean, logged->expanded_over_run()};
-      documented.origins.push_back(measured_sentence(*logged, keys.name));
+    if (joined && joined->runs > 0) {
+      condition = MeasuredCondition{joined->logged.mean, joined->logged.expanded_over_run()};
+      documented.origins.push_back(measured_sentence(*joined, keys.name, result.combined.size()));
     } else if (condition) {
       typed.push_back(keys.name);
     }
-    if (logged != result.conditions.end() && logged->count == 0) {
+    if (joined && joined->runs == 0) {
+      const LoggedCondition& logged = joined->logged;
       documented.origins.push_back(in_all_languages([&](Language language) {
-        return sentences::was_not_measured(language, keys.name(language), logged->source,
-                                           logged->problem);
+        return sentences::was_not_measured(language, keys.name(language), logged.source,
+                                           reason_text(language, logged.problem));
       }));
     }
   }
@@ -61,7 +73,7 @@ void take_logged(const StoredResult& result, DocumentedConditions& documented,
 
 void take_amended(const std::vector<JournalEntry>& journal, DocumentedConditions& documented,
                   std::vector<Sentence>& typed) {
-  for (const ConditionKeys& keys : condition_keys) {
+  for (const NamedCondition& keys : named_conditions) {
     const auto value = amended(journal, keys.value);
     const auto expanded = amended(journal, keys.expanded);
     auto& condition = documented.conditions.*keys.member;

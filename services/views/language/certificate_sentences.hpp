@@ -27,11 +27,12 @@ inline constexpr Sentence certificate_forced{
     "THIS CERTIFICATE WAS FORCED: the software that evaluated the measurement refused it. The "
     "laboratory has issued it all the same. What spoke against it:",
     "DIESES ZERTIFIKAT WURDE ERZWUNGEN: Die Software, die die Messung ausgewertet hat, lehnte es "
-    "ab. Das Laboratorium hat es dennoch ausgestellt. Dagegen sprach (Wortlaut der Software, "
-    "englisch):"};
+    "ab. Das Laboratorium hat es dennoch ausgestellt. Dagegen sprach:"};
 inline constexpr Sentence result_forced{
     "THIS CERTIFICATE WAS FORCED, see the first statement. {}",
     "DIESES ZERTIFIKAT WURDE ERZWUNGEN, siehe die erste Aussage. {}"};
+inline constexpr Sentence performed_measurement{"performed the measurement",
+                                                "hat die Messung durchgeführt"};
 inline constexpr Sentence traceability{"Metrological traceability", "Metrologische Rückführung"};
 inline constexpr Sentence reference_calibrated{
     "{} The reference ({}, serial number {}) was calibrated by {}, certificate {}{}.",

@@ -1,7 +1,6 @@
 #include "services/views/language/closure_text.hpp"
 
 #include "services/base/per_enumerator.hpp"
-#include "services/views/language/sentence.hpp"
 
 namespace dyncal::inline views {
 
@@ -21,6 +20,17 @@ std::string_view verdict_text(Verdict verdict, Language language) {
   static constexpr Sentence texts[] = {
       {"closes", "stimmt"}, {"open", "stimmt nicht"}, {"not possible", "nicht möglich"}};
   return per_enumerator(verdict, texts).in(language);
+}
+
+TranslatedText closure_line_text(const std::string& channel, const Closure& closure) {
+  const std::string unit = closure.unit == "1" ? "" : " " + closure.unit;
+  const auto number = [&](double value) {
+    return decimal(Language::german, fmt::format("{:.3g}", value)) + unit;
+  };
+  return {closure_line(channel, closure),
+          fmt::format("{}: {}: gefunden {}, Grenze {}", channel,
+                      closure_title(closure.kind, Language::german), number(closure.value),
+                      number(closure.limit))};
 }
 
 } // namespace dyncal::inline views

@@ -26,6 +26,7 @@ inline constexpr Sentence by_column{"by", "von"};
 inline constexpr Sentence text_column{"text", "Text"};
 inline constexpr Sentence note{"note", "Notiz"};
 inline constexpr Sentence event{"event", "Ereignis"};
+inline constexpr Sentence said_by_program{"{}", "„{}“"}; // as it stands in the journal
 inline constexpr Sentence amendment{"amendment", "Berichtigung"};
 
 inline constexpr Sentence amended{"{} corrected to {} on {} by {}{}: {}",
@@ -63,11 +64,16 @@ inline constexpr Sentence temperature{"temperature", "Temperatur"};
 inline constexpr Sentence humidity{"humidity", "Luftfeuchte"};
 inline constexpr Sentence pressure{"pressure", "Luftdruck"};
 inline constexpr Sentence was_measured{
-    "The {} was measured over the run by {}: {} to {} {}, mean {} {}, {} readings{}.",
-    "{} über den Messlauf gemessen mit {}: {} bis {} {}, Mittelwert {} {}, {} Ablesungen{}."};
+    "The {} was measured over {} by {}: {} to {} {}, mean{} {} {}, {} readings{}.",
+    "{} über {} gemessen mit „{}“: {} bis {} {}, Mittelwert{} {} {}, {} Ablesungen{}."};
+inline constexpr Sentence the_run{"the run", "den Messlauf"};
+inline constexpr Sentence all_runs{"all {} runs", "alle {} Messläufe"};
+inline constexpr Sentence some_runs{"{} of the {} runs (the others state none)",
+                                    "{} der {} Messläufe (die übrigen nennen keinen Wert)"};
+inline constexpr Sentence of_means_of_runs{" of the runs' means", " der Mittelwerte der Messläufe"};
 inline constexpr Sentence some_missing{"; some are missing: {}", "; einige fehlen: {}"};
 inline constexpr Sentence was_not_measured{"The {} was not measured, though {} was to: {}.",
-                                           "{} nicht gemessen, obwohl {} es sollte: {}."};
+                                           "{} nicht gemessen, obwohl „{}“ es sollte: {}."};
 inline constexpr Sentence as_corrected{"The {} is as it was corrected afterwards.",
                                        "{} wie nachträglich berichtigt."};
 inline constexpr Sentence entered_by_hand{"Entered by hand, not measured over the run: {}.",

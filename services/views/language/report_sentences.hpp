@@ -31,15 +31,14 @@ inline constexpr Sentence forced{
     "THIS REPORT WAS FORCED: the software that evaluated the measurement refused it. The "
     "laboratory has issued it all the same. What spoke against it:",
     "DIESER BERICHT WURDE ERZWUNGEN: Die Software, die die Messung ausgewertet hat, lehnte ihn ab. "
-    "Das Laboratorium hat ihn dennoch ausgestellt. Dagegen sprach (Wortlaut der Software):"};
+    "Das Laboratorium hat ihn dennoch ausgestellt. Dagegen sprach:"};
 inline constexpr Sentence interrupted{
     "The run was interrupted: not every planned step was measured.",
     "Der Messlauf wurde abgebrochen: Nicht jeder geplante Schritt ist gemessen."};
 inline constexpr Sentence ended_early{"The run ended early: {}",
-                                      "Der Messlauf endete vorzeitig (Wortlaut der Software): {}"};
-inline constexpr Sentence does_not_hold{
-    "What must hold over the run does not: {}",
-    "Was über den Messlauf gelten muss, gilt nicht (Wortlaut der Software): {}"};
+                                      "Der Messlauf endete vorzeitig: {}"};
+inline constexpr Sentence does_not_hold{"What must hold over the run does not: {}",
+                                        "Was über den Messlauf gelten muss, gilt nicht: {}"};
 inline constexpr Sentence without_value{
     "{} single results have no value; the reasons stand below the tables.",
     "{} Einzelergebnisse haben keinen Wert; die Gründe stehen unter den Tabellen."};
@@ -112,8 +111,7 @@ inline constexpr Sentence not_seen{
 inline constexpr Sentence flags_column{"flags", "Kennz."};
 inline constexpr Sentence at_level{"{} at {} m/s²", "{} bei {} m/s²"};
 inline constexpr Sentence repetition{"repetition", "Wiederholung"};
-inline constexpr Sentence why_no_value{"why there is no value",
-                                       "warum es keinen Wert gibt (Wortlaut der Software)"};
+inline constexpr Sentence why_no_value{"why there is no value", "warum es keinen Wert gibt"};
 inline constexpr Sentence without_a_value{"Without a value:", "Ohne Wert:"};
 inline constexpr Sentence group_delay{
     "Group delay over all frequencies (from the slope of the phase{}): {}.",

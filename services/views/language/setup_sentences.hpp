@@ -23,7 +23,7 @@ inline constexpr Sentence level_deviation{"Largest deviation from the planned am
                                           "Größte Abweichung von der geplanten Amplitude"};
 inline constexpr Sentence pause_from{"pause from", "Pause von"};
 inline constexpr Sentence pause_to{"to", "bis"};
-inline constexpr Sentence pause_reason{"reason", "Grund (Wortlaut der Software)"};
+inline constexpr Sentence pause_reason{"reason", "Grund"};
 inline constexpr Sentence losses{"Losses within the evaluated steps",
                                  "Verluste in den ausgewerteten Schritten"};
 inline constexpr Sentence source{"source", "Quelle"};
@@ -55,9 +55,8 @@ inline constexpr Sentence lost_in_run{"Samples lost over the whole run",
 inline constexpr Sentence clock_figures{
     "The figures of the sample clock are in the run folder.",
     "Die Bilder des Abtasttakts stehen im Ordner des Messlaufs."};
-inline constexpr Sentence figure_left_out{"A figure of the run folder is left out: {}",
-                                          "Ein Bild des Messlaufs fehlt (Wortlaut der Software): "
-                                          "{}"};
+inline constexpr Sentence figure_left_out{"A figure of the run folder is left out{}",
+                                          "Ein Bild des Messlaufs fehlt{}"};
 inline constexpr Sentence equipment{"Equipment", "Messeinrichtung"};
 inline constexpr Sentence equipment_name{"equipment", "Gerät"};
 inline constexpr Sentence equipment_serial{"serial", "Seriennummer"};

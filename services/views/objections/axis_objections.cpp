@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "services/contract/channel_axis.hpp"
+#include "services/views/language/objection_sentences.hpp"
 
 namespace dyncal::inline views {
 namespace {
@@ -33,9 +34,9 @@ bool lacks_transverse_motion(const StoredResult& result, const std::string& chan
 
 } // namespace
 
-std::vector<std::string> objections_to_axes(const StoredResult& result,
-                                            const std::vector<std::string>& channels) {
-  std::vector<std::string> objections;
+std::vector<TranslatedText> objections_to_axes(const StoredResult& result,
+                                               const std::vector<std::string>& channels) {
+  std::vector<TranslatedText> objections;
   std::set<std::string> axes;
   bool is_stated = true;
   for (const std::string& channel : channels) {
@@ -49,17 +50,14 @@ std::vector<std::string> objections_to_axes(const StoredResult& result,
     const std::string& excited = values.front().excited_axis;
     is_stated = is_stated && is_of_x_y_z(excited);
     if (lies_across(axis, excited) && lacks_transverse_motion(result, channel)) {
-      objections.push_back(fmt::format(
-          "{} lies across the excited axis {}, and its uncertainty lacks what the exciter moves "
-          "there: state it in the bench file (excitation.transverse_motion), have a channel along "
-          "{} under calibration beside it, and evaluate the run anew",
-          channel, excited, excited));
+      objections.push_back(in_all_languages(
+          [&](Language language) { return sentences::lies_across(language, channel, excited); }));
     }
   }
   if (!is_stated && axes.size() > 1) {
-    objections.push_back(fmt::format("channels along {} are named, and the excited axis is not "
-                                     "stated as one of x, y, z (excitation.axis in the bench file)",
-                                     fmt::join(axes, ", ")));
+    objections.push_back(in_all_languages([&](Language language) {
+      return sentences::axis_not_stated(language, fmt::join(axes, ", "));
+    }));
   }
   return objections;
 }

@@ -10,11 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "services/views/language/sentence.hpp"
 #include "services/views/report/stored_result.hpp"
 
 namespace dyncal::inline views {
 
-[[nodiscard]] std::vector<std::string> objections_to_axes(const StoredResult& result,
-                                                          const std::vector<std::string>& channels);
+[[nodiscard]] std::vector<TranslatedText>
+objections_to_axes(const StoredResult& result, const std::vector<std::string>& channels);
 
 } // namespace dyncal::inline views

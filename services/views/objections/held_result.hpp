@@ -2,7 +2,6 @@
 // (services/records/provenance).
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "services/views/language/sentence.hpp"
@@ -13,7 +12,7 @@ namespace dyncal::inline views {
 struct HeldResult {
   StoredResult result;
   std::vector<TranslatedText> statements{}; // for the document: what the result was held against
-  std::vector<std::string> objections{};    // why it may not be believed
+  std::vector<TranslatedText> objections{}; // why it may not be believed
 };
 
 } // namespace dyncal::inline views

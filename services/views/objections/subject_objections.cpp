@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "services/evaluation/result/members.hpp"
+#include "services/views/language/objection_sentences.hpp"
 #include "services/views/report/amendments.hpp"
 #include "services/views/report/stated_value.hpp"
 
@@ -35,16 +36,14 @@ bool is_same_serial(const std::string& one, const std::string& other) {
   return letters_and_digits(one) == letters_and_digits(other);
 }
 
-void add_difference(const std::string& what, const std::string& key, const std::string& source,
-                    const std::string& measured, const std::string& stated,
-                    std::vector<std::string>& objections) {
+template <class... Values>
+void add_objection(const Sentence& sentence, std::vector<TranslatedText>& objections,
+                   const Values&... values) {
   objections.push_back(
-      fmt::format("the run was measured with {} '{}' (source {}), the sensor file says '{}'; if it "
-                  "is the same sensor, state in its file {} = \"{}\"",
-                  what, measured, source, stated, key, measured));
+      in_all_languages([&](Language language) { return sentence(language, values...); }));
 }
 
-void hold_sensor(const DocumentSubject& subject, std::vector<std::string>& objections) {
+void hold_sensor(const DocumentSubject& subject, std::vector<TranslatedText>& objections) {
   std::vector<std::string> seen;
   for (const std::string& channel : subject.channels) {
     const std::string source = channel.substr(0, channel.find('/'));
@@ -65,13 +64,12 @@ void hold_sensor(const DocumentSubject& subject, std::vector<std::string>& objec
     const bool is_corrected = amended(subject.result.journal, source + "/serial") &&
                               is_same_serial(described->serial, sensor.serial);
     if (!is_corrected && !is_same_serial(described->serial, serial)) {
-      add_difference("serial number", "electronic_serial", source, described->serial, serial,
-                     objections);
+      add_objection(sentences::another_serial, objections, described->serial, source, serial);
     }
     const bool is_renamed = amended(subject.result.journal, source + "/model") &&
                             is_same_model(described->device, sensor.model);
     if (!is_renamed && !described->device.empty() && !is_same_model(described->device, model)) {
-      add_difference("model", "electronic_model", source, described->device, model, objections);
+      add_objection(sentences::another_model, objections, described->device, source, model);
     }
   }
 }
@@ -83,49 +81,55 @@ std::string local_day(const std::string& utc) {
 }
 
 // For sentences.
-std::string file_of(const ReferenceStandard& reference) {
-  return reference.file.empty() ? "the laboratory file" : reference.file;
+TranslatedText file_of(const ReferenceStandard& reference) {
+  return reference.file.empty() ? sentences::laboratory_file.translated()
+                                : TranslatedText{reference.file, reference.file};
+}
+
+// Days as the language writes them.
+template <class... Texts>
+void add_objection_on_days(const Sentence& sentence, std::vector<TranslatedText>& objections,
+                           const Texts&... texts) {
+  objections.push_back(in_all_languages(
+      [&](Language language) { return sentence(language, day_text(language, texts)...); }));
 }
 
 void hold_days_of(const CalibratedDevice& device, const std::string& began,
-                  const std::string& ended, std::vector<std::string>& objections) {
+                  const std::string& ended, std::vector<TranslatedText>& objections) {
   if (device.issued > began) {
-    objections.push_back(fmt::format("the certificate of the {} is of {}, after the measurement of "
-                                     "{}",
-                                     device.name, device.issued, began));
+    add_objection_on_days(sentences::certificate_after_measurement, objections, device.name,
+                          device.issued, began);
   }
   if (!device.valid_until.empty() && device.valid_until < ended) {
-    objections.push_back(fmt::format("the {} was to be calibrated again by {}, before the "
-                                     "measurement of {}",
-                                     device.name, device.valid_until, ended));
+    add_objection_on_days(sentences::was_due, objections, device.name, device.valid_until, ended);
   }
 }
 
 // Of a device whose certificate must be known.
-void hold_days_of_reference(const CalibratedDevice& device, const std::string& file,
+void hold_days_of_reference(const CalibratedDevice& device, const TranslatedText& file,
                             const std::string& began, const std::string& ended,
-                            std::vector<std::string>& objections) {
+                            std::vector<TranslatedText>& objections) {
+  const auto add = [&](const Sentence& sentence) {
+    objections.push_back(in_all_languages(
+        [&](Language language) { return sentence(language, file.in(language), device.name); }));
+  };
   if (device.issued.empty()) {
-    objections.push_back(fmt::format("{} does not say when the certificate of the {} was issued "
-                                     "(issued)",
-                                     file, device.name));
+    add(sentences::no_day_of_certificate);
   }
   if (device.valid_until.empty()) {
-    objections.push_back(fmt::format("{} does not say until when the {} may be used (valid_until, "
-                                     "or interval_months)",
-                                     file, device.name));
+    add(sentences::no_end_of_validity);
   }
   hold_days_of(device, began, ended, objections);
 }
 
-void hold_days(const DocumentSubject& subject, std::vector<std::string>& objections) {
+void hold_days(const DocumentSubject& subject, std::vector<TranslatedText>& objections) {
   const std::string first = std::min(subject.began, subject.ended);
   const std::string began = std::max(first, local_day(subject.result.began_utc));
   const std::string local_end = local_day(subject.result.ended_utc);
   const std::string ended = local_end.empty() ? subject.ended : std::min(subject.ended, local_end);
   if (subject.sensor.received > began) {
-    objections.push_back(fmt::format("the sensor was received on {}, after the measurement of {}",
-                                     subject.sensor.received, began));
+    add_objection_on_days(sentences::received_after_measurement, objections,
+                          subject.sensor.received, began);
   }
   for (const CalibratedDevice& device : subject.reference.devices) {
     hold_days_of_reference(device, file_of(subject.reference), began, ended, objections);
@@ -136,7 +140,7 @@ void hold_days(const DocumentSubject& subject, std::vector<std::string>& objecti
 }
 
 // Both may state a reference; the one of the run is in the documents.
-void hold_references(const DocumentSubject& subject, std::vector<std::string>& objections) {
+void hold_references(const DocumentSubject& subject, std::vector<TranslatedText>& objections) {
   const ReferenceStandard& reference = subject.reference;
   const std::pair<const char*, const std::string&> needed[] = {
       {"serial", reference.devices.front().serial},
@@ -145,7 +149,10 @@ void hold_references(const DocumentSubject& subject, std::vector<std::string>& o
       {"traceability", reference.traceability}};
   for (const auto& [key, value] : needed) {
     if (value.empty()) {
-      objections.push_back(fmt::format("{} does not state reference.{}", file_of(reference), key));
+      const std::string lacking = key;
+      objections.push_back(in_all_languages([&](Language language) {
+        return sentences::reference_lacks(language, file_of(reference).in(language), lacking);
+      }));
     }
   }
   if (reference.file.empty() || !subject.laboratory.reference) {
@@ -155,10 +162,8 @@ void hold_references(const DocumentSubject& subject, std::vector<std::string>& o
   const CalibratedDevice& stated = subject.laboratory.reference->devices.front();
   if (!is_same_serial(measured.serial, stated.serial) ||
       measured.certificate != stated.certificate) {
-    objections.push_back(fmt::format(
-        "the run was measured against reference '{}' with certificate '{}' ({}), the laboratory "
-        "file names '{}' with '{}': leave its table [reference] out",
-        measured.serial, measured.certificate, reference.file, stated.serial, stated.certificate));
+    add_objection(sentences::another_reference, objections, measured.serial, measured.certificate,
+                  reference.file, stated.serial, stated.certificate);
   }
 }
 
@@ -203,8 +208,8 @@ Expected<ReferenceStandard> documented_reference(const StoredResult& result,
                           reference->file, meaning));
 }
 
-std::vector<std::string> objections_to_subject(const DocumentSubject& subject) {
-  std::vector<std::string> objections;
+std::vector<TranslatedText> objections_to_subject(const DocumentSubject& subject) {
+  std::vector<TranslatedText> objections;
   hold_sensor(subject, objections);
   hold_references(subject, objections);
   hold_days(subject, objections);

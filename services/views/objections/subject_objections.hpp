@@ -17,6 +17,7 @@
 #include "services/contract/reference_standard.hpp"
 #include "services/views/lab_file/laboratory_file.hpp"
 #include "services/views/lab_file/sensor_file.hpp"
+#include "services/views/language/sentence.hpp"
 #include "services/views/report/stored_result.hpp"
 
 namespace dyncal::inline views {
@@ -41,6 +42,6 @@ struct DocumentSubject {
                                                                const LaboratoryFile& laboratory);
 
 // A sentence for each.
-[[nodiscard]] std::vector<std::string> objections_to_subject(const DocumentSubject& subject);
+[[nodiscard]] std::vector<TranslatedText> objections_to_subject(const DocumentSubject& subject);
 
 } // namespace dyncal::inline views

@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 
+#include "services/views/language/translated_texts.hpp"
 #include "services/views/report/amendments.hpp"
 
 namespace dyncal::inline views {
@@ -49,16 +50,17 @@ Subject whole_subject() {
   return subject;
 }
 
-std::vector<std::string> objections(const std::function<void(Subject&)>& change) {
+std::vector<std::string> objections(const std::function<void(Subject&)>& change,
+                                    Language language = Language::english) {
   Subject subject = whole_subject();
   change(subject);
-  return objections_to_subject({.result = subject.result,
-                                .channels = {"dau/z"},
-                                .sensor = subject.sensor,
-                                .laboratory = subject.laboratory,
-                                .reference = subject.reference,
-                                .began = "2026-03-01",
-                                .ended = "2026-03-01"});
+  return texts_in(language, objections_to_subject({.result = subject.result,
+                                                   .channels = {"dau/z"},
+                                                   .sensor = subject.sensor,
+                                                   .laboratory = subject.laboratory,
+                                                   .reference = subject.reference,
+                                                   .began = "2026-03-01",
+                                                   .ended = "2026-03-01"}));
 }
 
 TEST(SubjectObjections, HasNoneOfWhatFits) {
@@ -131,6 +133,17 @@ TEST(SubjectObjections, NamesDaysThatContradictTheMeasurement) {
                 one.device().valid_until.clear();
               }),
               ElementsAre(HasSubstr("ref.toml does not say when"), HasSubstr("interval_months")));
+}
+
+TEST(SubjectObjections, WritesDaysAsTheLanguageDoes) {
+  EXPECT_THAT(
+      objections([](Subject& one) { one.sensor.received = "2026-03-03"; }, Language::german),
+      ElementsAre("der Kalibriergegenstand ging am 03.03.2026 ein, nach der Messung vom "
+                  "01.03.2026"));
+  EXPECT_THAT(
+      objections([](Subject& one) { one.device().valid_until = "2026-02-27"; }, Language::german),
+      ElementsAre("„reference“ war bis 27.02.2026 neu zu kalibrieren, vor der Messung vom "
+                  "01.03.2026"));
 }
 
 TEST(SubjectObjections, NamesWhatTheReferenceDoesNotState) {
