@@ -25,6 +25,12 @@ def dyncal(*arguments):
     return subprocess.run([DYNCAL, *map(str, arguments)], capture_output=True, text=True)
 
 
+def logged(quantity, low, mean, high, source="file room.csv", count=10):
+    unit = {"temperature": "degC", "humidity": "%"}[quantity]
+    return {"quantity": quantity, "unit": unit, "source": source, "count": count, "minimum": low,
+            "mean": mean, "maximum": high, "U": 0.3, "problem": ""}
+
+
 def mean_of(result):
     """What the results of this version are: means of the single ones."""
     return [one["magnitude"] for one in result["transfer_function"] if one["channel"] == CHANNEL]
@@ -92,6 +98,56 @@ class Combine(unittest.TestCase):
                       "--output", self.folder / "no.xml")  # fmt: skip
         self.assertEqual(made.returncode, 1)
         self.assertIn("is not the result that the store has", made.stderr)
+
+    def with_conditions(self, name, *conditions):
+        return self.run_of(name, 1.0, lambda result: result.update(conditions=list(conditions)))
+
+    def certificate_of(self, *runs):
+        """The texts of the certificate of these runs combined, and their conditions."""
+        made = self.combine(*runs, output="mounted.json")
+        self.assertEqual(made.returncode, 0, made.stderr)
+        combined = self.folder / "mounted.json"
+        made = dyncal("certify", combined, "--lab", stored_run.LAB, "--sensor", stored_run.SENSOR,
+                      "--language", "en,de", "--output", self.folder / "mounted.xml", *self.store)
+        self.assertEqual(made.returncode, 0, made.stderr)
+        return (self.folder / "mounted.xml").read_text(), json.loads(combined.read_text())
+
+    def test_states_the_conditions_of_all_runs(self):
+        text, combined = self.certificate_of(
+            self.with_conditions("C0", logged("temperature", 22.0, 22.2, 22.5)),
+            self.with_conditions("C1", logged("temperature", 23.0, 23.2, 23.5)),
+            self.with_conditions("C2", logged("temperature", 22.4, 22.9, 23.7, "other.csv", 5),
+                                 logged("humidity", 40.0, 41.0, 42.0)))  # fmt: skip
+        self.assertEqual([(one["quantity"], one["mean"]) for one in combined["conditions"]],
+                         [("temperature", 22.2), ("temperature", 23.2), ("temperature", 22.9),
+                          ("humidity", 41.0)])  # fmt: skip
+        mean = statistics.fmean([22.2, 23.2, 22.9])
+        self.assertIn("The temperature was measured over all 3 runs by file room.csv, other.csv: "
+                      "22 to 23.7 degC, mean of the runs' means 22.77 degC, 25 readings.", text)
+        self.assertIn("The humidity was measured over 1 of the 3 runs (the others state none)",
+                      text)
+        self.assertIn("Temperatur über alle 3 Messläufe gemessen mit", text)
+        # As U has it: a reading, and how far all runs went.
+        expanded = (0.3**2 + (2 * 0.5 * 1.7) ** 2 / 3) ** 0.5
+        value, stated = stored_run.rounded(mean, float(stored_run.two_digits(expanded)))
+        self.assertIn(f"<si:value>{value}</si:value>", text)
+        self.assertIn(f"<si:valueExpandedMU>{stated}</si:valueExpandedMU>", text)
+
+    def test_takes_a_condition_as_it_was_amended(self):
+        one = self.with_conditions("D0", logged("temperature", 29.0, 29.2, 29.5))
+        amended = dyncal("amend", one, "temperature_degc=22.0", "--reason", "wrong logger",
+                         "--operator", "B. Other", *self.store)  # fmt: skip
+        self.assertEqual(amended.returncode, 0, amended.stderr)
+        text, combined = self.certificate_of(
+            one, self.with_conditions("D1", logged("temperature", 23.0, 23.2, 23.5)))
+        self.assertEqual(combined["conditions"][0]["mean"], 22.0)
+        self.assertIn("The temperature was measured over all 2 runs by B. Other, file room.csv: "
+                      "22 to 23.5 degC", text)
+
+    def test_states_no_conditions_where_no_run_does(self):
+        text, combined = self.certificate_of(*self.runs)
+        self.assertNotIn("conditions", combined)
+        self.assertIn("Entered by hand, not measured over the run", text)
 
     def test_refuses_what_does_not_belong_together(self):
         def serial(result):

@@ -8,6 +8,7 @@
 #include "services/base/version.hpp"
 #include "services/evaluation/combined_mountings.hpp"
 #include "services/views/report/amendments.hpp"
+#include "services/views/report/combined_conditions.hpp"
 #include "services/views/report/result_json.hpp"
 #include "services/views/report/result_table.hpp"
 #include "services/views/report/stated_value.hpp"
@@ -150,6 +151,7 @@ StoredResult head_of(const std::vector<StoredResult>& runs, const std::string& n
   result.corrections = first.corrections;
   result.check = first.check;
   result.conducted_by = first.conducted_by;
+  result.conditions = conditions_of_all(runs);
   for (const StoredResult& run : runs) {
     if (run.check && !run.check->left_out.empty()) {
       result.check = run.check; // what documents must say

@@ -3,8 +3,9 @@
 //
 // Runs belong together if they have the method, the channels with their units, the sources of the
 // channels with their serial numbers, and the excited axis in common; points that one of them lacks
-// are left out. Flags of any run stay. Its single results are the means of the mountings, so that
-// it is held against them as any other result file; `combined` names the runs with their SHA-256.
+// are left out. Flags of any run stay, and conditions are those of all (combined_conditions.hpp).
+// Its single results are the means of the mountings, so that it is held against them as any other
+// result file; `combined` names the runs with their SHA-256.
 //
 // Fails (bad_argument): fewer than two runs, one twice, runs that do not belong together, one that
 // was interrupted or ended early, no point in common. Any thread.
