@@ -12,7 +12,7 @@ option(DYNCAL_BUILD_TESTS "Build the tests" ${PROJECT_IS_TOP_LEVEL})
 option(DYNCAL_PRECOMPILED_HEADERS "Compile the headers of libraries once" ${PROJECT_IS_TOP_LEVEL})
 option(DYNCAL_JOINED_SOURCES "Compile eight sources as one: quick from nothing, slow after a change"
   OFF)
-option(DYNCAL_PYTHON_TESTS "Test what is in Python against packages of PyPI, which takes minutes" OFF)
+option(DYNCAL_PYTHON_TESTS "Run the tests that take minutes to get packages of PyPI" OFF)
 option(DYNCAL_INSTALL "Install programs and library" ${PROJECT_IS_TOP_LEVEL})
 option(DYNCAL_WARNINGS_AS_ERRORS "Stop at the first compiler warning, as the presets do" OFF)
 set(DYNCAL_SANITIZE OFF CACHE STRING "Sanitizers: OFF, address (with undefined behaviour), thread")

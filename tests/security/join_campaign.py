@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 """Programs that join a secured laboratory: is each known to all others?
 
-    join_campaign.py PROGRAMS [--vendors cyclonedds,fastdds] [--sources 4] [--joins 20] [--seconds 4]
+    join_campaign.py PROGRAMS [--vendors cyclonedds,fastdds] [--sources 4] [--joins 20]
+                     [--seconds 4]
 
-PROGRAMS is the folder of the built programs. An analysis and some sources are there; `dyncal doctor`
-joins them --joins times and has --seconds, and up to 10 s more while somebody is not authenticated.
+PROGRAMS is the folder of the built programs. An analysis and some sources are there; `dyncal
+doctor` joins them --joins times and has --seconds, and up to 10 s more while somebody is not
+authenticated.
 Held: each time all answer it, and none is named as one that it may not talk to.
 Exit status 1 if something did not hold, 77 where there are no network namespaces.
 """

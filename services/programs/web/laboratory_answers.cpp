@@ -20,8 +20,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array<std::string_view, 7> parts{"run",      "figures", "budget", "signal",
-                                                "spectrum", "fit",     "command"};
+constexpr std::array<std::string_view, 8> parts{"run",    "figures",  "budget", "journal",
+                                                "signal", "spectrum", "fit",    "command"};
 
 // 0: it is no number.
 std::uint32_t number_of(const httplib::Request& request, const char* parameter) {

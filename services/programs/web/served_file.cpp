@@ -52,6 +52,23 @@ std::optional<ServedFile> open_beneath(const std::filesystem::path& folder, cons
   return ServedFile{std::move(opened), static_cast<std::size_t>(status.st_size), std::move(etag)};
 }
 
+std::optional<std::string> whole_text(const ServedFile& file, std::size_t max_bytes) {
+  if (file.bytes > max_bytes) {
+    return std::nullopt;
+  }
+  std::string text(file.bytes, '\0');
+  std::size_t read = 0;
+  while (read < text.size()) {
+    const ssize_t count = ::pread(file.descriptor->number(), text.data() + read, text.size() - read,
+                                  static_cast<off_t>(read));
+    if (count <= 0) {
+      return std::nullopt;
+    }
+    read += static_cast<std::size_t>(count);
+  }
+  return text;
+}
+
 std::optional<ByteRange> parse_range(std::string_view text, std::size_t bytes) {
   constexpr std::string_view unit = "bytes=";
   const auto dash = text.find('-');

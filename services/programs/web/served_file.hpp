@@ -31,6 +31,9 @@ struct ServedFile {
 [[nodiscard]] std::optional<ServedFile> open_beneath(const std::filesystem::path& folder,
                                                      const std::string& name, Links links);
 
+// For those who look into it; nothing: it is larger, or cannot be read.
+[[nodiscard]] std::optional<std::string> whole_text(const ServedFile& file, std::size_t max_bytes);
+
 struct ByteRange {
   std::size_t first = 0;
   std::size_t count = 0;

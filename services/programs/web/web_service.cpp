@@ -11,6 +11,7 @@
 #include "services/programs/web/actions.hpp"
 #include "services/programs/web/event_stream.hpp"
 #include "services/programs/web/history_answers.hpp"
+#include "services/programs/web/journal_answers.hpp"
 #include "services/programs/web/laboratory_answers.hpp"
 #include "services/programs/web/permission.hpp"
 #include "services/programs/web/run_files.hpp"
@@ -39,7 +40,7 @@ struct WebService::Parts {
                [this](const std::string& bench, const httplib::Request& request) {
                  return signals.signal(bench, request);
                }),
-        history(store_of(web)),
+        history(store_of(web)), journal(cache, files, store_of(web)),
         actions(std::move(action_options), participant, clock, cache, router, permission) {}
 
   void add_daemon(nlohmann::ordered_json& json) const {
@@ -77,6 +78,7 @@ struct WebService::Parts {
   SignalAnswers signals;
   EventStream events;
   HistoryAnswers history;
+  JournalAnswers journal;
   Actions actions;
 };
 
@@ -94,6 +96,7 @@ void WebService::Parts::add_answers() {
   router.on_get(ask(signals));
   router.on_get(ask(events));
   router.on_get(ask(history));
+  router.on_get(ask(journal));
   router.on_get(
       [this](const auto& request, auto& response) { return actions.get(request, response); });
   router.on_post(

@@ -67,6 +67,10 @@ class HostileText(PageCase):
             "panels": [figure, {**figure, "x_label": HOSTILE[5], "y_label": HOSTILE[5],
                                 "series": series}]}
         self.laboratory.files = {IMAGE: "", "a.svg": "<svg/>"}
+        self.laboratory.journals[IMAGE] = {
+            "conducted_by": IMAGE, "comment": HOSTILE[5], "problem": IMAGE,
+            "entries": [{"utc_ms": now, "kind": text, "by": text, "text": text}
+                        for text in HOSTILE]}
         self.laboratory.signal_changes = {"unit": IMAGE, "channel": "x_acceleration"}
 
     def assert_harmless(self, page):
@@ -105,6 +109,11 @@ class HostileText(PageCase):
         text = page.value("document.querySelector('[data-panel=flags]').textContent")
         self.assertIn(IMAGE, text)
         self.assertEqual(page.value(texts_of(".files a")), [IMAGE, "a.svg"])
+        page.wait_for(f"document.querySelectorAll('[data-entry]').length === {len(HOSTILE)}")
+        notes = page.value(texts_of("[data-entry] td"))
+        self.assertEqual(notes[0], IMAGE)
+        self.assertIn("⟨U+202E⟩gnp.exe⟨U+2066⟩", notes)
+        self.assertLess(max(map(len, notes)), 610)
         page.wait_for("document.querySelectorAll('.picture .canvas').length === 4")
         self.assertEqual(page.value(texts_of(".picture .y-label"))[0], IMAGE)
         legends = page.value(texts_of(".picture .legend li span"))

@@ -48,6 +48,7 @@ class Laboratory:
         self.stream_gap_s = 0.25
         self.files = {}
         self.flag_legend = [state.FLAG]
+        self.journals = {}  # by bench: what was noted of its run
         self.figure_changes = {}  # of every picture
         self.figures_wait = None  # an event: no figures before it is set
 
@@ -149,6 +150,10 @@ class Laboratory:
             "files": [{"name": n, "bytes": len(t), "href": f"/files/{name}/run-1/{n}"}
                       for n, t in self.files.items()]})
 
+    def journal(self, name, run):
+        return {"bench": name, "run": run, "conducted_by": "", "comment": "", "left_out": 0,
+                "entries": [], **self.journals.get(name, {})}
+
     def figures(self, name, run=None, channel="", bars="U"):
         points = [p for p in self.points[name] if p["channel"] == channel]
         if not points:
@@ -241,6 +246,8 @@ class Handler(http.server.BaseHTTPRequestHandler):
             if lab.figures_wait is not None:
                 lab.figures_wait.wait()
             self.give(answer)
+        elif rest == ["journal"]:
+            self.give(lab.journal(name, asked["run"]))
         elif rest == ["budget"]:
             asked.pop("run")
             self.give(state.budget(**asked))
@@ -387,6 +394,15 @@ def example():
         {"utc_ms": now - 93000, "bench": "gyro", "severity": "error",
          "text": "dyncal-analysis is silent"},
         {"utc_ms": now - 20000, "bench": "acc-2", "severity": "ok", "text": "run-1 done"}]
+    lab.journals["acc-2"] = {
+        "conducted_by": "A. Meter (meter on lab-2)", "comment": "after the move",
+        "entries": [
+            {"utc_ms": state.BEGIN_UTC_MS + 60000, "kind": "event", "by": "A. Meter",
+             "text": "the run has paused for 31 s"},
+            {"utc_ms": state.BEGIN_UTC_MS + 90000, "kind": "note", "by": "B. Other",
+             "text": "the door was open"},
+            {"utc_ms": state.BEGIN_UTC_MS + 7200000, "kind": "amendment", "by": "A. Meter",
+             "text": "serial number of dau corrected to 2 on 2026-11-22 by A. Meter: misread"}]}
     lab.files = {"result.json": "{}", "transfer_function.svg":
                  '<svg xmlns="http://www.w3.org/2000/svg" width="80" height="40"/>'}
     return lab

@@ -160,6 +160,28 @@ class Views(PageCase):
         self.assertIn("when it is over", page.value(text_of("[data-field=closures]")))
         self.assertEqual(page.value("document.querySelectorAll('[data-closure]').length"), 0)
 
+    def test_run_shows_who_conducted_it_and_what_was_noted(self):
+        page = self.open("run/acc-2")
+        page.wait_for("document.querySelectorAll('[data-entry]').length === 3")
+        self.assertEqual(page.value(text_of("[data-field=conducted_by]")),
+                         "Conducted by A. Meter (meter on lab-2)")
+        self.assertEqual(page.value(text_of("[data-field=comment]")), "Comment: after the move")
+        rows = page.value("[...document.querySelectorAll('[data-entry]')].map(r => "
+                          "[...r.cells].map(c => c.textContent))")
+        self.assertRegex(rows[0][0], r"^\d{4}-\d\d-\d\d \d\d:\d\d:\d\d$")
+        self.assertEqual([row[1:] for row in rows], [
+            ["A. Meter", "● event", "the run has paused for 31 s"],
+            ["B. Other", "✎ note", "the door was open"],
+            ["A. Meter", "▲ amendment",
+             "serial number of dau corrected to 2 on 2026-11-22 by A. Meter: misread"]])
+        # A note comes without a new result.
+        self.laboratory.journals["acc-2"]["entries"].append(
+            {"utc_ms": played_state.BEGIN_UTC_MS, "kind": "note", "by": "C", "text": "late"})
+        page.wait_for("document.querySelectorAll('[data-entry]').length === 4")
+        page = self.open("run/acc-1")  # of which nothing is known
+        page.wait_for("document.querySelectorAll('[data-step]').length === 24")
+        page.wait_for("document.querySelector('[data-panel=journal]').hidden")
+
     def test_run_shows_what_was_decided_of_tolerances(self):
         def value(frequency, statement, reason=""):
             return {"channel": "dau/x", "frequency_text_hz": frequency, "level_m_s2": 10,

@@ -11,6 +11,7 @@ import { ConformityPanel } from "./conformity_panel.js";
 import { DownloadPanel } from "./download_panel.js";
 import { Choice, element, name_element, set_attribute, set_name, set_text } from "./element.js";
 import { FlagPanel } from "./flag_panel.js";
+import { JournalPanel } from "./journal_panel.js";
 import { duration_text, rounded_text, utc_text } from "./number_text.js";
 import { ResultTable, table_csv } from "./result_table.js";
 import { href_of } from "./route.js";
@@ -47,6 +48,7 @@ export class RunView {
     this.conformity = new ConformityPanel();
     this.clock_panel = new ClockPanel(this.figures.clock.root);
     this.table = new ResultTable((point) => this.show_budget(point));
+    this.journal = new JournalPanel();
     this.files = new DownloadPanel();
     this.csv = element("button", { type: "button", class: "small", onclick: () => this.save_csv() },
                        "This table as CSV");
@@ -66,7 +68,8 @@ export class RunView {
               this.channel.root, this.bars.root),
       this.note, this.progress, this.delay,
       this.figures.root, this.comparison.root, this.budget.root, this.flags.root, this.closures.root,
-      this.conformity.root, this.table.root, this.clock_panel.root, this.files.root,
+      this.conformity.root, this.table.root, this.clock_panel.root, this.journal.root,
+      this.files.root,
     );
   }
 
@@ -157,6 +160,7 @@ export class RunView {
     set_name(this.note, run.message ?? "", 300);
     this.show_progress();
     this.show();
+    this.tick();
   }
 
   show() {
@@ -221,6 +225,9 @@ export class RunView {
   }
 
   tick() {
+    if (this.run?.run) {
+      this.journal.ask(this.bench, this.run.run);
+    }
     if (this.tile && this.is_current()) {
       set_text(this.age, this.page.clock.age_text(this.tile.last_message_utc_ms));
       this.root.classList.toggle("is-stale",

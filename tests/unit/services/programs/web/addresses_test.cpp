@@ -12,7 +12,8 @@ TEST(MethodsOf, AreThoseOfEveryAddress) {
        {"/", "/events", "/page/style.css", "/javascript/x.js", "/guide/", "/files/b/r/n",
         "/api/laboratory", "/api/history", "/api/bench-files", "/api/bench/acc-1",
         "/api/bench/acc-1/run", "/api/bench/acc-1/figures", "/api/bench/acc-1/budget",
-        "/api/bench/acc-1/signal", "/api/bench/acc-1/spectrum", "/api/bench/acc-1/fit"}) {
+        "/api/bench/acc-1/journal", "/api/bench/acc-1/signal", "/api/bench/acc-1/spectrum",
+        "/api/bench/acc-1/fit"}) {
     ASSERT_NE(methods_of(path), nullptr) << path;
     EXPECT_STREQ(methods_of(path), reading_methods) << path;
   }
