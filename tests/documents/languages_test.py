@@ -239,7 +239,7 @@ class Languages(unittest.TestCase):
         if "weasyprint" in made.stderr:
             self.skipTest(made.stderr)
         self.assertEqual(made.returncode, 0, made.stderr)
-        shown = subprocess.run(["pdftotext", self.folder / "forced.pdf", "-"],
+        shown = subprocess.run(["pdftotext", "-raw", self.folder / "forced.pdf", "-"],
                                capture_output=True, text=True)  # fmt: skip
         text = shown.stdout.split("Anhang: Messplatzdatei")[0]
         return " ".join(re.sub("[\u00ad\u2010-]\n", "", text).split())

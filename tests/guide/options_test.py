@@ -10,6 +10,7 @@ text, is one that the command has.
 
 import argparse
 import re
+import subprocess
 import sys
 
 import pages
@@ -18,9 +19,20 @@ sys.path.append(str(pages.GUIDE / "html"))
 import command_help  # noqa: E402
 
 OPTIONAL = {"dyncal-web"}  # not built where a library is missing
+# Programs that pip installs, by module: options.md has those of the build.
+OF_PIP = {"dyncal-convert": (pages.TOP / "deploy/python/convert", "dyncal_convert.command")}
 PAGE = pages.GUIDE / "options.md"
 # A program or command, then its words up to what ends a command line.
 CALL = re.compile(r"\b(dyncal(?:-[a-z-]+)?)((?: +[^\s|;&<>`]+)*)")
+
+
+def options_of(folder, module):
+    """Of a program of Python that uses argparse."""
+    told = subprocess.run(
+        [sys.executable, "-c", f"import {module} as program; program.arguments().print_help()"],
+        cwd=folder, capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    return re.findall(r"(?<!\S)(--[a-z-]+)", told.stdout.partition("options:")[2])
 
 
 class Commands:
@@ -32,6 +44,8 @@ class Commands:
                 options = command_help.options_part(text)
                 self.options[command] = set(re.findall(r"(?<!\S)(--[a-z-]+)", options))
                 self.descriptions[command] = text.strip().splitlines()[0]
+        self.of_pip = {name: set(options_of(*where)) for name, where in OF_PIP.items()}
+        self.options.update(self.of_pip)
 
     def named_by(self, words):
         """The longest command that the words begin with, and its options."""
@@ -93,7 +107,7 @@ def main():
         command
         for command in commands.options
         if command != "dyncal" and not any(c.startswith(f"{command} ") for c in commands.options)
-    }
+    } - set(commands.of_pip)
     gone = listed - ends - OPTIONAL
     if options.fix:
         fix(commands, ends - listed, gone)
@@ -110,7 +124,7 @@ def main():
                 if problem:
                     wrong.append(f"{page.name}: {text.strip()}: {problem}")
     options = sum(map(len, commands.options.values()))
-    if len(ends) < 25 or calls < 100:
+    if len(ends) < 25 or calls < 100 or not all(commands.of_pip.values()):
         wrong.append(f"only {len(ends)} commands, {calls} calls")
     print("\n".join(wrong) or f"{len(ends)} commands, {options} options, {calls} calls")
     sys.exit(1 if wrong else 0)

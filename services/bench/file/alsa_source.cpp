@@ -35,7 +35,7 @@ AlsaSourceSettings read_alsa_source(TomlTable& table) {
   if (!table.has("sample_rate_hz")) {
     table.refuse("sample_rate_hz", "is missing: that of the device, for example 48000");
   }
-  alsa.rate_hz = static_cast<unsigned>(table.whole_number("sample_rate_hz", 1, 1));
+  alsa.rate_hz = static_cast<unsigned>(table.whole_number("sample_rate_hz", 1, 1, "Hz"));
   alsa.format = read_format(table);
   alsa.channels = static_cast<unsigned>(table.whole_number("channel_count", 2, 1));
   alsa.scale = read_scale(table);

@@ -170,8 +170,9 @@ double TomlTable::number(const std::string& key, double otherwise, const std::st
   return optional_number(key, unit).value_or(otherwise);
 }
 
-int TomlTable::whole_number(const std::string& key, int otherwise, int least) {
-  tell(key, {.type = "whole number", .value = fmt::format("{}", otherwise)});
+int TomlTable::whole_number(const std::string& key, int otherwise, int least,
+                            const std::string& unit) {
+  tell(key, {.type = "whole number", .unit = unit, .value = fmt::format("{}", otherwise)});
   const toml::node* found = find(key);
   if (found == nullptr) {
     return otherwise;

@@ -29,7 +29,8 @@ public:
   [[nodiscard]] double number(const std::string& key, double otherwise, const std::string& unit);
   [[nodiscard]] std::optional<double> optional_number(const std::string& key,
                                                       const std::string& unit);
-  [[nodiscard]] int whole_number(const std::string& key, int otherwise, int least);
+  [[nodiscard]] int whole_number(const std::string& key, int otherwise, int least,
+                                 const std::string& unit = {});
   [[nodiscard]] bool yes_no(const std::string& key, bool otherwise);
   [[nodiscard]] std::vector<std::string> texts(const std::string& key);
   [[nodiscard]] std::vector<double>
