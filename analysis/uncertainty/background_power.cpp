@@ -120,13 +120,14 @@ std::vector<MeasuredAmplitude> with_shared_noise(std::span<const MeasuredBackgro
 
 } // namespace
 
-BackgroundPower background_power(std::span<const MeasuredBackground> measured, double excitation,
-                                 bool constant, double accounted) {
-  if (measured.empty()) {
-    return {};
-  }
-  if (!is_significant(measured) && !exceeds(measured, accounted)) {
-    return {expected_square(with_shared_noise(measured)), false};
+double expected_background(std::span<const MeasuredBackground> measured) {
+  return measured.empty() ? 0.0 : expected_square(with_shared_noise(measured));
+}
+
+std::optional<double> significant_background(std::span<const MeasuredBackground> measured,
+                                             double excitation, bool constant, double accounted) {
+  if (measured.empty() || (!is_significant(measured) && !exceeds(measured, accounted))) {
+    return std::nullopt;
   }
   const Growth growth = constant ? Growth::none : growth_of(measured, excitation);
   std::vector<double> as_seen, grown;
@@ -140,10 +141,9 @@ BackgroundPower background_power(std::span<const MeasuredBackground> measured, d
   const double few = 1.0 + few_amplitudes / (n * n);
   const double constant_square = few * mean_of_larger_half(as_seen);
   const double grown_square = few * mean_of_larger_half(grown);
-  return {growth == Growth::none         ? constant_square
-          : growth == Growth::with_drive ? grown_square
-                                         : std::max(constant_square, grown_square),
-          true};
+  return growth == Growth::none         ? constant_square
+         : growth == Growth::with_drive ? grown_square
+                                        : std::max(constant_square, grown_square);
 }
 
 } // namespace dyncal::analysis

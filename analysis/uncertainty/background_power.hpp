@@ -19,6 +19,7 @@
 // Units: h and a_i of the channel. Nothing fails. Any thread.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "analysis/uncertainty/line_power.hpp"
@@ -30,15 +31,13 @@ struct MeasuredBackground {
   double excitation = 0.0; // A_i, in the unit of the channel
 };
 
-struct BackgroundPower {
-  double square = 0.0; // h^2
-  bool significant = false;
-};
-
-// 0 and not significant without measurements. `constant`: it is known not to grow with the drive.
+// h^2 where it is significant. `constant`: it is known not to grow with the drive.
 // `accounted`: what u of the step holds of noise at its frequency, of either component; 0: unknown.
-[[nodiscard]] BackgroundPower background_power(std::span<const MeasuredBackground> measured,
-                                               double excitation, bool constant = false,
-                                               double accounted = 0.0);
+[[nodiscard]] std::optional<double>
+significant_background(std::span<const MeasuredBackground> measured, double excitation,
+                       bool constant = false, double accounted = 0.0);
+
+// h^2 where it is not: the same whatever is excited; 0 without measurements.
+[[nodiscard]] double expected_background(std::span<const MeasuredBackground> measured);
 
 } // namespace dyncal::analysis

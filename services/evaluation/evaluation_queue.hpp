@@ -35,6 +35,7 @@ public:
   void begin(Evaluation evaluation);
   // Those under way and all that are begun from now on end soon, see Evaluation.
   void stop() { stop_.request_stop(); }
+  [[nodiscard]] std::stop_token stop_token() const { return stop_.get_token(); }
   // Of all evaluations before the first one that is still under way.
   [[nodiscard]] std::vector<StepResult> take_finished();
   // Of all; waits for them.

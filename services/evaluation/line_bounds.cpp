@@ -180,15 +180,17 @@ LineBounds::Bound LineBounds::bound_of(const Line& line, const StepOfChannel& wh
   }
   const auto ratio = driven_to_quiet(line, where);
   const bool constant = ratio && *ratio > like_quiet && *ratio < 1.0 / like_quiet;
-  const analysis::BackgroundPower power =
-      analysis::background_power(measured, excitation, constant, u_held);
-  Bound bound{power.square, !measured.empty(), power.significant};
+  const auto power = analysis::significant_background(measured, excitation, constant, u_held);
+  Bound bound{power.value_or(0.0), !measured.empty(), power.has_value()};
   for (const Measured& quiet : in_quiet(line)) {
     if (quiet.where == where) {
       const double square = std::min(1.0, ratio.value_or(1.0)) * square_of(quiet.line);
       bound.significant |= square > 0.0;
       bound.square = std::max(bound.square, square);
     }
+  }
+  if (!power && (bound.significant || std::get<analysis::LineKind>(line) == LineKind::mains)) {
+    bound.square = std::max(bound.square, analysis::expected_background(measured));
   }
   return bound;
 }
@@ -207,9 +209,9 @@ LineBounds::Bound LineBounds::bound_of_mains(const ChannelLines& channel,
       measured.push_back({one.line, one.excitation});
     }
   }
-  const analysis::BackgroundPower power = analysis::background_power(measured, channel.amplitude);
-  bound.from_driven_steps = !measured.empty() && !power.significant && !bound.significant;
-  bound.square = std::max(bound.square, power.square);
+  const auto power = analysis::significant_background(measured, channel.amplitude);
+  bound.from_driven_steps = !measured.empty() && !power && !bound.significant;
+  bound.square = std::max(bound.square, power ? *power : analysis::expected_background(measured));
   return bound;
 }
 

@@ -1,6 +1,7 @@
 #include "services/evaluation/run_evaluator.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <limits>
 #include <utility>
 
@@ -20,6 +21,10 @@ bool is_changed(const StepResult& result, const StepResult& settled) {
          settled.flags.size() != result.flags.size();
 }
 
+bool is_ready(const std::future<EvaluationOutput>& end) {
+  return end.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+}
+
 } // namespace
 
 RunEvaluator::RunEvaluator(Recipe recipe, const EvaluationLimits& limits)
@@ -33,9 +38,7 @@ RunEvaluator::RunEvaluator(Recipe recipe, const EvaluationLimits& limits)
       evaluations_(limits.evaluations_at_once) {
   records_.copy_samples(evaluations_.in_background());
   records_.may_begin_late(limits.may_begin_late);
-  if (count_) {
-    count_->begin("evaluating", "steps", recipe_->steps.size());
-  }
+  begin_work(count_, "evaluating", "steps", recipe_->steps.size());
   if (auto source = method_->clock_source()) {
     clock_.emplace(std::move(*source), recipe_->roles.temperature);
   }
@@ -53,7 +56,7 @@ void RunEvaluator::give_up() {
 Expected<void> RunEvaluator::describe(const std::string& source,
                                       drivers::SourceDescription description) {
   SourceRecord* record = records_.find(source);
-  if (record == nullptr) {
+  if (record == nullptr || is_ending()) {
     return {};
   }
   auto before = record->described() ? std::optional(record->description()) : std::nullopt;
@@ -80,7 +83,7 @@ Expected<void> RunEvaluator::describe(const std::string& source,
 void RunEvaluator::add(const std::string& source, const SourceBlock& block,
                        const std::optional<BlockTimes>& times) {
   SourceRecord* record = records_.find(source);
-  if (record == nullptr || finished_) {
+  if (record == nullptr || is_ending()) {
     return;
   }
   if (times) {
@@ -107,7 +110,7 @@ void RunEvaluator::follow_clock(const SourceRecord& record, const SourceBlock& b
 
 bool RunEvaluator::is_ready_for(const std::string& source, std::uint64_t session) {
   const SourceRecord* record = records_.find(source);
-  return record == nullptr || finished_ || !record->is_new_session(session) ||
+  return record == nullptr || is_ending() || !record->is_new_session(session) ||
          !records_.end_session(source, next_step_);
 }
 
@@ -118,7 +121,7 @@ bool RunEvaluator::has_all_steps() const {
 }
 
 std::optional<std::string> RunEvaluator::source_of_clock_alone() const {
-  const bool goes_on = clock_to_the_end_ && clock_ && !finished_ && has_all_steps() &&
+  const bool goes_on = clock_to_the_end_ && clock_ && !is_ending() && has_all_steps() &&
                        !lost_at_clock_end_ && !records_.of(clock_->source()).ended();
   return goes_on ? std::optional(clock_->source()) : std::nullopt;
 }
@@ -134,20 +137,26 @@ bool RunEvaluator::is_evaluated(const TriggeredRecord& record) const {
 }
 
 void RunEvaluator::note_second_writer(const std::string& source) {
-  if (SourceRecord* record = records_.find(source); record != nullptr && !finished_) {
+  if (SourceRecord* record = records_.find(source); record != nullptr && !is_ending()) {
     record->note_second_writer();
   }
 }
 
 void RunEvaluator::add(const std::string& source, TriggeredRecord record) {
-  if (!finished_ && !is_evaluated(record)) {
+  if (!is_ending() && !is_evaluated(record)) {
     method_->add(source, std::move(record));
   }
 }
 
 void RunEvaluator::announce(const StepAnnouncement& announcement,
                             std::optional<std::int64_t> heard_ns) {
-  records_.announce(announcement, heard_ns);
+  if (!is_ending()) {
+    records_.announce(announcement, heard_ns);
+  }
+}
+
+bool RunEvaluator::is_evaluating() const {
+  return !evaluations_.is_idle() || (ending_.valid() && !is_ready(ending_));
 }
 
 void RunEvaluator::end_of_excitation(bool aborted) {
@@ -160,7 +169,7 @@ void RunEvaluator::finish_now() {
 
 std::optional<std::string> RunEvaluator::excess_of_level() {
   const auto step = records_.excitation().excited_step();
-  return step && !finished_
+  return step && !is_ending()
              ? level_watch_.look(records_.of(recipe_->reference().source), records_.planned(*step))
              : std::nullopt;
 }
@@ -262,7 +271,7 @@ EvaluationOutput RunEvaluator::take_output() {
   if (finished_ || is_given_up() || !undescribed().empty()) {
     return output;
   }
-  if (!has_all_steps()) {
+  if (!is_ending() && !has_all_steps()) {
     if (runs_ahead_) {
       records_.search(next_step_ + 1); // a result does not wait for the search for the next step
     } else {
@@ -280,36 +289,31 @@ EvaluationOutput RunEvaluator::take_output() {
   if (is_given_up()) {
     return {};
   }
-  if (records_.excitation().is_cut_short() || (has_all_steps() && !source_of_clock_alone())) {
+  if (is_ending() || records_.excitation().is_cut_short() ||
+      (has_all_steps() && !source_of_clock_alone())) {
     finish(output);
   }
   return output;
 }
 
-Evaluation RunEvaluator::settlement() {
-  std::vector<StepResult> concerned = std::exchange(results_, {});
-  const bool by_method = method_->settle(concerned);
+std::vector<StepResult> RunEvaluator::settled_results() {
+  const bool by_method = method_->settle(results_);
   std::vector<StepResult> settled;
-  for (const StepResult& one : concerned) {
+  for (const StepResult& one : results_) {
     StepResult now = is_given_up() ? one : channel_faults_.settled(line_bounds_.settled(one));
     if (by_method || is_changed(one, now)) {
       settled.push_back(std::move(now));
     }
   }
-  if (count_) {
-    count_->begin("settling", "results", settled.size());
-  }
-  return [trials = recipe_->monte_carlo_trials, settled = std::move(settled), count = count_,
-          given_up = given_up_.get_token()](const std::stop_token& stop) mutable {
-    for (StepResult& one : settled) {
-      if (given_up.stop_requested()) {
-        break;
-      }
-      redo_monte_carlo_check(trials, stop, one);
-      add_done(count);
+  begin_work(count_, "settling", "results", settled.size());
+  for (StepResult& one : settled) {
+    if (is_given_up()) {
+      break;
     }
-    return std::move(settled);
-  };
+    redo_monte_carlo_check(recipe_->monte_carlo_trials, evaluations_.stop_token(), one);
+    add_done(count_);
+  }
+  return settled;
 }
 
 // A result that was settled is handed over once, with its last flag.
@@ -334,36 +338,48 @@ void RunEvaluator::close(EvaluationOutput& output) const {
   }
 }
 
+// What all steps together tell, of what does not change any more.
+EvaluationOutput RunEvaluator::end_of_run() {
+  EvaluationOutput end;
+  end.settled = settled_results();
+  if (is_given_up()) {
+    return end;
+  }
+  for (const StepResult& result : end.settled) {
+    summary_.add(result);
+  }
+  end.transfer_functions = summary_.transfer_functions();
+  close(end);
+  if (clock_) {
+    end.clock_reports =
+        clock_->reports(lost_at_clock_end_.value_or(records_.of(clock_->source()).lost()));
+  }
+  for (ClockReport& report : method_->clock_reports()) {
+    end.clock_reports.push_back(std::move(report));
+  }
+  return end;
+}
+
 void RunEvaluator::finish(EvaluationOutput& output) {
-  if (!settling_) {
+  if (!ending_.valid()) {
     if (never_waits_ && !evaluations_.is_idle()) {
       return;
     }
     take_results(evaluations_.take_all(), output);
-    evaluations_.begin(settlement());
-    settling_ = true;
+    ending_ = std::async(never_waits_ ? std::launch::async : std::launch::deferred,
+                         [this] { return end_of_run(); });
   }
-  if (never_waits_ && !evaluations_.is_idle()) {
+  if (never_waits_ && !is_ready(ending_)) {
     return;
   }
-  for (StepResult& result : evaluations_.take_all()) {
-    summary_.add(result);
-    output.settled.push_back(std::move(result));
-  }
+  EvaluationOutput end = ending_.get();
   if (is_given_up()) {
     output = {};
     return;
   }
   finished_ = true;
-  output.transfer_functions = summary_.transfer_functions();
-  close(output);
-  if (clock_) {
-    output.clock_reports =
-        clock_->reports(lost_at_clock_end_.value_or(records_.of(clock_->source()).lost()));
-  }
-  for (ClockReport& report : method_->clock_reports()) {
-    output.clock_reports.push_back(std::move(report));
-  }
+  end.results = std::move(output.results);
+  output = std::move(end);
 }
 
 } // namespace dyncal::inline evaluation

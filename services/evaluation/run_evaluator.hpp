@@ -27,6 +27,7 @@
 // What depends on the method is asked of it (method/method.hpp). Belongs to one thread.
 #pragma once
 
+#include <future>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -63,8 +64,9 @@ struct EvaluationLimits {
   // So many steps are evaluated in threads of their own, from copies of their samples, while the
   // caller's goes on to take samples; 0: in the caller's. The results are the same.
   std::size_t evaluations_at_once = 0;
-  // With those: the caller never waits for them. The next step begins when there is room, and the
-  // run ends with a later call of take_output().
+  // The caller never waits for those, nor for what all steps together tell: the next step begins
+  // when there is room, and a later call of take_output() hands over the end of the run, which is
+  // made in a thread of its own.
   bool never_waits = false;
   std::size_t samples_of_a_source = SourceRecord::default_capacity; // held; see source_record.hpp
   // The sample clock is followed to the end of its source, not only to the last step: for records
@@ -135,8 +137,10 @@ public:
   [[nodiscard]] std::optional<std::string> source_of_clock_alone() const;
   // Steps whose results were there when their end was found (`ahead`).
   [[nodiscard]] std::size_t steps_ready() const { return steps_ready_; }
-  // Steps are being evaluated in threads of their own.
-  [[nodiscard]] bool is_evaluating() const { return !evaluations_.is_idle(); }
+  // Steps are being evaluated, or the end of the run is made, in threads of their own.
+  [[nodiscard]] bool is_evaluating() const;
+  // The run takes nothing more: its end is made, or was handed over.
+  [[nodiscard]] bool is_ending() const { return ending_.valid() || finished_; }
   // Every planned step has been evaluated; some may be excited again.
   [[nodiscard]] bool has_planned_steps() const { return next_step_ >= recipe_->steps.size(); }
   // Nobody conducts this run, and its records do not show all planned steps one after the other, or
@@ -168,7 +172,8 @@ private:
   void evaluate_ahead();
   void keep(const StepResult& result);
   void take_results(std::vector<StepResult> results, EvaluationOutput& output);
-  [[nodiscard]] Evaluation settlement();
+  [[nodiscard]] std::vector<StepResult> settled_results();
+  [[nodiscard]] EvaluationOutput end_of_run();
   void follow_clock(const SourceRecord& record, const SourceBlock& block);
   void finish(EvaluationOutput& output);
   void close(EvaluationOutput& output) const;
@@ -198,9 +203,10 @@ private:
   std::optional<std::uint64_t> lost_at_clock_end_; // once that block has come
   bool never_waits_;
   SharedWorkCount count_;
-  bool settling_ = false;
   bool finished_ = false;
-  EvaluationQueue evaluations_; // the last member: it ends those that look at the others
+  // The last members: they end what looks at the others.
+  EvaluationQueue evaluations_;
+  std::future<EvaluationOutput> ending_; // from the last step on
 };
 
 } // namespace dyncal::inline evaluation

@@ -27,7 +27,6 @@
 namespace {
 
 using namespace dyncal;
-using namespace dyncal;
 using Clock = std::chrono::steady_clock;
 
 constexpr double block_s = 0.01;

@@ -160,7 +160,7 @@ void RunSession::work(const KnownSources& sources, RunSession* before) {
     arm(sources, now);
   }
   if (armed()) {
-    if (!evaluator_->finished()) { // else its last results are on their way
+    if (!evaluator_->is_ending()) { // else its last results are made, or on their way
       catch_up(now);
       watch_sources(now);
       watch_measurement();

@@ -103,5 +103,38 @@ TEST(CostlyEvaluation, GivesTheBitsOfOneInTheCallersThread) {
   }
 }
 
+// What 24 steps tell together, of hum beside every second one.
+TEST(CostlyEvaluation, MakesTheEndOfALargeRunBesideItsCaller) {
+  tests::SyntheticRun run{.steps = {}, .sensor_hum = 0.05};
+  for (int i = 0; i < 24; ++i) {
+    run.steps.push_back({i % 2 == 0 ? "50.3" : "80", 10.0});
+  }
+  const EvaluationLimits in_callers_thread{.ahead = true};
+  const EvaluationLimits beside_caller{.never_waits = true, .ahead = true};
+  std::vector<EvaluationOutput> ends;
+  for (const EvaluationLimits& limits : {in_callers_thread, beside_caller}) {
+    const auto evaluator = fed(run, run.measurement(), limits);
+    EvaluationOutput end;
+    const auto deadline = std::chrono::steady_clock::now() + tests::patience;
+    while (!evaluator->finished() && std::chrono::steady_clock::now() < deadline) {
+      end = evaluator->take_output();
+      EXPECT_TRUE(evaluator->finished() || !evaluator->is_ending() || limits.never_waits);
+    }
+    ASSERT_TRUE(evaluator->finished());
+    EXPECT_TRUE(evaluator->is_ending());
+    ends.push_back(std::move(end));
+  }
+  ASSERT_EQ(ends[0].settled.size(), 24U);
+  ASSERT_EQ(ends[1].settled.size(), 24U);
+  for (std::size_t i = 0; i < ends[0].settled.size(); ++i) {
+    EXPECT_TRUE(to_message(Recipe{}, ends[0].settled[i]) ==
+                to_message(Recipe{}, ends[1].settled[i]));
+  }
+  ASSERT_EQ(ends[0].transfer_functions.size(), 1U);
+  ASSERT_EQ(ends[1].transfer_functions.size(), 1U);
+  EXPECT_TRUE(to_message(Recipe{}, ends[0].transfer_functions[0]) ==
+              to_message(Recipe{}, ends[1].transfer_functions[0]));
+}
+
 } // namespace
 } // namespace dyncal::inline evaluation
