@@ -5,9 +5,9 @@ touch each other.
     joined.py --build BUILD [--all]
 
 No source mentions what a source before it declares in an unnamed namespace: it could take that for
-another thing of the name. And those that are joined with a changed source compile; with
-DYNCAL_TIDY=all in the environment (--all) everything does. More than 20 units are not compiled
-otherwise. The preset is configured in BUILD/joined.
+another thing of the name. And those that are joined with a changed source compile, unless they are
+more than 20; with DYNCAL_TIDY=quarter in the environment a quarter of all too, which the commit
+draws; with --all everything. The preset is configured in BUILD/joined.
 """
 
 import argparse
@@ -21,7 +21,7 @@ import shlex
 import subprocess
 import sys
 
-from tidy import PRECOMPILED, changed
+from tidy import PRECOMPILED, changed, drawn_by_commit
 from tree import TOP, conclude, tracked
 
 MANY = 20
@@ -93,26 +93,27 @@ def main():
     if configured.returncode != 0:
         sys.exit(f"the preset does not configure: {configured.stderr}")
 
-    every = options.all or os.environ.get("DYNCAL_TIDY") == "all"
     sources = [str(path) for path in tracked("analysis", "drivers", "services")]
     new = {TOP / name for name in changed([name for name in sources if name.endswith(".cpp")])}
     findings = []
-    chosen = []
+    joined_units, chosen = [], []
     units = json.loads((joined / "compile_commands.json").read_text())
     for unit in units:
         if "/joined/" in os.path.relpath(unit["file"], joined):
             text = pathlib.Path(unit["file"]).read_text()
             parts = [pathlib.Path(name) for name in re.findall(r'^#include "(/.*?)"', text, re.M)]
             findings += touches(parts)
-            if every or new & set(parts):
+            joined_units.append(unit["command"])
+            if new & set(parts):
                 chosen.append(unit["command"])
     if len(units) < LEAST or 2 * len(units) > len(sources):
         findings.append(f"{len(sources)} files are compiled in {len(units)} units")
-    if every or len(chosen) <= MANY:
-        with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-            for errors in pool.map(lambda one: compile_errors(one, build, joined), chosen):
-                findings += errors
-        print(f"{len(chosen)} units compiled")
+    of_changes = chosen if len(chosen) <= MANY else []
+    chosen = joined_units if options.all else {*of_changes, *drawn_by_commit(joined_units)}
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        for errors in pool.map(lambda one: compile_errors(one, build, joined), chosen):
+            findings += errors
+    print(f"{len(chosen)} units compiled")
     conclude(findings, f"findings in {len(units)} units")
 
 
