@@ -42,6 +42,11 @@ protected:
     return settings;
   }
 
+  static void put_into_device(const std::vector<std::byte>& frames) {
+    std::ofstream(folder->path() / "frames.raw", std::ios::binary)
+        .write(reinterpret_cast<const char*>(frames.data()),
+               static_cast<std::streamsize>(frames.size()));
+  }
   static void expect_every_bit(SampleFormat format);
 
   static tests::TemporaryFolder* folder;
@@ -64,9 +69,7 @@ std::vector<std::byte> draw(SampleFormat format) {
 
 void AlsaDeviceTest::expect_every_bit(SampleFormat format) {
   const std::vector<std::byte> drawn = draw(format);
-  std::ofstream(folder->path() / "frames.raw", std::ios::binary)
-      .write(reinterpret_cast<const char*>(drawn.data()),
-             static_cast<std::streamsize>(drawn.size()));
+  put_into_device(drawn);
   CaptureSource source(settings(format), make_alsa_device);
   const auto described = source.describe();
   ASSERT_TRUE(described) << described.error().message;
@@ -122,6 +125,7 @@ TEST_F(AlsaDeviceTest, IsRefusedByTheNameOfTheDevice) {
 }
 
 TEST_F(AlsaDeviceTest, EndsWhereItWaitsWhenItIsStopped) {
+  put_into_device(draw(SampleFormat::s16));
   CaptureSource source(settings(SampleFormat::s16), make_alsa_device);
   ASSERT_TRUE(source.describe());
   source.stop();
