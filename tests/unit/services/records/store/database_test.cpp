@@ -1,8 +1,11 @@
 #include "services/records/store/database.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <random>
 
 #include <fmt/core.h>
 #include <gmock/gmock.h>
@@ -102,6 +105,84 @@ TEST_P(DatabaseTest, KeepsPointsAndSamplesOfAStoreWithoutAxes) {
   EXPECT_EQ(text_of(samples->front()[0]), "hash");
   EXPECT_TRUE(std::holds_alternative<std::monostate>(samples->front()[1])); // not known
   EXPECT_TRUE(database->execute("SELECT * FROM closures")->empty());
+}
+
+// Rows of a table: text, key of their result, integer, number, number or NULL.
+class DrawnRows {
+public:
+  [[nodiscard]] std::string text() { return fmt::format("µ'\"\\\n{:x}", random_()); }
+  [[nodiscard]] DatabaseRow row(const std::string& types, const std::string& key) {
+    DatabaseRow row;
+    for (const char type : types) {
+      row.push_back(type == 'k' ? DatabaseValue{key} : type == 't' ? text() : number(type));
+    }
+    return row;
+  }
+
+private:
+  [[nodiscard]] DatabaseValue number(char type) {
+    const auto count = static_cast<std::int64_t>(random_() >> 1);
+    if (type == 'i') {
+      return count;
+    }
+    return type == 'n' && count % 5 == 0 ? DatabaseValue{}
+                                         : std::ldexp(static_cast<double>(count), -70);
+  }
+
+  std::mt19937_64 random_{20};
+};
+
+void insert(Database& database, const std::string& table, const DatabaseRow& row) {
+  std::string places = "$1";
+  for (std::size_t i = 2; i <= row.size(); ++i) {
+    places += fmt::format(", ${}", i);
+  }
+  const auto done = database.execute(fmt::format("INSERT INTO {} VALUES ({})", table, places), row);
+  ASSERT_TRUE(done) << table << ": " << done.error().message;
+}
+
+// Their first columns.
+std::vector<DatabaseRow> rows_of(Database& database, const std::string& table,
+                                 std::size_t columns) {
+  auto rows = database.execute("SELECT * FROM " + table).value();
+  for (DatabaseRow& row : rows) {
+    row.resize(columns);
+  }
+  std::sort(rows.begin(), rows.end());
+  return rows;
+}
+
+// Every cell of every row, in the tables that it had.
+TEST_P(DatabaseTest, KeepsEveryRowOfTheStoreOfRelease020) {
+  constexpr int version_of_release = 3;
+  constexpr std::size_t results = 40;
+  const std::map<std::string, std::string> tables{{"results", "ktttttttttiittttt"},
+                                                  {"sources", "kttttt"},
+                                                  {"points", "ktttfntnnnnnnnntt"},
+                                                  {"samples", "ktiitnnti"},
+                                                  {"closures", "ktttttnnntt"}};
+  const auto database = open();
+  ASSERT_TRUE(migrate(*database, version_of_release));
+  DrawnRows drawn;
+  for (std::size_t i = 0; i < results; ++i) {
+    const std::string key = drawn.text();
+    insert(*database, "results", drawn.row(tables.at("results"), key));
+    for (const auto& [table, types] : tables) {
+      if (table != "results") {
+        insert(*database, table, drawn.row(types, key));
+      }
+    }
+  }
+  std::map<std::string, std::vector<DatabaseRow>> before;
+  for (const auto& [table, types] : tables) {
+    before[table] = rows_of(*database, table, types.size());
+    EXPECT_EQ(before[table].size(), results) << table;
+  }
+  ASSERT_GT(newest_store_version(), version_of_release);
+  ASSERT_TRUE(migrate(*database));
+  for (const auto& [table, types] : tables) {
+    EXPECT_EQ(rows_of(*database, table, types.size()), before[table]) << table;
+  }
 }
 
 TEST_P(DatabaseTest, LeavesADatabaseOfANewerProgramAlone) {
