@@ -109,7 +109,7 @@ class Report(unittest.TestCase):
             "No. 2026-0042",
             "NMI-17-0001",
             "95.45 %",
-            "No value of this run has a flag.",
+            "None of these values has a flag.",
             "23.0 °C, U = 1.0 °C",
             f"{self.result['bench']}, {self.result['run']}",
         ):
@@ -165,6 +165,7 @@ class Report(unittest.TestCase):
         self.result["problem"] = attack
         self.result["recipe"] = attack
         self.result["flag_legend"] = [{"name": "other", "sentences": [attack], "meaning": attack}]
+        self.result["transfer_function"][0].update(flags=[attack], flag_names=["other"])
         for source in self.result["sources"]:
             source["device"] = attack
         laboratory = self.folder / "lab.toml"
@@ -209,6 +210,20 @@ class Report(unittest.TestCase):
         for text in ("no steady sine", "look there", "4711", "1 single results have no value"):
             self.assertIn(text, page)
         self.assertIn("<td>F1</td></tr>", page)
+
+    def test_a_flag_of_another_channel_alone_is_not_in_the_report(self):
+        flagged, other = stored_run.CHANNELS
+        for value in self.result["transfer_function"]:
+            if value["channel"] == flagged:
+                value.update(flags=["polarity inverted"], flag_names=["polarity_inverted"])
+        self.result["flag_legend"] = [
+            {"name": "polarity_inverted", "sentences": ["polarity inverted"], "meaning": "turn it"}
+        ]
+        for channel, count in ((flagged, 1), (other, 0)):
+            page = self.report("--no-pdf", "--channel", channel)
+            self.assertEqual(page.count("turn it"), count)
+            self.assertEqual(page.count("Some values have flags"), count)
+            self.assertEqual(page.count("None of these values has a flag."), 1 - count)
 
     def test_pictures_of_the_run_folder_are_taken_in_only_if_they_fetch_nothing(self):
         stored_run.write_run(self.run_folder / "figures", self.result)

@@ -16,6 +16,7 @@
 #include "services/views/objections/objections.hpp"
 #include "services/views/objections/subject_objections.hpp"
 #include "services/views/report/amendments.hpp"
+#include "services/views/report/flag_legend.hpp"
 #include "services/views/report/stated_value.hpp"
 
 namespace dyncal::inline views {
@@ -195,6 +196,7 @@ Expected<ReportContents> gather_report(const ReportRequest& request) {
   contents.result = request.held.result;
   contents.provenance = request.held.statements;
   DYNCAL_TRY(contents.channels, chosen_channels(contents.result, request.channels));
+  contents.result.flags = legend_of_channels(contents.result, contents.channels);
   if (const auto open = contents.result.open_closures(contents.channels);
       !open.empty() && !request.force) {
     return fail(ErrorCode::bad_argument,

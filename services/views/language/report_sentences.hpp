@@ -146,8 +146,8 @@ inline constexpr Sentence largest{"largest", "größtes"};
 inline constexpr Sentence yes{"yes", "ja"};
 inline constexpr Sentence no{"no", "nein"};
 inline constexpr Sentence flags{"Flags", "Kennzeichnungen"};
-inline constexpr Sentence no_flag{"No value of this run has a flag.",
-                                  "Kein Wert dieses Messlaufs hat eine Kennzeichnung."};
+inline constexpr Sentence no_flag{"None of these values has a flag.",
+                                  "Keiner dieser Werte hat eine Kennzeichnung."};
 inline constexpr Sentence flag{"flag", "Kennzeichnung"};
 inline constexpr Sentence found{"found", "gefunden"};
 inline constexpr Sentence what_it_means{"what it means", "Bedeutung"};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -34,6 +35,37 @@ std::vector<StoredFlag> flag_legend(const std::vector<Flag>& flags) {
   std::vector<StoredFlag> legend;
   for (auto& [kind, meaning] : by_kind) {
     legend.push_back(std::move(meaning));
+  }
+  return legend;
+}
+
+std::vector<StoredFlag> legend_of_channels(const StoredResult& result,
+                                           const std::vector<std::string>& channels) {
+  std::set<std::string> names;
+  std::set<std::string> said;
+  const auto take = [&](const std::vector<std::string>& of, const std::vector<std::string>& how) {
+    names.insert(of.begin(), of.end());
+    said.insert(how.begin(), how.end());
+  };
+  for (const std::string& channel : channels) {
+    for (const StoredValue& value : result.values_of(channel)) {
+      take(value.flag_names, value.flags);
+    }
+    for (const StoredPoint& point : result.points_of(channel)) {
+      take(point.flag_names, point.sentences);
+    }
+    for (const StoredChannel& whole : result.channels) {
+      if (whole.channel == channel) {
+        take(whole.flag_names, whole.flags);
+      }
+    }
+  }
+  std::vector<StoredFlag> legend;
+  for (StoredFlag flag : result.flags) {
+    if (names.contains(flag.name)) {
+      std::erase_if(flag.sentences, [&](const std::string& one) { return !said.contains(one); });
+      legend.push_back(std::move(flag));
+    }
   }
   return legend;
 }

@@ -15,6 +15,12 @@ namespace dyncal::inline views {
 // Of these flags, each kind once and in the order of ResultFlag, with each sentence of it once.
 [[nodiscard]] std::vector<StoredFlag> flag_legend(const std::vector<Flag>& flags);
 
+// Of the legend of a stored result what concerns these channels: flags that they, their means or
+// their single results have, with the sentences of those. What only other channels have, or a
+// clock, says nothing of them.
+[[nodiscard]] std::vector<StoredFlag> legend_of_channels(const StoredResult& result,
+                                                         const std::vector<std::string>& channels);
+
 // "samples_lost (dau: samples lost; acs: samples lost): samples of this source are missing ..."
 [[nodiscard]] std::string legend_line(const StoredFlag& meaning);
 
