@@ -339,7 +339,7 @@ class Views(PageCase):
     def test_history_lists_what_is_to_be_calibrated(self):
         page = self.open("history")
         page.wait_for("document.querySelectorAll('[data-panel=due] tbody tr').length === 3")
-        self.assertEqual(page.value(text_of("[data-field=due]")), "✕ 2 due, 0 more within 30 days.")
+        page.wait_for(text_of("[data-field=due]") + " === '✕ 2 due, 0 more within 30 days.'")
         self.assertEqual(page.value(texts_of("[data-panel=due] tbody th")),
                          ["✕ never calibrated", "✕ 2025-06-30", "2999-01-07"])
         nothing = {**played_state.history("0xbccb0100"), "due": []}
