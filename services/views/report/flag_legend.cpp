@@ -33,6 +33,7 @@ std::vector<StoredFlag> flag_legend(const std::vector<Flag>& flags) {
     add_once(meaning.sentences, flag.sentence);
   }
   std::vector<StoredFlag> legend;
+  legend.reserve(by_kind.size());
   for (auto& [kind, meaning] : by_kind) {
     legend.push_back(std::move(meaning));
   }
