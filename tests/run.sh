@@ -11,7 +11,7 @@
 #
 # Sanitizers have build directories of their own. Tests that must have the machine to themselves
 # carry ctest's RUN_SERIAL. The exit status is that of ctest; the last lines name every test that
-# was skipped and why.
+# was skipped and why, and show how the output of each failed one ends.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

@@ -29,6 +29,12 @@ double mean(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
+double mean_repeats(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const auto distinct = std::unique(values.begin(), values.end()) - values.begin();
+  return static_cast<double>(values.size()) / static_cast<double>(distinct) - 1.0;
+}
+
 double standard_deviation(std::span<const double> values) {
   const double centre = mean(values);
   double squares = 0.0;

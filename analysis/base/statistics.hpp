@@ -7,6 +7,7 @@
 //   quantile_value      x_(floor(p (n - 1))): one of the values
 //   quantile_of_sorted  linear between x_(h) and x_(h + 1), h = floor(p (n - 1)): R-7 of Hyndman
 //                       and Fan
+//   mean_repeats        values a distinct value, without itself: 0 when no two are equal
 //
 // All need one value at least (standard_deviation two) and p in [0, 1]. Any thread.
 #pragma once
@@ -39,6 +40,7 @@ template <class Value>
 [[nodiscard]] double quantile_of_sorted(std::span<const double> sorted, double probability);
 
 [[nodiscard]] double mean(std::span<const double> values);
+[[nodiscard]] double mean_repeats(std::vector<double> values);
 [[nodiscard]] double standard_deviation(std::span<const double> values); // n - 1
 
 } // namespace dyncal::analysis

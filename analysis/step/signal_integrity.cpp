@@ -20,6 +20,7 @@ constexpr std::uint64_t min_equal = 5;     // values at an extreme: fewer are ch
 constexpr double model_error = 0.05;       // of the amplitude, of a sine fitted to a clipped one
 constexpr std::uint64_t min_stuck_run = 4; // samples
 constexpr double fine_resolution = 0.02;   // of the amplitude
+constexpr double dithering = 0.7;          // steps of noise that leave no value to a phase
 constexpr double worth_modelling = 3.0;    // standard uncertainties of a harmonic
 constexpr double beyond_range = 0.05;      // of half the range: noise behind an end stop is less
 constexpr double min_beyond_part = 0.01;   // of the values: fewer are bumps
@@ -167,7 +168,8 @@ std::uint64_t count_between(const Model& model, double from, double to) {
 
 // Values equal to an extreme of the record: how many there are, how many of them while the fitted
 // sine is near it (a sensor that is stuck there stays when the sine goes back), how many steps and
-// noise explain, and how far the sine moves meanwhile.
+// noise explain (where no step is known, how often the other values repeat), and how far the sine
+// moves meanwhile.
 struct AtExtreme {
   std::uint64_t count = 0;
   std::uint64_t near = 0;
@@ -183,6 +185,9 @@ AtExtreme at_extreme(const Model& model, double extreme, double resolution) {
   const double half = resolution > 0.0 ? 0.5 * resolution : 1e-12 * std::abs(extreme);
   if (count_between(model, extreme - half, extreme + half) < min_equal) {
     return found;
+  }
+  if (resolution == 0.0) {
+    found.explained = mean_repeats({model.values().begin(), model.values().end()});
   }
   const double outward = extreme > model.fit().offset ? 1.0 : -1.0;
   const double margin =
@@ -220,7 +225,7 @@ bool is_clipped(const AtExtreme& found, const Model& model, double resolution) {
   }
   const double noise = model.neighbour_noise();
   const double amplitude = model.fit().amplitude();
-  const bool noise_separates = noise > std::max(resolution, 1e-9 * amplitude);
+  const bool noise_separates = noise > std::max(dithering * resolution, 1e-9 * amplitude);
   return noise_separates ||
          found.highest - found.lowest > 1.2 * resolution + 4.0 * noise + 1e-6 * amplitude;
 }

@@ -11,8 +11,11 @@
 // half a resolution of an end of the stated range, where steps are
 // below 2 % of the amplitude within one and a half of the upper one, for the highest code of many
 // converters is one step below it; and, stated or not, values equal to the record's own extreme
-// where the fitted sine goes on, when they are more than steps q and noise explain. Their parts p
-// of the record shorten the amplitude by x^3 / (3 pi), x = pi p, at each end (`clipping_rel`).
+// where the fitted sine goes on, when they are more than steps q and noise explain; without a known
+// step, one and a half times what other values repeat. Their parts p of the record shorten the
+// amplitude by x^3 / (3 pi), x = pi p, at each end (`clipping_rel`). What is cut off at one and the
+// same phase of every period cannot be told from a converter that meets it there while the noise is
+// below 0.7 steps: it is left to the distortion, and to rates that do not divide evenly.
 //
 // Stuck: a run of equal values during which the fitted sine moves by more than two steps, six times
 // the noise of neighbouring values and a fiftieth of the amplitude. Of two or three samples it is a

@@ -56,6 +56,22 @@ double misfits(const std::vector<double>& all, double step) {
   return static_cast<double>(count) / static_cast<double>(all.size());
 }
 
+// The mean over many multiples is better than one difference, whose rounding would count hundreds
+// of times in a long distance: the shorter ones tell how many steps the longer ones have. REQUIRES:
+// distances in their order.
+double refined(const std::vector<double>& in_order, double step) {
+  double multiples = 0.0, sum = 0.0;
+  for (const double distance : in_order) {
+    const double multiple = std::round(distance / step);
+    if (multiple > 0.0 && misfit(distance, step) <= allowed_error) {
+      multiples += multiple;
+      sum += distance;
+      step = sum / multiples;
+    }
+  }
+  return step;
+}
+
 } // namespace
 
 double found_resolution(std::span<const double> values) {
@@ -69,11 +85,10 @@ double found_resolution(std::span<const double> values) {
   }
   // One of the smallest; the very smallest may be one of the misfits.
   std::vector<double> order = all;
-  const auto low = static_cast<std::ptrdiff_t>(allowed_misfits * static_cast<double>(all.size()));
-  std::nth_element(order.begin(), order.begin() + low, order.end());
-  const double smallest = order[static_cast<std::size_t>(low)];
+  std::sort(order.begin(), order.end());
+  const auto low = static_cast<std::size_t>(allowed_misfits * static_cast<double>(all.size()));
   for (int divisor = 1; divisor <= max_divisor; ++divisor) {
-    const double step = smallest / divisor;
+    const double step = refined(order, order[low] / divisor);
     if (misfits(all, step) > allowed_misfits) {
       continue;
     }
@@ -81,15 +96,7 @@ double found_resolution(std::span<const double> values) {
     const bool few_levels =
         static_cast<double>(sorted.size()) > repeats * static_cast<double>(all.size() + 1);
     if (by_chance < chance || few_levels) {
-      // The mean over many multiples is better than one difference.
-      double multiples = 0.0, sum = 0.0;
-      for (const double distance : all) {
-        if (misfit(distance, step) <= allowed_error) {
-          multiples += std::round(distance / step);
-          sum += distance;
-        }
-      }
-      return multiples > 0.0 ? sum / multiples : 0.0;
+      return step;
     }
   }
   return 0.0;

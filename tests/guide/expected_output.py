@@ -2,7 +2,8 @@
 
 Line by line; spaces count as one. `...` stands for any text, a line of it alone for any lines.
 Names of runs (20261122T225758.290Z) may differ. A number with a decimal point may differ by 5 %, or
-by three of its last digit: a bench in real time never gives the same noise twice.
+by six of its last digit: a bench in real time never gives the same noise twice, and what two
+repetitions say of their scatter differs most.
 """
 
 import re
@@ -15,7 +16,7 @@ NUMBER = re.compile(rf"(?<![\w.]){DECIMAL}(?!\.?\w)")
 def near(a, b):
     digits = len(a.split(".")[1].split("e")[0])
     exponent = int(a.split("e")[1]) if "e" in a else 0
-    allowed = max(0.05 * abs(float(a)), 3.001 * 10.0 ** (exponent - digits))
+    allowed = max(0.05 * abs(float(a)), 6.001 * 10.0 ** (exponent - digits))
     return abs(float(a) - float(b)) <= allowed
 
 

@@ -38,6 +38,8 @@ TEST(Statistics, TheStandardDeviationDividesByNMinusOne) {
   const std::array values{2.0, 4.0, 4.0, 4.0, 5.0, 5.0, 7.0, 9.0};
   EXPECT_EQ(mean(values), 5.0);
   EXPECT_DOUBLE_EQ(standard_deviation(values), std::sqrt(32.0 / 7.0));
+  EXPECT_DOUBLE_EQ(mean_repeats({1.0, 2.0, 1.0, 1.0, 3.0, 2.0}), 1.0);
+  EXPECT_DOUBLE_EQ(mean_repeats({1.0, 2.0, 3.0}), 0.0);
 }
 
 } // namespace

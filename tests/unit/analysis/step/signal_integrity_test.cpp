@@ -11,6 +11,8 @@
 
 #include <gtest/gtest.h>
 
+#include "analysis/uncertainty/found_resolution.hpp"
+
 namespace dyncal::analysis {
 namespace {
 
@@ -164,6 +166,70 @@ TEST(SignalIntegrity, OneEndStopIsEnough) {
     found += judge_integrity(integrity_of(sensor, series_of(sensor, seed))).over_range;
   }
   EXPECT_GE(found, 99);
+}
+
+// A rate that is q / p of the frequency, of some converter in single precision.
+Sensor at_the_same_phases(std::mt19937_64& random, double noise) {
+  std::uniform_real_distribution<double> part(0.0, 1.0);
+  const double phases = std::floor(3.0 + 57.0 * part(random));
+  const double turns = std::max(1.0, std::floor(0.45 * phases * part(random)));
+  Sensor sensor{.amplitude = 1.62, .offset = part(random), .rate_hz = 1000.0};
+  sensor.resolution = 1.62 * std::pow(10.0, -1.3 - 2.2 * part(random));
+  sensor.noise = noise * sensor.resolution;
+  sensor.frequency_hz = sensor.rate_hz * turns / phases;
+  sensor.samples =
+      static_cast<std::size_t>(std::max(300.0, 8.0 * phases) * (1.0 + 9.0 * part(random)));
+  return sensor;
+}
+
+Series in_single_precision(Series series) {
+  for (double& value : series.values) {
+    value = static_cast<double>(static_cast<float>(value));
+  }
+  return series;
+}
+
+TEST(SignalIntegrity, TheSamePhasesOfEveryPeriodAreNoEndStop) {
+  std::mt19937_64 random(2);
+  std::ostringstream which;
+  int alarms = 0;
+  for (int run = 0; run < runs(); ++run) {
+    const double noise = run % 3 == 0 ? 0.0 : 0.1 * std::pow(30.0, (run % 100) / 99.0); // steps
+    const Sensor sensor = at_the_same_phases(random, noise);
+    const Series series = in_single_precision(series_of(sensor, static_cast<unsigned>(run) + 1));
+    for (const double step : {sensor.resolution, found_resolution(series.values)}) {
+      const bool alarm =
+          judge_integrity(
+              integrity_of({.frequency_hz = sensor.frequency_hz, .resolution = step}, series))
+              .over_range;
+      alarms += alarm;
+      if (alarm) {
+        which << "\nq " << sensor.resolution << " taken as " << step << ", noise " << noise
+              << ", n " << sensor.samples << ", f " << sensor.frequency_hz;
+      }
+    }
+  }
+  EXPECT_LE(alarms, runs() / 500) << which.str();
+}
+
+// As long as noise makes the sensor meet other values there.
+TEST(SignalIntegrity, EndStopsAtTheSamePhasesAreFoundByTheirNoise) {
+  Sensor sensor{.frequency_hz = 1000.0 / 17.0,
+                .amplitude = 1.62,
+                .resolution = 8.1169738e-4,
+                .rate_hz = 1000.0,
+                .samples = 1505};
+  sensor.limit = 1900.0 * sensor.resolution;
+  for (const double noise : {1.0, 3.0}) {
+    sensor.noise = noise * sensor.resolution;
+    for (unsigned seed = 1; seed <= 100; ++seed) {
+      const Series series = in_single_precision(series_of(sensor, seed));
+      const Sensor found{.frequency_hz = sensor.frequency_hz,
+                         .resolution = found_resolution(series.values)};
+      EXPECT_TRUE(judge_integrity(integrity_of(sensor, series)).over_range) << seed;
+      EXPECT_TRUE(judge_integrity(integrity_of(found, series)).over_range) << seed;
+    }
+  }
 }
 
 TEST(SignalIntegrity, StuckValuesAreFound) {

@@ -59,6 +59,18 @@ TEST(FoundResolution, SinglePrecisionHidesNoStep) {
   EXPECT_NEAR(found_resolution(values), 1e-3, 1e-7);
 }
 
+// 17 samples a period: the values lie in a few heaps, hundreds of steps apart.
+TEST(FoundResolution, SamplesAtTheSamePhasesHideNoStep) {
+  for (const double step : {8.1169738e-4, 1e-3, 2.44e-4}) {
+    auto values = record(
+        {.step = step, .amplitude = 1.62, .noise = step, .frequency_hz = 1000.0 / 17.0}, 1505, 11);
+    for (double& value : values) {
+      value = static_cast<double>(static_cast<float>(value));
+    }
+    EXPECT_NEAR(found_resolution(values) / step, 1.0, 1e-5);
+  }
+}
+
 TEST(FoundResolution, ContinuousValuesHaveNone) {
   for (unsigned seed = 1; seed <= 1000; ++seed) {
     const auto values = record({.step = 0.0, .noise = seed % 2 == 0 ? 0.01 : 0.0}, 20 + seed, seed);
