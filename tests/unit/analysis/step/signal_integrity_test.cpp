@@ -334,9 +334,9 @@ TEST(SignalIntegrity, AWaveBesideTheSineIsResidualAndNotNoise) {
 TEST(SignalIntegrity, NothingToFitIsAnError) {
   EXPECT_FALSE(measure_integrity(Frequency::from_hz(80.0), {}, {}, {}));
   const std::vector<double> constant(200, 3.0);
-  std::vector<std::int64_t> stamps;
-  for (int i = 0; i < 200; ++i) {
-    stamps.push_back(1'000'000LL * i);
+  std::vector<std::int64_t> stamps(constant.size());
+  for (std::size_t i = 0; i < stamps.size(); ++i) {
+    stamps[i] = 1'000'000LL * static_cast<std::int64_t>(i);
   }
   EXPECT_EQ(measure_integrity(Frequency::from_hz(80.0), stamps, constant, {}).error().code,
             ErrorCode::no_excitation);
