@@ -57,7 +57,7 @@ void expect_seen(const Case& fault, const nlohmann::json& point, const nlohmann:
     EXPECT_EQ(point["flags"], nlohmann::json::array()) << point;
   }
   if (fault.is_covered) {
-    EXPECT_LE(deviation_of_point(point, truth, axis), 5.0) << point;
+    EXPECT_LE(deviation_of_point(point, truth, axis), 4.0) << point;
   }
 }
 
@@ -174,7 +174,7 @@ TEST_P(HumAtAStep, IsCoveredOrSeen) {
     }
     ++points;
     if (point["valid"].get<bool>() && point["flags"].empty()) {
-      EXPECT_LE(deviation_of_point(point, truth, axis), 5.0) << point;
+      EXPECT_LE(deviation_of_point(point, truth, axis), 4.0) << point;
     }
   }
   EXPECT_EQ(points, 2U);

@@ -62,8 +62,8 @@ TEST_P(SeriesDemo, AgreesWithTheTruthInMagnitudePhaseAndSampleRate) {
   ASSERT_FALSE(result.is_discarded() || truth.is_discarded());
   const Deviation worst = deviation(result, truth);
   EXPECT_EQ(worst.points, 6U);
-  EXPECT_LE(worst.magnitude_u, 5.0);
-  EXPECT_LE(worst.phase_u, 5.0);
+  EXPECT_LE(worst.magnitude_u, 4.0);
+  EXPECT_LE(worst.phase_u, 4.0);
 
   const double true_rate_hz = 1.0 / truth["sample_clock"]["mean_interval_s"].get<double>();
   for (const auto& point : result["points"]) {
@@ -102,7 +102,7 @@ TEST(SeriesDemoWithoutCorrection, IsWrongByMoreThanTenMilliradians) {
   const Deviation worst = deviation(result, truth);
   EXPECT_EQ(worst.points, 6U);
   EXPECT_GT(worst.min_phase_rad, 0.010);
-  EXPECT_LE(worst.magnitude_u, 5.0); // the trigger has no part in it
+  EXPECT_LE(worst.magnitude_u, 4.0); // the trigger has no part in it
   for (const auto& point : result["points"]) {
     EXPECT_THAT(point["flags"].dump(),
                 testing::HasSubstr("the phase of the trigger is not corrected"));
