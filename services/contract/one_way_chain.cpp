@@ -16,20 +16,23 @@ namespace {
 // One for many links: to look SHA-256 up takes longer than to use it.
 class Hash {
 public:
-  Hash() : context_(EVP_MD_CTX_new(), EVP_MD_CTX_free) {
-    if (!context_ || EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) != 1) {
+  Hash()
+      : digest_(EVP_MD_fetch(nullptr, "SHA256", nullptr), EVP_MD_free),
+        context_(EVP_MD_CTX_new(), EVP_MD_CTX_free) {
+    if (!digest_ || !context_ || EVP_DigestInit_ex2(context_.get(), digest_.get(), nullptr) != 1) {
       throw std::runtime_error("SHA-256 is not available in this system's OpenSSL");
     }
   }
   [[nodiscard]] ChainLink operator()(const ChainLink& link) {
     ChainLink hash;
-    EVP_DigestInit_ex(context_.get(), nullptr, nullptr);
+    EVP_DigestInit_ex2(context_.get(), nullptr, nullptr);
     EVP_DigestUpdate(context_.get(), link.data(), link.size());
     EVP_DigestFinal_ex(context_.get(), hash.data(), nullptr);
     return hash;
   }
 
 private:
+  std::unique_ptr<EVP_MD, void (*)(EVP_MD*)> digest_;
   std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> context_;
 };
 
