@@ -59,7 +59,7 @@ std::string governance_text() {
 <enable_read_access_control>true</enable_read_access_control>
 <enable_write_access_control>true</enable_write_access_control>
 <metadata_protection_kind>ENCRYPT</metadata_protection_kind>
-<data_protection_kind>ENCRYPT</data_protection_kind>
+<data_protection_kind>NONE</data_protection_kind>
 </topic_rule></topic_access_rules>
 </domain_rule></domain_access_rules>
 </dds>
