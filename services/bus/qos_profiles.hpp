@@ -17,6 +17,10 @@ inline constexpr int late_joiner_blocks = 1500;
 // whether everybody has it or not: 5 s of blocks of 20 ms. Bounds its memory to 16 MB a source.
 inline constexpr int repair_blocks = 250;
 
+// A block of a secured source is one packet (decisions/25-secured-blocks.md): so many of them stand
+// for one, that the same time is kept for repairs and waits at a reader.
+inline constexpr int secured_blocks_per_block = 8;
+
 // Records of one source that such a writer keeps: a record may hold megabytes.
 inline constexpr int repair_records = 32;
 
@@ -55,12 +59,13 @@ struct EndpointQos {
   bool reliable = true; // what is lost comes again; otherwise nobody waits, and it stays lost
 };
 
-[[nodiscard]] constexpr EndpointQos qos_of_writer(Profile profile) {
+[[nodiscard]] constexpr EndpointQos qos_of_writer(Profile profile, bool secured = false) {
+  const int blocks = secured ? secured_blocks_per_block : 1;
   switch (profile) {
   case Profile::samples:
     return {true, true, late_joiner_blocks, late_joiner_blocks};
   case Profile::live_samples:
-    return {true, false, repair_blocks, live_late_joiner_blocks};
+    return {true, false, blocks * repair_blocks, live_late_joiner_blocks};
   case Profile::live_records:
     return {true, false, repair_records, repair_records};
   case Profile::paced_samples:
@@ -78,12 +83,14 @@ struct EndpointQos {
   return {true, false, 1, 1};
 }
 
-[[nodiscard]] constexpr EndpointQos qos_of_reader(Profile profile) {
+[[nodiscard]] constexpr EndpointQos qos_of_reader(Profile profile, bool secured = false) {
+  const int blocks = secured ? secured_blocks_per_block : 1;
   switch (profile) {
   case Profile::samples:
   case Profile::paced_samples:
-    return {true, true, untaken_blocks, 0};
+    return {true, true, blocks * untaken_blocks, 0};
   case Profile::live_samples:
+    return {false, true, blocks * untaken_blocks, 0};
   case Profile::live_records:
     return {false, true, untaken_blocks, 0};
   case Profile::command:
@@ -111,6 +118,9 @@ inline constexpr std::chrono::seconds lease_announcement{1};
 // Repairs of lost packets: how often a writer tells readers what there is, how long readers wait
 // before they ask.
 inline constexpr std::chrono::milliseconds fast_dds_heartbeat{10};
+// Nobody sees in an encrypted packet what it repairs: where packets wait for longer than this to be
+// read, each one lost is asked for, and repaired, again and again (decisions/25).
+inline constexpr std::chrono::milliseconds fast_dds_secured_heartbeat{100};
 
 // No packet is longer than an Ethernet frame: one lost fragment of a longer datagram stalls the
 // reassembly of all others.

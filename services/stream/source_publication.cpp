@@ -16,8 +16,6 @@ namespace {
 constexpr int blocks_per_step = 16;                   // so that one source cannot starve the others
 constexpr auto rate_window = std::chrono::seconds(3); // over which the rate of the status is taken
 constexpr std::size_t runs_to_answer = 16; // a run asks again, so a forgotten one is not lost
-// Less than half of what a live writer keeps for repairs, and of a receive buffer.
-constexpr WritePace::Window window{.messages = 100, .bytes = std::size_t{1} << 20U};
 constexpr auto patience = std::chrono::seconds(2); // with a reader that acknowledges nothing
 
 void add_cause(dyncal::wire::SourceStatus& message, const std::string& name, std::uint64_t value) {
@@ -50,7 +48,9 @@ SourcePublication::SourcePublication(std::shared_ptr<SourcePublisher> publisher,
                                      std::shared_ptr<RetransmissionBuffer> kept,
                                      std::string software, SourceWriters writers)
     : publisher_(std::move(publisher)), kept_(std::move(kept)), software_(std::move(software)),
-      writers_(std::move(writers)), pace_(window, patience), session_(publisher_->session()) {}
+      writers_(std::move(writers)),
+      pace_(pace_window(publisher_->options().max_block_bytes), patience),
+      session_(publisher_->session()) {}
 
 void SourcePublication::answer(const std::string& run) {
   if (std::ranges::count(runs_to_answer_, run) != 0) {

@@ -8,9 +8,12 @@
 // up loses nothing by that, until all is acknowledged again. One thread.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
-#include <optional>
+
+#include "services/bus/qos_profiles.hpp"
+#include "services/stream/block_split.hpp"
 
 namespace dyncal::inline stream {
 
@@ -35,13 +38,13 @@ public:
     if (acknowledged()) {
       hanging_ = false;
     } else if (!hanging_) {
-      waiting_since_ = waiting_since_.value_or(now);
-      if (now - *waiting_since_ < patience_) {
+      waits_until_ = std::min(waits_until_, now + patience_);
+      if (now < waits_until_) {
         return false;
       }
       hanging_ = true;
     }
-    waiting_since_.reset();
+    waits_until_ = Instant::max();
     messages_ = 0;
     bytes_ = 0;
     return true;
@@ -59,8 +62,18 @@ private:
   const std::chrono::nanoseconds patience_;
   std::size_t messages_ = 0;
   std::size_t bytes_ = 0;
-  std::optional<Instant> waiting_since_;
+  Instant waits_until_ = Instant::max();
   bool hanging_ = false;
 };
+
+// For blocks of at most so many bytes: less than half of what a live writer of them keeps for
+// repairs, and of a receive buffer. By the number of long blocks a source of blocks of one packet
+// would wait for its readers every 0.3 s, and fall behind its instrument where their answers take
+// as long.
+[[nodiscard]] constexpr WritePace::Window pace_window(std::size_t block_bytes) {
+  const bool secured = block_bytes <= max_secured_block_bytes;
+  return {.messages = std::size_t{100} * (secured ? bus::secured_blocks_per_block : 1),
+          .bytes = std::size_t{1} << 20U};
+}
 
 } // namespace dyncal::inline stream

@@ -272,8 +272,8 @@ private:
 
 class CycloneParticipant : public UntypedParticipant {
 public:
-  explicit CycloneParticipant(std::shared_ptr<CycloneParticipantHandle> participant)
-      : participant_(std::move(participant)) {}
+  CycloneParticipant(std::shared_ptr<CycloneParticipantHandle> participant, bool secured)
+      : participant_(std::move(participant)), secured_(secured) {}
 
   base::Expected<std::unique_ptr<UntypedWriter>>
   writer(const TypeSupport& type, const std::string& topic, Profile profile,
@@ -282,7 +282,7 @@ public:
     if (cyclone_topic < 0) {
       return fail(cyclone_error("Cyclone DDS refuses topic " + topic, cyclone_topic));
     }
-    const Qos qos = writer_qos(qos_of_writer(profile), partitions);
+    const Qos qos = writer_qos(qos_of_writer(profile, secured_), partitions);
     const dds_entity_t cyclone_writer =
         dds_create_writer(participant_->entity.get(), cyclone_topic, qos.get(), nullptr);
     auto writer =
@@ -301,7 +301,7 @@ public:
     if (cyclone_topic < 0) {
       return fail(cyclone_error("Cyclone DDS refuses topic " + topic, cyclone_topic));
     }
-    const Qos qos = reader_qos(qos_of_reader(profile), partition);
+    const Qos qos = reader_qos(qos_of_reader(profile, secured_), partition);
     dds_listener_t* listener = dds_create_listener(wake_up.get());
     if (wake_up) {
       dds_lset_data_available(listener, &ring);
@@ -350,6 +350,7 @@ private:
   }
 
   std::shared_ptr<CycloneParticipantHandle> participant_;
+  bool secured_;
   std::shared_ptr<OwnAddresses> addresses_ = std::make_shared<OwnAddresses>();
 };
 
@@ -377,10 +378,11 @@ create_cyclone_dds_participant(const ParticipantOptions& options, const Security
     return fail(cyclone_error("Cyclone DDS cannot join domain " + std::to_string(options.domain),
                               participant));
   }
-  return std::make_unique<CycloneParticipant>(std::shared_ptr<CycloneParticipantHandle>(
-      new CycloneParticipantHandle{std::move(domain), Entity(participant),
-                                   std::make_shared<MalformedMessages>(options.warn),
-                                   std::move(refused)}));
+  return std::make_unique<CycloneParticipant>(
+      std::shared_ptr<CycloneParticipantHandle>(new CycloneParticipantHandle{
+          std::move(domain), Entity(participant), std::make_shared<MalformedMessages>(options.warn),
+          std::move(refused)}),
+      security != nullptr);
 }
 
 } // namespace dyncal::bus

@@ -61,7 +61,7 @@ void set_common(const EndpointQos& wanted, Qos& qos) {
 #endif
 }
 
-dds::DataWriterQos writer_qos(const EndpointQos& wanted) {
+dds::DataWriterQos writer_qos(const EndpointQos& wanted, bool secured) {
   dds::DataWriterQos qos;
   set_common(wanted, qos);
   qos.reliability().max_blocking_time = duration(write_attempt);
@@ -69,7 +69,8 @@ dds::DataWriterQos writer_qos(const EndpointQos& wanted) {
   qos.publish_mode().kind = dds::ASYNCHRONOUS_PUBLISH_MODE;
   auto& times = qos.reliable_writer_qos().times;
   // 3 s by default: so long a lost last packet would stay unnoticed.
-  fast_dds::heartbeat_period(times) = duration(fast_dds_heartbeat);
+  fast_dds::heartbeat_period(times) =
+      duration(secured ? fast_dds_secured_heartbeat : fast_dds_heartbeat);
   fast_dds::nack_response_delay(times) = duration(std::chrono::seconds(0));
   // With one in every packet, a Fast DDS reader asks hundreds of times a second for every sample
   // that is on the way: a link of 10 Mbit/s is then full of requests and of what they ask for.
@@ -282,9 +283,9 @@ private:
 
 class FastDdsParticipant : public UntypedParticipant {
 public:
-  FastDdsParticipant(std::shared_ptr<FastDdsParticipantHandle> participant,
+  FastDdsParticipant(std::shared_ptr<FastDdsParticipantHandle> participant, bool secured,
                      std::vector<std::string> addresses)
-      : participant_(std::move(participant)) {
+      : participant_(std::move(participant)), secured_(secured) {
     addresses_->set(std::move(addresses));
   }
 
@@ -305,8 +306,8 @@ public:
       return fail(base::ErrorCode::network,
                   "Fast DDS refuses to publish in partition " + partitions.front());
     }
-    dds::DataWriter* fast_writer =
-        publisher->create_datawriter(fast_topic, writer_qos(qos_of_writer(profile)));
+    dds::DataWriter* fast_writer = publisher->create_datawriter(
+        fast_topic, writer_qos(qos_of_writer(profile, secured_), secured_));
     if (fast_writer == nullptr) {
       participant_->get()->delete_publisher(publisher);
       return fail(base::ErrorCode::network, "Fast DDS refuses a writer of topic " + topic);
@@ -333,7 +334,7 @@ public:
     auto listener = wake_up ? std::make_unique<RingOnData>(wake_up) : nullptr;
     auto fast_reader =
         std::make_unique<FastDdsReader>(participant_, subscriber, type, std::move(listener));
-    if (!fast_reader->open(fast_topic, reader_qos(qos_of_reader(profile)))) {
+    if (!fast_reader->open(fast_topic, reader_qos(qos_of_reader(profile, secured_)))) {
       return fail(base::ErrorCode::network, "Fast DDS refuses a reader of topic " + topic);
     }
     if (wake_up) {
@@ -358,6 +359,7 @@ public:
 
 private:
   std::shared_ptr<FastDdsParticipantHandle> participant_;
+  bool secured_;
   std::shared_ptr<OwnAddresses> addresses_ = std::make_shared<OwnAddresses>();
 };
 
@@ -400,7 +402,7 @@ create_fast_dds_participant(const ParticipantOptions& options, const SecurityFil
       std::make_shared<FastDdsParticipantHandle>(
           std::move(number), std::move(discovery), participant,
           std::make_shared<MalformedMessages>(options.warn), transports->refused),
-      std::move(addresses));
+      security != nullptr, std::move(addresses));
 }
 
 } // namespace dyncal::bus

@@ -1,5 +1,8 @@
 #include "services/stream/write_pace.hpp"
 
+#include <algorithm>
+#include <random>
+
 #include <gtest/gtest.h>
 
 namespace dyncal::inline stream {
@@ -58,6 +61,49 @@ TEST_F(WritePaceTest, WaitsForAReaderThatHangsOnceAndNoLonger) {
   acknowledged_ = false;
   EXPECT_FALSE(pace_.hanging());
   EXPECT_LT(write_on(), 50);
+}
+
+// How many blocks wait after a minute of an instrument, whose readers acknowledge what they have
+// once it was written for a time of 0.2 to 0.8 s: a busy computer.
+std::size_t waiting_after_a_minute(WritePace::Window window, std::chrono::nanoseconds block,
+                                   std::size_t bytes, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_int_distribution<int> answer_ms(200, 800);
+  WritePace pace(window, 2s);
+  const WritePace::Instant begin(std::chrono::hours(1));
+  WritePace::Instant acknowledged = begin;
+  std::size_t written = 0;
+  std::size_t offered = 0;
+  for (auto now = begin; now < begin + 1min; now += block) {
+    ++offered;
+    while (written < offered && pace.may_write(now, [&] { return now >= acknowledged; })) {
+      pace.wrote(bytes);
+      ++written;
+      acknowledged = now + std::chrono::milliseconds(answer_ms(random));
+    }
+    EXPECT_FALSE(pace.hanging());
+  }
+  return offered - written;
+}
+
+// 20 kS/s of two channels: 62 samples are one packet. 0.8 s of it may wait for an answer.
+TEST(PaceWindow, BlocksOfOnePacketKeepUpWhereAnswersAreSlow) {
+  constexpr auto block = 3'100us;
+  constexpr std::size_t bytes = 1'300;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    EXPECT_LE(waiting_after_a_minute(pace_window(max_secured_block_bytes), block, bytes, seed),
+              800ms / block + 1);
+    EXPECT_GT(waiting_after_a_minute(pace_window(max_block_bytes), block, bytes, seed), 5'000U)
+        << "the window of long blocks is long enough: this test shows nothing";
+  }
+}
+
+TEST(PaceWindow, IsLessThanHalfOfWhatIsKeptForRepairs) {
+  constexpr auto profile = bus::Profile::live_samples;
+  EXPECT_LT(2 * pace_window(max_block_bytes).messages,
+            static_cast<std::size_t>(bus::qos_of_writer(profile).samples_per_key));
+  EXPECT_LT(2 * pace_window(max_secured_block_bytes).messages,
+            static_cast<std::size_t>(bus::qos_of_writer(profile, true).samples_per_key));
 }
 
 } // namespace
