@@ -2,12 +2,13 @@
 """Many benches on one network and one analysis: do they disturb each other, what do they cost?
 
     many_benches_campaign.py PROGRAMS [--benches 8] [--acs-rate-hz 50000] [--warm-s 60]
-                             [--rounds 2] [--vendors cyclonedds,...] [--secured]
+                             [--rounds 2] [--vendors cyclonedds,...] [--secured] [--apart-s 0]
 
 PROGRAMS is the folder of the built programs. The instruments of all benches and one service of each
 kind for all of them are on one host, the analysis on another, and 16 runs each on those of
 operators (a host holds 31 programs of a domain). The services run for --warm-s; then every bench
-begins a run in the same instant, --rounds times. Held: every run ends with 0 and every value valid,
+begins a run in the same instant, or --apart-s after the one before, as people do, with steps enough
+that all measure at once; --rounds times. Held: every run ends with 0 and every value valid,
 without loss and without flag; the analysis takes less than 30 % of a core and 200 MB (of 8 benches;
 in proportion with more). Printed: how long arming took, what the services used. With --secured
 each program has the folder of its role, and those of sources and operators are for all benches; how
@@ -33,6 +34,8 @@ MAX_CORE = 0.3
 MAX_RESIDENT_MB = 200.0
 BENCHES_OF_THOSE = 8
 RUNS_OF_AN_OPERATOR = 16
+FREQUENCIES_HZ = ("40", "80", "125")
+STEP_S = 2.5  # about what one takes
 
 
 class HostedLaboratory(BenchLaboratory):
@@ -60,15 +63,18 @@ class HostedLaboratory(BenchLaboratory):
         return self.network.address["bench"]
 
 
-def seconds_to_first_step(runs, began_s):
-    """Of each run, as its first step is announced."""
-    waits = dict.fromkeys(range(len(runs)))
-    while None in waits.values():
+def begin_runs(benches, apart_s):
+    """One of each bench; returns them, and how long each took until its first step is announced."""
+    begins_s = [time.monotonic() + number * apart_s for number in range(len(benches))]
+    runs, waits_s = [], {}
+    while len(waits_s) < len(benches):
+        if len(runs) < len(benches) and time.monotonic() >= begins_s[len(runs)]:
+            runs.append(benches[len(runs)].run())
         for number, run in enumerate(runs):
-            if waits[number] is None and ("step 1 of" in run.errors() or not run.runs()):
-                waits[number] = time.monotonic() - began_s
+            if number not in waits_s and ("step 1 of" in run.errors() or not run.runs()):
+                waits_s[number] = time.monotonic() - begins_s[number]
         time.sleep(0.01)  # between two looks
-    return list(waits.values())
+    return runs, list(waits_s.values())
 
 
 def judge(bench, run):
@@ -82,10 +88,9 @@ def used_of(services):
     return {name: figures(service.process.pid) for name, service in services.items()}
 
 
-def round_of(benches, services, limited):
+def round_of(benches, services, apart_s, limited):
     before, began_s = used_of(services), time.monotonic()
-    runs = [bench.run() for bench in benches]
-    arming_s = seconds_to_first_step(runs, began_s)
+    runs, arming_s = begin_runs(benches, apart_s)
     repeated = sum(judge(bench, run) for bench, run in zip(benches, runs))
     after, took_s = used_of(services), time.monotonic() - began_s
     print(
@@ -121,6 +126,7 @@ def campaign(arguments, vendors):
     operators = (arguments.benches - 1) // RUNS_OF_AN_OPERATOR + 1
     network = hosts.Hosts(("bench", "analysis", *(f"operator{i}" for i in range(operators))))
     benches = []
+    repeats = 1 + round(arguments.benches * arguments.apart_s / (STEP_S * len(FREQUENCIES_HZ)))
     environments = {}
     if arguments.secured:
         names = [f"b{number}" for number in range(arguments.benches)]
@@ -134,6 +140,7 @@ def campaign(arguments, vendors):
                     arguments.programs,
                     folder / f"b{number}",
                     vendors,
+                    frequencies=FREQUENCIES_HZ * repeats,
                     name=f"b{number}",
                     domain=benches[0].domain if benches else None,
                     acs_rate_hz=arguments.acs_rate_hz,
@@ -143,7 +150,7 @@ def campaign(arguments, vendors):
         services = start_services(benches)
         time.sleep(arguments.warm_s)
         for _ in range(arguments.rounds):
-            round_of(benches, services, limited=not arguments.secured)
+            round_of(benches, services, arguments.apart_s, limited=not arguments.secured)
     except Failure as failure:
         print(f"{vendors}: {failure} (logs in {folder})", flush=True)
         return False
@@ -165,6 +172,7 @@ def main():
     parser.add_argument("--rounds", type=int, default=2)
     parser.add_argument("--vendors", type=lambda text: text.split(","), default=list(VENDORS))
     parser.add_argument("--secured", action="store_true")
+    parser.add_argument("--apart-s", type=float, default=0.0)
     arguments = parser.parse_args()
     arguments.programs = arguments.programs.resolve()
     if not hosts.can_be_made():
