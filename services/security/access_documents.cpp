@@ -43,6 +43,8 @@ std::string rules(const std::string& what, const std::vector<TopicGroup>& groups
 
 } // namespace
 
+// The metadata of a message is all of it: its payload encrypted besides would cost each end a
+// second key and cipher (decisions/25-secured-blocks.md).
 std::string governance_text() {
   return fmt::format(R"(<?xml version="1.0" encoding="UTF-8"?>
 {}governance.xsd">

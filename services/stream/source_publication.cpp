@@ -49,7 +49,8 @@ SourcePublication::SourcePublication(std::shared_ptr<SourcePublisher> publisher,
                                      std::string software, SourceWriters writers)
     : publisher_(std::move(publisher)), kept_(std::move(kept)), software_(std::move(software)),
       writers_(std::move(writers)),
-      pace_(pace_window(publisher_->options().max_block_bytes), patience),
+      pace_(pace_window(publisher_->options().kind, publisher_->options().max_block_bytes),
+            patience),
       session_(publisher_->session()) {}
 
 void SourcePublication::answer(const std::string& run) {

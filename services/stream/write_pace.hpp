@@ -13,6 +13,7 @@
 #include <cstddef>
 
 #include "services/bus/qos_profiles.hpp"
+#include "services/contract/source_kind.hpp"
 #include "services/stream/block_split.hpp"
 
 namespace dyncal::inline stream {
@@ -66,14 +67,15 @@ private:
   bool hanging_ = false;
 };
 
-// For blocks of at most so many bytes: less than half of what a live writer of them keeps for
-// repairs, and of a receive buffer. By the number of long blocks a source of blocks of one packet
-// would wait for its readers every 0.3 s, and fall behind its instrument where their answers take
-// as long.
-[[nodiscard]] constexpr WritePace::Window pace_window(std::size_t block_bytes) {
+// Less than half of what a live writer of such messages keeps for repairs, and of a receive buffer:
+// fewer records, of which it keeps few, and more blocks of one packet. By the number of long blocks
+// a source of those would wait for its readers every 0.3 s, and fall behind its instrument where
+// their answers take as long.
+[[nodiscard]] inline WritePace::Window pace_window(SourceKind kind, std::size_t block_bytes) {
   const bool secured = block_bytes <= max_secured_block_bytes;
-  return {.messages = std::size_t{100} * (secured ? bus::secured_blocks_per_block : 1),
-          .bytes = std::size_t{1} << 20U};
+  const auto profile = is_triggered(kind) ? bus::Profile::live_records : bus::Profile::live_samples;
+  const int kept = bus::qos_of_writer(profile, secured).samples_per_key;
+  return {.messages = static_cast<std::size_t>(2 * kept / 5), .bytes = std::size_t{1} << 20U};
 }
 
 } // namespace dyncal::inline stream

@@ -1,6 +1,5 @@
 #include "services/stream/write_pace.hpp"
 
-#include <algorithm>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -91,19 +90,31 @@ TEST(PaceWindow, BlocksOfOnePacketKeepUpWhereAnswersAreSlow) {
   constexpr auto block = 3'100us;
   constexpr std::size_t bytes = 1'300;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    EXPECT_LE(waiting_after_a_minute(pace_window(max_secured_block_bytes), block, bytes, seed),
+    EXPECT_LE(waiting_after_a_minute(pace_window(SourceKind::acs, max_secured_block_bytes), block,
+                                     bytes, seed),
               800ms / block + 1);
-    EXPECT_GT(waiting_after_a_minute(pace_window(max_block_bytes), block, bytes, seed), 5'000U)
+    EXPECT_GT(
+        waiting_after_a_minute(pace_window(SourceKind::acs, max_block_bytes), block, bytes, seed),
+        5'000U)
         << "the window of long blocks is long enough: this test shows nothing";
   }
 }
 
-TEST(PaceWindow, IsLessThanHalfOfWhatIsKeptForRepairs) {
-  constexpr auto profile = bus::Profile::live_samples;
-  EXPECT_LT(2 * pace_window(max_block_bytes).messages,
-            static_cast<std::size_t>(bus::qos_of_writer(profile).samples_per_key));
-  EXPECT_LT(2 * pace_window(max_secured_block_bytes).messages,
-            static_cast<std::size_t>(bus::qos_of_writer(profile, true).samples_per_key));
+TEST(PaceWindow, IsLessThanHalfOfWhatIsKeptForRepairsOfBlocksAndOfRecords) {
+  const auto messages = [](SourceKind kind, std::size_t block_bytes) {
+    return static_cast<int>(pace_window(kind, block_bytes).messages);
+  };
+  EXPECT_EQ(messages(SourceKind::dau, max_block_bytes), 100);
+  EXPECT_EQ(messages(SourceKind::dau, max_secured_block_bytes), 800);
+  EXPECT_LT(2 * 100, bus::repair_blocks);
+  EXPECT_LT(2 * 800, bus::secured_blocks_per_block * bus::repair_blocks);
+  // Records are not split, and a writer keeps as many where it is secured.
+  for (const std::size_t block_bytes : {max_block_bytes, max_secured_block_bytes}) {
+    for (const SourceKind kind : {SourceKind::dso, SourceKind::tss}) {
+      EXPECT_GT(messages(kind, block_bytes), 1);
+      EXPECT_LT(2 * messages(kind, block_bytes), bus::repair_records);
+    }
+  }
 }
 
 } // namespace
