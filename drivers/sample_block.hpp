@@ -14,6 +14,8 @@
 #include <string>
 #include <vector>
 
+#include "drivers/quadrature_signals.hpp"
+
 namespace dyncal::drivers {
 
 enum class TimeBase { local, utc };
@@ -48,6 +50,7 @@ struct SourceDescription {
   double tick_s = 0.0; // quantum of the stamps; 0: not known
   double stamp_uncertainty_s =
       0.0; // standard uncertainty of one stamp in its time base; 0: not known
+  std::vector<QuadratureSignals> quadrature_signals{}; // of the channels that are made of such
   bool operator==(const SourceDescription&) const = default;
 };
 

@@ -32,6 +32,7 @@ bool is_common_to_results(ContributionKind kind) {
   case ContributionKind::motion_frequency:
   case ContributionKind::interferometer_ellipse:
   case ContributionKind::periodic_error:
+  case ContributionKind::simultaneity:
   case ContributionKind::other:
     break;
   }

@@ -62,6 +62,8 @@ constexpr std::array rows{
         "bandwidth of the interferometer's detectors", false, Repeats::common_delay},
     Row{ContributionKind::detector_skew, "detector_skew", "skew of the interferometer's detectors",
         false, Repeats::common_delay},
+    Row{ContributionKind::simultaneity, "simultaneity", "simultaneity of sensor and reference",
+        false, Repeats::anew},
     Row{ContributionKind::other, "other", "other", false, Repeats::common}};
 
 constexpr bool in_order() {

@@ -15,6 +15,7 @@ constexpr std::size_t asker_bound = 128;   // service and run
 const KeyLayout two_names{{name_bound, name_bound}, 0};
 const KeyLayout three_names{{name_bound, name_bound, name_bound}, 0};
 const KeyLayout names_and_channel{{name_bound, name_bound, channel_bound}, 0};
+const KeyLayout names_and_step{{name_bound, name_bound, name_bound}, 2};
 const KeyLayout names_and_asker{{name_bound, name_bound, asker_bound}, 0};
 const KeyLayout names_channel_and_step{{name_bound, name_bound, channel_bound}, 2};
 
@@ -61,6 +62,13 @@ template <>
 const TypeSupport& type_support<wire::TriggeredRecord>() {
   static const TypeSupport support =
       make_type_support<wire::TriggeredRecord>("dyncal::wire::TriggeredRecord", two_names);
+  return support;
+}
+
+template <>
+const TypeSupport& type_support<wire::AcsStep>() {
+  static const TypeSupport support =
+      make_type_support<wire::AcsStep>("dyncal::wire::AcsStep", names_and_step);
   return support;
 }
 

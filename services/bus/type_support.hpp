@@ -74,6 +74,8 @@ const TypeSupport& type_support<wire::SampleBlock>();
 template <>
 const TypeSupport& type_support<wire::TriggeredRecord>();
 template <>
+const TypeSupport& type_support<wire::AcsStep>();
+template <>
 const TypeSupport& type_support<wire::Measurement>();
 template <>
 const TypeSupport& type_support<wire::Excitation>();

@@ -50,6 +50,24 @@ void message_members(auto& visit, Either<drivers::ChannelDescription> auto& chan
   visit(channel.resolution, message.resolution());
 }
 
+void message_members(auto& visit, Either<drivers::QuadratureSignals> auto& signals,
+                     auto& message) {
+  visit(signals.channel, message.channel());
+  visit(signals.displacement_per_turn_m, message.displacement_per_turn_m());
+  visit(signals.u_wavelength_rel, message.u_wavelength_rel());
+  visit(signals.centre_u1, message.centre_u1());
+  visit(signals.centre_u2, message.centre_u2());
+  visit(signals.radius_u1, message.radius_u1());
+  visit(signals.radius_ratio, message.radius_ratio());
+  visit(signals.quadrature_error_rad, message.quadrature_error_rad());
+  visit(signals.turns_covered, message.turns_covered());
+  visit(signals.ellipse_from, message.ellipse_from());
+  visit(signals.u_ellipse_rad, message.u_ellipse_rad());
+  visit(signals.periodic_error_rad, message.periodic_error_rad());
+  visit(signals.detector_bandwidth_hz, message.detector_bandwidth_hz());
+  visit(signals.u_skew_s, message.u_skew_s());
+}
+
 void message_members(auto& visit, Either<drivers::SourceDescription> auto& description,
                      auto& message) {
   visit(description.device, message.device());
@@ -62,6 +80,7 @@ void message_members(auto& visit, Either<drivers::SourceDescription> auto& descr
   visit.named(description.stamp_instant, message.stamp_instant(), instants);
   visit(description.tick_s, message.tick_s());
   visit(description.stamp_uncertainty_s, message.stamp_uncertainty_s());
+  visit(description.quadrature_signals, message.quadrature_signals());
 }
 
 wire::SourceDescription to_message(const drivers::SourceDescription& description) {

@@ -44,6 +44,7 @@ inline constexpr Topic<wire::SampleBlock> acs_samples{"AcsSamples", Profile::sam
 inline constexpr Topic<wire::SampleBlock> can_samples{"CanSamples", Profile::samples};
 inline constexpr Topic<wire::TriggeredRecord> dso_record{"DsoRecord", Profile::samples};
 inline constexpr Topic<wire::TriggeredRecord> tss_record{"TssRecord", Profile::samples};
+inline constexpr Topic<wire::AcsStep> acs_step{"AcsStep", Profile::results};
 inline constexpr Topic<wire::Measurement> measurement{"Measurement", Profile::state};
 inline constexpr Topic<wire::Excitation> excitation{"Excitation", Profile::state};
 inline constexpr Topic<wire::CalibrationResult> calibration_result{"CalibrationResult",

@@ -41,6 +41,7 @@ constexpr auto kinds = std::to_array<std::pair<ContributionKind, wire::Contribut
     {ContributionKind::wavelength, wire::CONTRIBUTION_WAVELENGTH},
     {ContributionKind::detector_bandwidth, wire::CONTRIBUTION_DETECTOR_BANDWIDTH},
     {ContributionKind::detector_skew, wire::CONTRIBUTION_DETECTOR_SKEW},
+    {ContributionKind::simultaneity, wire::CONTRIBUTION_SIMULTANEITY},
 });
 static_assert(kinds.size() == static_cast<std::size_t>(ContributionKind::other) + 1);
 
