@@ -55,7 +55,7 @@ enum class ContributionKind {
   wavelength,             // of the laser, in air
   detector_bandwidth,     // delay and loss of an interferometer's photodetectors
   detector_skew,          // delay of one of its signals against the other
-  simultaneity, // of a reference that was evaluated over another time than the sensor
+  simultaneity,           // of a reference that was evaluated over another time than the sensor
   other                   // a row that this version does not know; its subject is its name
 };
 

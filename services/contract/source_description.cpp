@@ -50,8 +50,7 @@ void message_members(auto& visit, Either<drivers::ChannelDescription> auto& chan
   visit(channel.resolution, message.resolution());
 }
 
-void message_members(auto& visit, Either<drivers::QuadratureSignals> auto& signals,
-                     auto& message) {
+void message_members(auto& visit, Either<drivers::QuadratureSignals> auto& signals, auto& message) {
   visit(signals.channel, message.channel());
   visit(signals.displacement_per_turn_m, message.displacement_per_turn_m());
   visit(signals.u_wavelength_rel, message.u_wavelength_rel());

@@ -47,6 +47,8 @@ constexpr Sentence kinds[] = {
     {"interferometer, wavelength in air", "Interferometer, Wellenlänge in Luft"},
     {"interferometer, bandwidth of the detectors", "Interferometer, Bandbreite der Detektoren"},
     {"interferometer, skew of the detectors", "Interferometer, Laufzeitunterschied der Detektoren"},
+    {"reference evaluated over another time than the sensor",
+     "Bezugswert über eine andere Zeit ausgewertet als der Kalibriergegenstand"},
     {"{}", "{}"},
 };
 static_assert(std::size(kinds) == static_cast<std::size_t>(analysis::ContributionKind::other) + 1);
