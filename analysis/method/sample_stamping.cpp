@@ -9,6 +9,7 @@
 #include "analysis/clock/stamp_beat.hpp"
 #include "analysis/method/blocks_of_clock.hpp"
 #include "analysis/method/channels_of_one_clock.hpp"
+#include "analysis/method/clock_link.hpp"
 #include "analysis/method/own_clock_channel.hpp"
 #include "analysis/method/stamp_rows.hpp"
 
@@ -19,28 +20,58 @@ double common_jitter_s(const SystematicUncertainty& systematic) {
   return std::max(systematic.dau_jitter_s, systematic.dau_tick_s / std::sqrt(12.0));
 }
 
-// Noise of the channels that all channels of the sensor share.
-Budget common_noise(const SampleStampingInput& input, const ChannelsOfOneClock& acs,
-                    const RecordedChannel& sync_dau) {
+// Noise of sync in both clocks.
+Budget noise_of_sync(const SampleStampingInput& input, const RecordedChannel& sync_acs,
+                     const RecordedChannel& sync_dau) {
   Budget budget;
-  add_signal_rows(budget, "the reference", acs.others.front(), 0.0, CountsIn::magnitude_and_phase);
-  add_signal_rows(budget, "the ACS sync", acs.pilot, 0.0, CountsIn::phase);
+  add_signal_rows(budget, "the ACS sync", sync_acs, 0.0, CountsIn::phase);
   add_signal_rows(budget, "the DAU sync", sync_dau,
                   std::hypot(input.systematic.sync_adc_jitter_s, common_jitter_s(input.systematic)),
                   CountsIn::phase);
   return budget;
 }
 
-// Rows of the corrections, the same for every channel of the sensor.
-Budget systematic_rows(const SampleStampingInput& input, const ChannelsOfOneClock& acs,
-                       const RecordedChannel& sync_dau, const StampBeat& dau_beat) {
-  const SystematicUncertainty& systematic = input.systematic;
-  const double w = input.frequency.angular();
+// Of the way of sync to the DAU's samples.
+Budget sync_corrections(const SampleStampingInput& input, const RecordedChannel& sync_dau) {
   Budget budget;
   budget.add({.kind = ContributionKind::sync_jitter,
-              .u_phase_rad = std::sqrt(1.5 / static_cast<double>(sync_dau.result.fit.samples)) * w *
-                             systematic.sync_adc_jitter_s});
+              .u_phase_rad = std::sqrt(1.5 / static_cast<double>(sync_dau.result.fit.samples)) *
+                             input.frequency.angular() * input.systematic.sync_adc_jitter_s});
   budget.add({.kind = ContributionKind::adc_phase, .u_phase_rad = input.adc.u_phase_lag_rad});
+  return budget;
+}
+
+std::optional<ClockLink> clock_link_of(const SampleStampingInput& input,
+                                       const RecordedChannel& sync_acs,
+                                       const RecordedChannel& sync_dau) {
+  if (!input.u_utc_s) {
+    return std::nullopt;
+  }
+  Budget sync = noise_of_sync(input, sync_acs, sync_dau);
+  sync.append(sync_corrections(input, sync_dau));
+  return link_of_clocks(sync_acs, sync_dau, input.adc.phase_lag_rad, sync, *input.u_utc_s);
+}
+
+// Noise of the channels that all channels of the sensor share.
+Budget common_noise(const SampleStampingInput& input, const ChannelsOfOneClock& acs,
+                    const RecordedChannel& sync_dau, const std::optional<ClockLink>& clocks) {
+  Budget budget;
+  add_signal_rows(budget, "the reference", acs.others.front(), 0.0, CountsIn::magnitude_and_phase);
+  budget.append(as_far_as_sync_counts(noise_of_sync(input, acs.pilot, sync_dau), clocks));
+  return budget;
+}
+
+// Rows of the corrections, the same for every channel of the sensor.
+Budget systematic_rows(const SampleStampingInput& input, const ChannelsOfOneClock& acs,
+                       const RecordedChannel& sync_dau, const StampBeat& dau_beat,
+                       const std::optional<ClockLink>& clocks) {
+  const SystematicUncertainty& systematic = input.systematic;
+  const double w = input.frequency.angular();
+  Budget budget = as_far_as_sync_counts(sync_corrections(input, sync_dau), clocks);
+  if (clocks) {
+    budget.add(
+        {.kind = ContributionKind::clock_offset, .u_phase_rad = w * clocks->u_by_stamps_s()});
+  }
   budget.add({.kind = ContributionKind::channel_delay,
               .subject = "the ACS channels",
               .u_phase_rad = w * systematic.acs_delay_s});
@@ -135,12 +166,15 @@ TransferPoint evaluate_channel(const SampleStampingInput& input, const RecordedC
 // Eq. (4): H = P_dos / P_ref * U(P_sync_acs) / U(P_sync_dau,true), P_sync_dau,true = P_sync_dau /
 // G; all of it but P_dos.
 std::complex<double> link_of(const SampleStampingInput& input, const ChannelsOfOneClock& acs,
-                             const RecordedChannel& sync_dau) {
+                             const RecordedChannel& sync_dau,
+                             const std::optional<ClockLink>& clocks) {
   const std::complex<double> adc = std::polar(1.0, -input.adc.phase_lag_rad);
   const std::complex<double> late =
       std::polar(1.0, input.frequency.angular() * input.reference_delay_s);
-  return unit_phasor(acs.pilot.phasor()) / (unit_phasor(sync_dau.phasor()) / adc) /
-         (acs.others.front().excitation() * late / input.reference_response.phasor());
+  const std::complex<double> by_sync =
+      unit_phasor(acs.pilot.phasor()) / (unit_phasor(sync_dau.phasor()) / adc) /
+      (acs.others.front().excitation() * late / input.reference_response.phasor());
+  return clocks ? by_sync * clocks->factor(input.frequency.angular()) : by_sync;
 }
 
 // Of a sensor with a clock of its own.
@@ -188,11 +222,12 @@ Expected<SampleStampingResult> evaluate_sample_stamping(const SampleStampingInpu
   const BlocksOfClock acs_blocks = learn_from_blocks(acs);
   const BlocksOfClock dau_blocks = learn_from_blocks(dau);
 
-  const std::complex<double> link = link_of(input, acs, dau.pilot);
-  const Budget noise = common_noise(input, acs, dau.pilot);
+  const std::optional<ClockLink> clocks = clock_link_of(input, acs.pilot, dau.pilot);
+  const std::complex<double> link = link_of(input, acs, dau.pilot, clocks);
+  const Budget noise = common_noise(input, acs, dau.pilot, clocks);
   const StampBeat dau_beat =
       stamp_beat(input.frequency, input.dau_stamps_ns, input.systematic.dau_tick_s);
-  const Budget systematic = systematic_rows(input, acs, dau.pilot, dau_beat);
+  const Budget systematic = systematic_rows(input, acs, dau.pilot, dau_beat, clocks);
   const Comparison with{.link = link,
                         .noise = noise,
                         .systematic = systematic,
@@ -202,6 +237,7 @@ Expected<SampleStampingResult> evaluate_sample_stamping(const SampleStampingInpu
                         .noise_unknown = reference.noise_unknown,
                         .stamp_beat = dau_beat};
   SampleStampingResult result{reference.result, acs.pilot.result, dau.pilot.result, {}, {}};
+  result.findings.clock_link = clocks;
   add_knock(reference, result.findings);
   for (std::size_t i = 0; i < dau.others.size(); ++i) {
     result.points.push_back(evaluate_channel(input, dau.others[i], dau.pilot,
