@@ -47,14 +47,14 @@ Expected<SourceDescription> described_in_utc(const SourceDescription& instrument
 
 void PulseStamps::describe(const SourceDescription& description) {
   const auto column = column_of(description, settings_.channel);
-  const auto described = described_in_utc(description, settings_);
-  is_described_ = described.has_value();
+  const auto in_utc = described_in_utc(description, settings_);
+  is_described_ = in_utc.has_value();
   if (!is_described_) {
-    sink_.warn(described.error().message);
+    sink_.warn(in_utc.error().message);
     return;
   }
   column_ = *column;
-  description_ = *described;
+  description_ = *in_utc;
   if (!pulses_) {
     pulses_.emplace(description_.nominal_rate_hz, settings_.edge);
     clock_.emplace(description_.nominal_rate_hz);

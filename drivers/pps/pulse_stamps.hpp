@@ -9,6 +9,7 @@
 
 #include "analysis/clock/pulse_clock.hpp"
 #include "analysis/clock/sampled_pulses.hpp"
+#include "drivers/error.hpp"
 #include "drivers/pps/pulse_settings.hpp"
 #include "drivers/sample_sink.hpp"
 
