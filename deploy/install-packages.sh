@@ -55,6 +55,7 @@ test_packages=(
   weasyprint poppler-utils                     # reports as PDF, and their text
   chromium libjs-dygraphs                      # the page in a browser
   nginx-light                                  # the page behind a proxy
+  mosquitto mosquitto-clients                  # a broker and a subscriber beside dyncal-bridge
   user-mode-linux busybox-static can-utils     # a kernel with CAN where this one has none
 )
 package_packages=(build-essential debhelper dpkg-dev fakeroot lintian)

@@ -5,6 +5,8 @@ cmake_minimum_required(VERSION 3.25)
 
 cmake_path(ABSOLUTE_PATH bindir BASE_DIRECTORY ${CMAKE_INSTALL_PREFIX} NORMALIZE)
 file(GLOB templates ${root}/deploy/systemd/*.service.in)
+# The bridge is a Python program: deploy/python/install.sh brings it and its unit.
+list(FILTER templates EXCLUDE REGEX "dyncal-bridge")
 foreach(template IN LISTS templates)
   cmake_path(GET template STEM LAST_ONLY unit)
   configure_file(${template} ${made}/systemd/${unit} @ONLY)

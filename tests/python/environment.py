@@ -22,6 +22,7 @@ BUILDING = ["nanobind>=2.4", "scikit-build-core>=0.10", "ninja"]
 PACKAGES = [
     *("numpy", "pandas", "xarray", "mcap", "cyclonedds==11.0.1", "mypy", "pandas-stubs"),
     *("nbclient", "ipykernel", "PyDynamic"),
+    *("foxglove-sdk", "paho-mqtt", "asyncua", "websockets"),  # the bridge and its peers
 ]
 
 

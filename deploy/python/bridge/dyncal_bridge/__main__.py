@@ -1,0 +1,5 @@
+import sys
+
+from dyncal_bridge.command import main
+
+sys.exit(main())

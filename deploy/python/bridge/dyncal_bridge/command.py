@@ -1,0 +1,182 @@
+"""The program `dyncal-bridge`."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import logging
+import os
+import pathlib
+import signal
+import sys
+import threading
+import time
+from collections.abc import Sequence
+
+from dyncal_bridge.document import BridgeError
+from dyncal_bridge.laboratory import Laboratory
+from dyncal_bridge.participant import NetworkOptions, join, refuse_security
+from dyncal_bridge.plug import Plug
+from dyncal_bridge.service_manager import notify
+from dyncal_bridge.settings import Settings, read_settings
+
+STOP_WITHIN_S = 1.5
+LOOK_S = 1.0
+REPORT_S = 60.0
+MAX_TURN_S = 15.0  # the reading thread hangs beyond it; systemd is told nothing more
+# The table of a plug: its module, class, and the package of PyPI that it needs.
+PLUGS = {
+    "foxglove": ("foxglove_plug", "FoxglovePlug", "foxglove-sdk"),
+    "mqtt": ("mqtt_plug", "MqttPlug", "paho-mqtt"),
+    "opcua": ("opcua_plug", "OpcuaPlug", "asyncua"),
+}
+log = logging.getLogger("dyncal-bridge")
+
+
+def domain_number(text: str) -> int:
+    if not text.isdigit() or int(text) > 232:
+        raise argparse.ArgumentTypeError(f"'{text}' is no DDS domain from 0 to 232")
+    return int(text)
+
+
+def arguments() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="dyncal-bridge",
+        description="hands live samples, results and states of benches on to Foxglove, MQTT and "
+        "OPC UA; reads only",
+    )
+    parser.add_argument("settings", type=pathlib.Path, help="settings file (TOML)")
+    parser.add_argument("--check", action="store_true", help="look at the settings and end")
+    parser.add_argument(
+        "--domain",
+        type=domain_number,
+        default=os.environ.get("DYNCAL_DOMAIN", "0"),
+        help="DDS domain: one per laboratory (or DYNCAL_DOMAIN; default: 0)",
+    )
+    parser.add_argument("--interface", default="", help="network interface (name or address)")
+    parser.add_argument("--peer", action="append", default=[], help="address of another host")
+    parser.add_argument("--no-multicast", action="store_true", help="find others by --peer alone")
+    parser.add_argument(
+        "--dds",
+        choices=["cyclonedds", "fastdds"],
+        default="cyclonedds",
+        help="accepted as of every program of dyncal; the bridge is always over Cyclone DDS, "
+        "which understands both",
+    )
+    parser.add_argument(
+        "--security",
+        default=os.environ.get("DYNCAL_SECURITY", ""),
+        help="refused: the public cyclonedds package cannot be secured",
+    )
+    return parser
+
+
+def plugs_of(settings: Settings) -> list[Plug]:
+    """Those whose table is there; a package is imported when its plug is wanted."""
+    plugs: list[Plug] = []
+    for name, (module, class_name, package) in PLUGS.items():
+        of_plug = getattr(settings, name)
+        if of_plug is None:
+            continue
+        try:
+            imported = importlib.import_module(f"dyncal_bridge.{module}")
+        except ImportError as missing:
+            raise BridgeError(
+                f"[{name}] needs the Python package {package}: pip install "
+                f"'dyncal-bridge[{name}]' ({missing})"
+            ) from None
+        plugs.append(getattr(imported, class_name)(of_plug))
+    return plugs
+
+
+def network_options(options: argparse.Namespace) -> NetworkOptions:
+    return NetworkOptions(
+        options.domain,
+        options.interface,
+        options.peer,
+        not options.no_multicast,
+        options.security,
+    )
+
+
+def report(plugs: Sequence[Plug], laboratory: Laboratory, said: dict[str, str]) -> None:
+    """What was not handed on, where that has changed."""
+    lines = {plug.name: ", ".join(f"{k} {v}" for k, v in plug.counts().items()) for plug in plugs}
+    left_out = laboratory.view.left_out
+    lines["laboratory"] = (
+        f"messages beyond limits {left_out.beyond_limits}, of earlier runs "
+        f"{left_out.of_earlier_runs}, refused {laboratory.refused_messages}; blocks of samples "
+        f"lost {laboratory.feed.lost_blocks}"
+    )
+    for name, line in lines.items():
+        if said.get(name, line) != line:
+            log.info("%s: %s", name, line)
+        said[name] = line
+
+
+def serve(plugs: Sequence[Plug], laboratory: Laboratory, ending: threading.Event) -> None:
+    for plug in plugs:
+        plug.start()
+    laboratory.start()
+    notify("READY=1\nSTATUS=hands on to " + ", ".join(plug.name for plug in plugs))
+    log.info("hands on to %s", ", ".join(plug.name for plug in plugs))
+    said: dict[str, str] = {}
+    report(plugs, laboratory, said)
+    next_report_s = time.monotonic() + REPORT_S
+    while not ending.wait(LOOK_S):
+        now_s = time.monotonic()
+        if now_s - laboratory.turned_s < MAX_TURN_S:
+            notify("WATCHDOG=1")
+        if now_s >= next_report_s:
+            next_report_s = now_s + REPORT_S
+            report(plugs, laboratory, said)
+    report(plugs, laboratory, said)
+
+
+def stop(plugs: Sequence[Plug], laboratory: Laboratory) -> None:
+    """Asks all at once, and waits for none of them longer than STOP_WITHIN_S together."""
+    notify("STOPPING=1")
+    deadline_s = time.monotonic() + STOP_WITHIN_S
+    for plug in plugs:
+        plug.stop()
+    late = [] if laboratory.stop(deadline_s - time.monotonic()) else ["laboratory"]
+    for plug in plugs:
+        if not plug.join(max(0.0, deadline_s - time.monotonic())):
+            late.append(plug.name)
+    if late:
+        log.warning("ended without waiting for %s", ", ".join(late))
+
+
+def run(options: argparse.Namespace) -> int:
+    settings = read_settings(options.settings)
+    network = network_options(options)
+    refuse_security(network.security)
+    plugs = plugs_of(settings)
+    if options.check:
+        print(f"ok: {options.settings} hands on to {', '.join(plug.name for plug in plugs)}")
+        return 0
+    ending = threading.Event()
+    for number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, lambda *_: ending.set())
+    benches = settings.benches or ("*",)
+    laboratory = Laboratory(join(network), network.domain, benches, plugs)
+    serve(plugs, laboratory, ending)
+    stop(plugs, laboratory)
+    logging.shutdown()
+    sys.stdout.flush()
+    os._exit(0)  # threads of libraries that still wait for a peer do not hold it up
+
+
+def main() -> int:
+    """0: it has ended as asked; 2: settings or options cannot be used, 1: anything else."""
+    options = arguments().parse_args()
+    logging.basicConfig(
+        stream=sys.stderr,
+        level=logging.INFO,
+        format="%(asctime)s %(name)s %(levelname)s: %(message)s",
+    )
+    try:
+        return run(options)
+    except BridgeError as problem:
+        print(f"dyncal-bridge: {problem}", file=sys.stderr)
+        return 2

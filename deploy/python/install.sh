@@ -1,0 +1,130 @@
+#!/usr/bin/env bash
+# Installs dyncal-bridge into a Python environment of its own, with its unit:
+#
+#   deploy/python/install.sh [--prefix DIR] [--plugs foxglove,mqtt,opcua] [--wheels FOLDER]
+#   deploy/python/install.sh --make-wheels FOLDER [--plugs ...]
+#
+# The environment is DIR/lib/dyncal-bridge, the program DIR/bin/dyncal-bridge, the unit
+# DIR/lib/systemd/system/dyncal-bridge.service; DIR is /usr/local unless given. Packages come from
+# PyPI, and the package dyncal is compiled from this tree; --wheels takes all from a folder that
+# --make-wheels has filled on another computer (of the same Python and architecture), and needs
+# neither network nor compiler. Called again, it does what is missing, and says what it did.
+#
+# PYTHON names another interpreter than python3; DYNCAL_BUILT a build folder whose analysis library
+# is taken instead of compiling one.
+set -euo pipefail
+
+top=$(cd "$(dirname "$0")/../.." && pwd)
+python=${PYTHON:-python3}
+prefix=/usr/local
+plugs=foxglove,mqtt,opcua
+wheels=
+make_wheels=
+
+fail() {
+  echo "install.sh: $*" >&2
+  exit 1
+}
+
+while [[ $# -gt 0 ]]; do
+  case $1 in
+    --prefix | --plugs | --wheels | --make-wheels)
+      [[ -n ${2:-} ]] || fail "$1 needs a value"
+      name=${1#--}
+      printf -v "${name//-/_}" %s "$2"
+      shift 2
+      ;;
+    *)
+      echo "install.sh: '$1' is none of --prefix, --plugs, --wheels, --make-wheels" >&2
+      exit 2
+      ;;
+  esac
+done
+prefix=$(realpath -m "$prefix")
+for plug in ${plugs//,/ }; do
+  [[ $plug =~ ^(foxglove|mqtt|opcua)$ ]] ||
+    fail "--plugs $plugs: '$plug' is none of foxglove, mqtt, opcua"
+done
+"$python" -c 'import sys; sys.exit(sys.version_info < (3, 11))' ||
+  fail "$python is not Python 3.11 or later; name one by PYTHON=..."
+"$python" -c 'import ensurepip, venv' 2>/dev/null ||
+  fail "$python cannot make environments; on Debian: apt-get install python3-venv"
+
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+export PIP_DISABLE_PIP_VERSION_CHECK=1
+
+# Wheels of dyncal and of the bridge, into $work.
+build_own_wheels() {
+  local settings=()
+  [[ -z ${DYNCAL_BUILT:-} ]] || settings=("-Ccmake.define.DYNCAL_BUILT=$DYNCAL_BUILT")
+  echo "building the packages dyncal and dyncal-bridge"
+  "$1" -m pip wheel -q --no-deps -w "$work" "${settings[@]}" "$top/deploy/python" ||
+    fail "the package dyncal cannot be built: it needs a compiler, CMake, Eigen and tl-expected" \
+      "(deploy/install-packages.sh build), or --wheels"
+  cp -r "$top/deploy/python/bridge" "$work/bridge" # setuptools writes beside its sources
+  "$1" -m pip wheel -q --no-deps -w "$work" "$work/bridge" || fail "dyncal-bridge cannot be built"
+}
+
+if [[ -n $make_wheels ]]; then
+  "$python" -m venv "$work/environment"
+  build_own_wheels "$work/environment/bin/python3"
+  mkdir -p "$make_wheels"
+  "$work/environment/bin/python3" -m pip wheel -q -w "$make_wheels" \
+    "$(echo "$work"/dyncal-*.whl)[dds]" "$(echo "$work"/dyncal_bridge-*.whl)[$plugs]" ||
+    fail "the packages of $plugs cannot be had from PyPI"
+  echo "$make_wheels: $(find "$make_wheels" -name '*.whl' | wc -l) wheels for $plugs;" \
+    "elsewhere: deploy/python/install.sh --wheels FOLDER"
+  exit 0
+fi
+
+# What the environment is made of; the same once more is left as it is.
+contents() {
+  echo "$plugs $("$python" -c 'import sys; print(sys.version)')"
+  if [[ -n $wheels ]]; then
+    find "$wheels" -name '*.whl' -exec sha256sum {} +
+  else
+    find "$top/deploy/python" "$top/analysis" "$top/idl" "$top/services/views/report" -type f \
+      -not -path '*/__pycache__/*' -exec sha256sum {} +
+  fi | LC_ALL=C sort
+}
+if [[ -n $wheels ]]; then
+  compgen -G "$wheels/dyncal_bridge-*.whl" >/dev/null ||
+    fail "--wheels $wheels: holds no wheel of dyncal-bridge; fill it by --make-wheels"
+fi
+environment=$prefix/lib/dyncal-bridge
+wanted=$(contents | sha256sum)
+if [[ $(cat "$environment/contents" 2>/dev/null || true) == "$wanted" ]]; then
+  echo "$environment: is as it should be"
+else
+  rm -f "$environment/contents"
+  mkdir -p "$prefix/lib"
+  "$python" -m venv --clear "$environment" || fail "$environment cannot be made"
+  own=$wheels
+  offline=(--no-index --find-links "$wheels")
+  if [[ -z $wheels ]]; then
+    build_own_wheels "$environment/bin/python3"
+    own=$work
+    offline=()
+  fi
+  "$environment/bin/python3" -m pip install -q "${offline[@]}" \
+    "$(echo "$own"/dyncal-*.whl)[dds]" "$(echo "$own"/dyncal_bridge-*.whl)[$plugs]" ||
+    fail "the packages of $plugs cannot be installed from ${wheels:-PyPI}"
+  echo "$wanted" >"$environment/contents"
+  echo "$environment: environment for $plugs"
+fi
+
+mkdir -p "$prefix/bin" "$prefix/lib/systemd/system"
+program=$prefix/bin/dyncal-bridge
+if [[ $(readlink "$program" || true) != "$environment/bin/dyncal-bridge" ]]; then
+  ln -sf "$environment/bin/dyncal-bridge" "$program"
+  echo "$program: installed"
+fi
+unit=$prefix/lib/systemd/system/dyncal-bridge.service
+sed "s|@bindir@|$prefix/bin|" "$top/deploy/systemd/dyncal-bridge.service.in" >"$work/unit"
+if ! cmp -s "$work/unit" "$unit"; then
+  install -m 644 "$work/unit" "$unit"
+  echo "$unit: installed"
+fi
+"$program" --help >/dev/null || fail "$program does not start"
+echo "next: write /etc/dyncal/bridge.toml, then: systemctl enable --now dyncal-bridge"
