@@ -40,7 +40,7 @@ class OldReader(unittest.TestCase):
         reader = dds.Reader("Measurement", bench="old")
         writer = dds.Writer("Measurement", bench="old")
         self.assertTrue(writer.wait_for_readers(timeout_s=PATIENCE_S))
-        sent = dds.TOPICS["Measurement"][0](bench="old", measurement_id="17")
+        sent = dds.TOPICS["Measurement"][0](bench="old", run="17")
         writer.write(sent)
         self.assertEqual(next(reader.messages(timeout_s=PATIENCE_S)), sent)
 
