@@ -10,34 +10,26 @@
 #include "analysis/method/blocks_of_clock.hpp"
 #include "analysis/method/channels_of_one_clock.hpp"
 #include "analysis/method/clock_link.hpp"
+#include "analysis/method/dau_rows.hpp"
 #include "analysis/method/own_clock_channel.hpp"
 #include "analysis/method/stamp_rows.hpp"
 
 namespace dyncal::analysis {
 namespace {
 
-double common_jitter_s(const SystematicUncertainty& systematic) {
-  return std::max(systematic.dau_jitter_s, systematic.dau_tick_s / std::sqrt(12.0));
-}
-
 // Noise of sync in both clocks.
 Budget noise_of_sync(const SampleStampingInput& input, const RecordedChannel& sync_acs,
                      const RecordedChannel& sync_dau) {
   Budget budget;
   add_signal_rows(budget, "the ACS sync", sync_acs, 0.0, CountsIn::phase);
-  add_signal_rows(budget, "the DAU sync", sync_dau,
-                  std::hypot(input.systematic.sync_adc_jitter_s, common_jitter_s(input.systematic)),
-                  CountsIn::phase);
+  add_dau_sync_noise(budget, sync_dau, input.systematic);
   return budget;
 }
 
 // Of the way of sync to the DAU's samples.
 Budget sync_corrections(const SampleStampingInput& input, const RecordedChannel& sync_dau) {
   Budget budget;
-  budget.add({.kind = ContributionKind::sync_jitter,
-              .u_phase_rad = std::sqrt(1.5 / static_cast<double>(sync_dau.result.fit.samples)) *
-                             input.frequency.angular() * input.systematic.sync_adc_jitter_s});
-  budget.add({.kind = ContributionKind::adc_phase, .u_phase_rad = input.adc.u_phase_lag_rad});
+  add_dau_adc_rows(budget, input, sync_dau);
   return budget;
 }
 
@@ -89,32 +81,6 @@ Budget systematic_rows(const SampleStampingInput& input, const ChannelsOfOneCloc
   return budget;
 }
 
-// Stamp noise common to sync and the sensor: the phase of the ratio sees it only as far as the two
-// sines differ in phase.
-void add_stamp_noise(Budget& budget, const SampleStampingInput& input, const RecordedChannel& dut,
-                     const RecordedChannel& sync_dau, const StampBeat& beat) {
-  const double tick_s = input.systematic.dau_tick_s / std::sqrt(12.0);
-  const double rest_s = std::sqrt(std::max(
-      0.0, input.systematic.dau_jitter_s * input.systematic.dau_jitter_s - tick_s * tick_s));
-  const double n = static_cast<double>(dut.result.fit.samples);
-  const double across =
-      std::abs(std::sin(dut.result.fit.phase_rad() - sync_dau.result.fit.phase_rad()));
-  const auto add = [&](ContributionKind kind, Distribution distribution, double jitter_s) {
-    const double angle = input.frequency.angular() * jitter_s;
-    const double shortening = 0.5 * angle * angle;
-    budget.add({.kind = kind,
-                .subject = "the DAU stamps",
-                .distribution = distribution,
-                .u_magnitude_rel = std::hypot(std::sqrt(0.5 / n) * angle, shortening),
-                .u_phase_rad = std::sqrt(2.0 / n) * across * angle,
-                .u_lasting_magnitude_rel = shortening});
-  };
-  add(ContributionKind::stamp_jitter, Distribution::normal, rest_s);
-  add(ContributionKind::stamp_tick, Distribution::rectangular, tick_s);
-  add_beat_rows(budget, "the DAU", input.frequency.angular(), beat,
-                {.in_step_magnitude = 1.0, .in_step_phase = 2.0 * across, .on_average = 0.0});
-}
-
 // The records of the two clocks begin where the search found their step, in frames of a grid of
 // each clock's own (excitation_window.hpp): up to one frame apart. Sync says the rest, modulo a
 // period.
@@ -152,7 +118,7 @@ TransferPoint evaluate_channel(const SampleStampingInput& input, const RecordedC
                                StepFindings& findings) {
   Budget budget;
   add_sensor_rows(budget, dut, common_jitter_s(input.systematic));
-  add_stamp_noise(budget, input, dut, sync_dau, with.stamp_beat);
+  add_dau_stamp_noise(budget, input, dut, sync_dau, with.stamp_beat);
   budget.append(with.noise);
   BlockAlignment alignment = with.alignment;
   alignment.seen = seen_offset(dut, with.reference);
