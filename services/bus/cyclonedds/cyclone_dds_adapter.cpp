@@ -13,6 +13,7 @@
 #include "services/bus/cyclonedds/cyclone_dds_security.hpp"
 #include "services/bus/cyclonedds/cyclone_dds_threads.hpp"
 #include "services/bus/cyclonedds/cyclone_dds_type.hpp"
+#include "services/bus/default_partition.hpp"
 #include "services/bus/host_network.hpp"
 #include "services/bus/qos_profiles.hpp"
 #include "services/bus/write_within.hpp"
@@ -282,7 +283,8 @@ public:
     if (cyclone_topic < 0) {
       return fail(cyclone_error("Cyclone DDS refuses topic " + topic, cyclone_topic));
     }
-    const Qos qos = writer_qos(qos_of_writer(profile, secured_), partitions);
+    const Qos qos = writer_qos(qos_of_writer(profile, secured_),
+                               partitions_of_writer(profile, secured_, partitions));
     const dds_entity_t cyclone_writer =
         dds_create_writer(participant_->entity.get(), cyclone_topic, qos.get(), nullptr);
     auto writer =

@@ -18,6 +18,7 @@
 #include <set>
 
 #include "services/bus/adapters.hpp"
+#include "services/bus/default_partition.hpp"
 #include "services/bus/fastdds/fast_dds_discovery.hpp"
 #include "services/bus/fastdds/fast_dds_names.hpp"
 #include "services/bus/fastdds/fast_dds_participant_qos.hpp"
@@ -298,7 +299,7 @@ public:
                   "Fast DDS refuses topic " + topic + " of type " + type.name);
     }
     dds::PublisherQos publisher_qos;
-    for (const std::string& partition : partitions) {
+    for (const std::string& partition : partitions_of_writer(profile, secured_, partitions)) {
       publisher_qos.partition().push_back(partition.c_str());
     }
     dds::Publisher* publisher = participant_->get()->create_publisher(publisher_qos);

@@ -3,6 +3,7 @@
 #include <random>
 
 #include "services/bus/cdr_key.hpp"
+#include "services/bus/default_partition.hpp"
 #include "services/bus/malformed_messages.hpp"
 #include "services/bus/memory/memory_exchange.hpp"
 
@@ -103,7 +104,8 @@ public:
          const std::vector<std::string>& partitions) override {
     return std::make_unique<MemoryWriter>(
         exchange_, type,
-        endpoint(type, topic, qos_of_writer(profile), partitions, std::make_shared<WakeUp>()));
+        endpoint(type, topic, qos_of_writer(profile),
+                 partitions_of_writer(profile, false, partitions), std::make_shared<WakeUp>()));
   }
 
   base::Expected<std::unique_ptr<UntypedReader>> reader(const TypeSupport& type,

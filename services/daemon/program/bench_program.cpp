@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "services/bus/default_partition.hpp"
 #include "services/daemon/program/daemon.hpp"
 #include "services/daemon/supervision/supervisor.hpp"
 
@@ -22,6 +23,18 @@ Expected<std::vector<BenchFile>> read_benches(const std::vector<std::string>& pa
   return benches;
 }
 
+Expected<void> open_default_partition(bool wanted, const Daemon& daemon) {
+  if (wanted && !daemon.network.security.empty()) {
+    return fail(ErrorCode::bad_argument,
+                "--default-partition: a secured laboratory publishes nothing there; leave the "
+                "option out, or --security");
+  }
+  if (wanted) {
+    bus::publish_samples_in_default_partition();
+  }
+  return {};
+}
+
 } // namespace
 
 void add_network_settings(const NetworkSettings& bench, NetworkOptions& options) {
@@ -34,14 +47,23 @@ void add_network_settings(const NetworkSettings& bench, NetworkOptions& options)
 
 int run_bench_program(int argc, char** argv, const BenchProgram& program) {
   std::vector<std::string> paths;
+  bool default_partition = false;
   return run_daemon(
       argc, argv,
       {.name = program.name,
        .description = program.description,
        .log = LogWriting::by_thread,
        .add_options =
-           [&](CLI::App& app) { app.add_option("BENCH.toml", paths, "bench files")->required(); },
+           [&](CLI::App& app) {
+             app.add_option("BENCH.toml", paths, "bench files")->required();
+             if (program.publishes_samples) {
+               app.add_flag("--default-partition", default_partition,
+                            "publish samples in DDS' default partition, too, for tools that have "
+                            "no partitions");
+             }
+           },
        .serve = [&](Daemon& daemon) -> Expected<void> {
+         DYNCAL_TRY(open_default_partition(default_partition, daemon));
          DYNCAL_TRY(const auto benches, read_benches(paths, daemon));
          return program.serve(benches, daemon);
        }});

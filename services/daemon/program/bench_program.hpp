@@ -27,6 +27,7 @@ struct BenchProgram {
   std::string description; // one sentence, for --help
   // As DaemonProgram::serve, with the benches read.
   std::function<Expected<void>(const std::vector<BenchFile>& benches, Daemon& daemon)> serve;
+  bool publishes_samples = false; // has --default-partition (services/bus/default_partition.hpp)
 };
 
 // The body of main(). Returns the exit status.

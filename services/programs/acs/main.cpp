@@ -57,5 +57,6 @@ int main(int argc, char** argv) {
            "Publishes the sources of bench files whose driver is \"socket\" (an analogue "
            "calibration system's TCP stream), \"alsa\" (a sound device) or \"file\" (a recorded "
            "series).",
-       .serve = serve});
+       .serve = serve,
+       .publishes_samples = true});
 }

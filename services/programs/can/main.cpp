@@ -57,5 +57,6 @@ int main(int argc, char** argv) {
        .description =
            "Publishes the sources of bench files whose driver is \"can\": sensors on CAN "
            "and CAN FD interfaces of this host.",
-       .serve = serve});
+       .serve = serve,
+       .publishes_samples = true});
 }

@@ -93,5 +93,6 @@ int main(int argc, char** argv) {
       argc, argv,
       {.name = "dyncal-dau",
        .description = "Receives SmartUp Units and publishes the samples of their sensors on DDS.",
-       .serve = dau::serve});
+       .serve = dau::serve,
+       .publishes_samples = true});
 }

@@ -48,5 +48,6 @@ int main(int argc, char** argv) {
        .description =
            "Triggers time series sensors by an oscilloscope and publishes the records of "
            "both on DDS.",
-       .serve = serve});
+       .serve = serve,
+       .publishes_samples = true});
 }

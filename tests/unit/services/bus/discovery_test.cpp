@@ -69,7 +69,7 @@ TEST_P(DiscoveryTest, TellsOfOthersWithPartitionAndQosUntilTheyAreGone) {
   EXPECT_EQ(status->kind, EndpointKind::writer);
   EXPECT_EQ(status->participant, discovery.participants[0].id);
   EXPECT_EQ(status->type, "dyncal::wire::SourceStatus");
-  EXPECT_EQ(status->partitions, std::vector<std::string>{"acc-1"});
+  EXPECT_EQ(status->partitions, (std::vector<std::string>{"acc-1", ""})) << "the default one, too";
   EXPECT_TRUE(status->reliable);
   EXPECT_TRUE(status->transient_local);
   const auto command = endpoint(watching, topics::command);

@@ -1,0 +1,159 @@
+"""The stacks that are tried: how each is made from the IDL, and what it cannot do."""
+
+import dataclasses
+import importlib.metadata
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+
+from laboratory import CannotBeSetUp
+
+HERE = pathlib.Path(__file__).resolve().parent
+IDL = HERE.parents[2] / "idl/dyncal.idl"
+PROFILES = HERE.parents[2] / "idl/profiles"
+SETTINGS = {
+    "CYCLONEDDS_URI": f"file://{PROFILES / 'cyclone_dds.xml'}",
+    "FASTRTPS_DEFAULT_PROFILES_FILE": str(PROFILES / "fast_dds.xml"),
+}
+PATIENCE_S = 3000
+
+
+def call(*words, **settings):
+    """What it prints; CannotBeSetUp with its last lines."""
+    try:
+        done = subprocess.run(
+            list(map(str, words)),
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            check=False,
+            timeout=PATIENCE_S,
+            **settings,
+        )
+    except (OSError, subprocess.TimeoutExpired) as error:
+        raise CannotBeSetUp(str(error)) from error
+    if done.returncode:
+        raise CannotBeSetUp(f"{words[0]}: {' '.join(done.stdout.split())[-200:]}")
+    return done.stdout
+
+
+def debian_version(package):
+    return call("dpkg-query", "-W", "-f", "${Version}", package).split("+")[0].split("-")[0]
+
+
+def is_newer(made, *sources):
+    return made.exists() and all(made.stat().st_mtime > one.stat().st_mtime for one in sources)
+
+
+def python_types(folder):
+    """As for the wheel, but for XCDR1 by the QoS alone: the package 0.10 takes no other."""
+    types = folder / "contract.py"
+    if not is_newer(types, IDL):
+        call(sys.executable, HERE.parents[2] / "deploy/python/write_contract.py", IDL, folder)
+        text = (folder / "dds/types.py").read_text()
+        types.write_text(text.replace("@annotations.cdrv0\n", ""))
+    return types
+
+
+def python_cyclone(version):
+    def make(folder):
+        python = folder / "bin/python3"
+        if not python.exists():
+            call(sys.executable, "-m", "venv", folder)
+        settings = dict(os.environ)
+        if version.startswith("0."):  # from its source, against Debian's library
+            home = folder / "cyclonedds"
+            home.mkdir(exist_ok=True)
+            multiarch = call("gcc", "-print-multiarch").strip()
+            for name, place in (("include", "include"), ("lib", f"lib/{multiarch}"), ("bin", "bin")):
+                if not (home / name).exists():
+                    (home / name).symlink_to(f"/usr/{place}")
+            settings["CYCLONEDDS_HOME"] = str(home)
+        pip = [python, "-m", "pip", "install", "-q", "--timeout", "20", f"cyclonedds=={version}"]
+        call(*pip, env=settings)
+        return [python, "-B", HERE / "cyclone_python.py", python_types(folder)], version
+
+    return make
+
+
+def installed_python_cyclone(_folder):
+    """Of the Python that this runs in."""
+    try:
+        version = importlib.metadata.version("cyclonedds")
+    except importlib.metadata.PackageNotFoundError as error:
+        raise CannotBeSetUp("this Python has no package cyclonedds") from error
+    _folder.mkdir(parents=True, exist_ok=True)
+    return [sys.executable, "-B", HERE / "cyclone_python.py", python_types(_folder)], version
+
+
+def c_by_idlc(folder):
+    program = folder / "cyclone_c"
+    if not is_newer(program, IDL, HERE / "cyclone_c.c"):
+        call("idlc", "-t", "-Wno-implicit-extensibility", IDL, cwd=folder)
+        sources = [HERE / "cyclone_c.c", "dyncal.c"]
+        call("gcc", "-O1", "-I.", *sources, "-lddsc", "-o", program, cwd=folder)
+    return [program], debian_version("cyclonedds-dev")
+
+
+def cpp_by_fastddsgen(folder):
+    program = folder / "fast_cpp"
+    if not is_newer(program, IDL, HERE / "fast_cpp.cpp"):
+        call("fastddsgen", "-cs", "-replace", "-d", ".", "-t", ".", IDL, cwd=folder)
+        sources = [HERE / "fast_cpp.cpp", "dyncal.cxx", "dyncalPubSubTypes.cxx"]
+        libraries = ["-lfastrtps", "-lfastcdr"]
+        call("g++", "-std=c++20", "-I.", *sources, *libraries, "-o", program, cwd=folder)
+    return [program], debian_version("libfastrtps-dev")
+
+
+def rust(crate, types):
+    def make(folder):
+        if not shutil.which("cargo"):
+            raise CannotBeSetUp("there is no cargo")
+        room = HERE / f"{crate}_rust"
+        call(sys.executable, HERE / "rust_types.py", IDL, crate, folder / "types.rs")
+        settings = {"DYNCAL_TYPES": str(folder / "types.rs"), "CARGO_TARGET_DIR": str(folder)}
+        cargo = ["cargo", "build", "-q", "-j1", "--release"]
+        call(*cargo, cwd=room, env={**os.environ, **settings})
+        text = (room / "Cargo.toml").read_text()
+        version = text.split(f'{types} = "=')[1].split('"')[0]
+        return [folder / f"release/{crate}_rust"], version
+
+    return make
+
+
+def made_elsewhere(why):
+    def make(_folder):
+        raise CannotBeSetUp(why)
+
+    return make
+
+
+@dataclasses.dataclass
+class Stack:
+    name: str
+    label: str  # in the table
+    make: Callable[[pathlib.Path], tuple[list, str]]
+    cannot: dict[str, str] = dataclasses.field(default_factory=dict)  # read, write: why
+    partitions: bool = True
+    quick: bool = False  # in the test command
+
+
+STACKS = [
+    Stack("cyclone-python-0.10", "Python, `cyclonedds` 0.10", python_cyclone("0.10.5")),
+    Stack("cyclone-python-11", "Python, `cyclonedds` 11", python_cyclone("11.0.1")),
+    Stack("cyclone-python", "", installed_python_cyclone, quick=True),
+    Stack("cyclone-c", "C, types by `idlc`", c_by_idlc, quick=True),
+    Stack("fast-cpp", "C++, types by `fastddsgen`", cpp_by_fastddsgen, quick=True),
+    Stack("dust-rust", "Rust, `dust_dds`", rust("dust", "dust_dds")),
+    Stack(
+        *("rustdds", "Rust, `rustdds`", rust("rustdds", "rustdds")),
+        partitions=False,
+    ),
+    Stack(
+        *("fast-python", "Python, Fast DDS"),
+        made_elsewhere("PyPI has no Python module of Fast DDS (`ros-fastdds` is its C++ library)"),
+    ),
+]
