@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "analysis/method/analogue_comparison.hpp"
+#include "analysis/method/motion_channel.hpp"
+#include "analysis/method/neighbour_noise.hpp"
 #include "analysis/sine/line_products.hpp"
 #include "analysis/step/compound_integrity.hpp"
 
@@ -140,6 +142,7 @@ void take_whole_signal(const SignalIntegrity& whole, ChannelFit& fit) {
 // As its own source shows it: at the frequency and about the instant that its clock has.
 void return_to_own_clock(const WaveformClock& clock, std::int64_t shift_ns, ChannelFit& fit) {
   fit.phase_origin_ns -= shift_ns;
+  fit.u_frequency_hz = fit.frequency.hz() * clock.u_rate_rel();
   fit.frequency = fit.frequency.shifted_by_hz(fit.frequency.hz() * clock.rate_rel());
 }
 
@@ -180,6 +183,47 @@ AbsoluteTimeInput comparison_of(const MultisineStampingInput& input, const Linke
   return one;
 }
 
+// Of what is drawn from the samples.
+double stated_noise_rel(const TransferPoint& point) {
+  double squares = 0.0;
+  for (const Contribution& row : point.budget) {
+    if (row.kind == ContributionKind::fit_noise || row.kind == ContributionKind::structure) {
+      squares += row.u_magnitude_rel * row.u_magnitude_rel;
+    }
+  }
+  return std::sqrt(squares);
+}
+
+LineOfChannel line_and_rest(const SystemOfLines& system, std::size_t channel, std::size_t line,
+                            std::int64_t shift_ns = 0) {
+  const SeparatedLines& lines = system.separated();
+  return {lines.at(line, channel).phasor, lines.rest(channel), system.times_ns, lines.origin_ns(),
+          shift_ns};
+}
+
+void add_neighbour_row(const MultisineStampingInput& input, const LinkedSystems& systems,
+                       std::size_t line, std::size_t channel, TransferPoint& point) {
+  LineOfChannel reference = line_and_rest(systems.acs, 1, line);
+  std::vector<double> still; // without the motion of the table, which a displacement is full of
+  if (is_differentiated(systems.acs.channels[1])) {
+    still =
+        without_slow_motion(input.lines[line].frequency.hz(), reference.times_ns, reference.rest);
+    reference.rest = still;
+  }
+  const double u_rel = neighbour_noise_beyond(
+      stated_noise_rel(point), frequencies_of(input.lines), line, input.period_s, reference,
+      line_and_rest(systems.dau, channel, line,
+                    systems.dau_on_acs_ns.front() - systems.dau.times_ns.front()));
+  if (u_rel > 0.0) {
+    point.budget.push_back({.kind = ContributionKind::structure,
+                            .subject = "the lines beside " + point.channel,
+                            .u_magnitude_rel = u_rel,
+                            .u_phase_rad = u_rel});
+    point.u_magnitude = std::hypot(point.u_magnitude, u_rel * point.magnitude);
+    point.u_phase_rad = std::hypot(point.u_phase_rad, u_rel);
+  }
+}
+
 void add_lag_row(double u_phase_rad, TransferPoint& point) {
   if (u_phase_rad > 0.0) {
     point.budget.push_back({.kind = ContributionKind::adc_phase, .u_phase_rad = u_phase_rad});
@@ -209,9 +253,23 @@ Expected<EvaluatedLine> evaluate_line(const MultisineStampingInput& input,
     TransferPoint& point = evaluated.points[i];
     take_whole_signal(systems.dau.integrity[i + 1], point.dut);
     return_to_own_clock(systems.dau.clock, shift_ns, point.dut);
+    add_neighbour_row(input, systems, line, i + 1, point);
     add_lag_row(frequency.angular() * systems.u_lag_s, point);
   }
   return evaluated;
+}
+
+void keep_rests(const SystemOfLines& acs, const SystemOfLines& dau,
+                std::vector<std::vector<double>>& rests) {
+  const auto keep = [&](const SystemOfLines& system, std::size_t channel) {
+    const auto rest = system.separated().rest(channel);
+    rests.emplace_back(rest.begin(), rest.end());
+  };
+  keep(acs, 1);
+  keep(acs, 0);
+  for (std::size_t channel = 0; channel < dau.channels.size(); ++channel) {
+    keep(dau, channel);
+  }
 }
 
 std::vector<ChannelSamples> with_sync(const ChannelSamples& sync,
@@ -241,7 +299,8 @@ Expected<MultisineStampingResult> evaluate_multisine_stamping(const MultisineSta
     time += shift_ns;
   }
   systems.u_offset_s = std::max(link.u_offset_s, std::hypot(acs.u_scatter_s(), dau.u_scatter_s()));
-  MultisineStampingResult result{{}, acs.clock, dau.clock, std::move(link)};
+  MultisineStampingResult result{{}, acs.clock, dau.clock, std::move(link), {}};
+  keep_rests(acs, dau, result.rests);
   for (std::size_t line = 0; line < input.lines.size(); ++line) {
     result.lines.push_back(evaluate_line(input, systems, line));
   }

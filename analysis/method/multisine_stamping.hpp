@@ -13,7 +13,8 @@
 //
 //      u_k = w_k sum_j g_j w_j u(lag_j) / sum_j g_j w_j^2,   g: weights of the link
 //
-//    jitter of the DAU's stamps and of its sync.
+//    jitter of the DAU's stamps and of its sync; what the lines beside it show that nobody excites,
+//    beyond the noise that is stated already (neighbour_noise.hpp).
 //
 // Distortion is read from lines that nobody excites (line_products.hpp), end stops and stuck values
 // from the whole signal (compound_integrity.hpp); both are the same for all lines of a channel.
@@ -71,6 +72,9 @@ struct MultisineStampingResult {
   WaveformClock acs;
   WaveformClock dau;
   WaveformLink link;
+  // What the lines leave of each channel, with its offset: reference, sync of the ACS, sync of the
+  // DAU, then `dut`.
+  std::vector<std::vector<double>> rests;
 };
 
 [[nodiscard]] Expected<MultisineStampingResult>

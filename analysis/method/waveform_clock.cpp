@@ -321,6 +321,11 @@ double WaveformClock::rate_rel() const {
          (legendre_s.size() > 1 ? legendre_s[1] / half_s : 0.0);
 }
 
+// Legendre's first polynomial has a mean square of a third.
+double WaveformClock::u_rate_rel() const {
+  return scatter_s * std::sqrt(3.0 / static_cast<double>(blocks)) / half_s;
+}
+
 std::vector<std::int64_t>
 WaveformClock::in_waveform_time(std::span<const std::int64_t> stamps_ns) const {
   std::vector<std::int64_t> times(stamps_ns.begin(), stamps_ns.end());

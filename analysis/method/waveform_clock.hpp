@@ -43,6 +43,7 @@ struct WaveformClock {
   std::size_t blocks = 0;
 
   [[nodiscard]] double rate_rel() const; // by how much the lines come too fast in this clock
+  [[nodiscard]] double u_rate_rel() const;
   [[nodiscard]] std::vector<std::int64_t>
   in_waveform_time(std::span<const std::int64_t> stamps_ns) const;
 };

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "drivers/generator/arbitrary_waveform.hpp"
 #include "drivers/generator/generator_output.hpp"
 #include "drivers/link/scpi_answer.hpp"
 
@@ -207,6 +208,19 @@ Expected<void> ScpiGenerator::set_output(bool on) {
 
 Expected<void> ScpiGenerator::set_rectangle(bool rectangle) {
   return command(rectangle ? ":SOURce1:FUNCtion SQUare" : ":SOURce1:FUNCtion SINusoid");
+}
+
+// A connection that is made anew has a sine again: all of it goes over one.
+Expected<void> ScpiGenerator::set_waveform(std::span<const double> samples_v, double rate_hz) {
+  if (connection_->lost()) {
+    DYNCAL_TRY(reconnect());
+  }
+  DYNCAL_TRY(const auto loaded, load_waveform(identity_, samples_v, rate_hz));
+  DYNCAL_TRY(set_amplitude_v(loaded.peak_v));
+  for (const WaveformCommand& command : loaded.commands) {
+    DYNCAL_TRY(connection_->command(command.text, command.block));
+  }
+  return {};
 }
 
 Expected<double> ScpiGenerator::query_bench_time(const std::string& text) {

@@ -44,11 +44,11 @@ tl::unexpected<Error> ScpiConnection::give_up_misunderstood(const std::string& r
   return give_up(Error{ErrorCode::malformed, address_ + ": " + reason}, command);
 }
 
-Expected<void> ScpiConnection::send(const std::string& text) {
+Expected<void> ScpiConnection::send(const std::string& text, std::string_view block) {
   if (lost_) {
     return give_up(Error{ErrorCode::disconnected, address_ + ": the connection is lost"}, text);
   }
-  if (auto sent = transport_->send(text + "\n", answer_limit_); !sent) {
+  if (auto sent = transport_->send(text + std::string(block) + "\n", answer_limit_); !sent) {
     return give_up(sent.error(), text);
   }
   return {};
@@ -95,8 +95,8 @@ Expected<double> ScpiConnection::query_number(const std::string& text) {
   return number;
 }
 
-Expected<void> ScpiConnection::command(const std::string& text) {
-  DYNCAL_TRY(send(text));
+Expected<void> ScpiConnection::command(const std::string& text, std::string_view block) {
+  DYNCAL_TRY(send(text, block));
   DYNCAL_TRY(const auto answer, query(":SYSTem:ERRor?"));
   const auto error = parse_instrument_error(answer);
   if (!error) {

@@ -36,7 +36,8 @@ public:
                  std::chrono::milliseconds answer_limit, std::unique_ptr<ScpiTransport> transport);
 
   // Sends the command and asks for its outcome: refused when the instrument reports an error.
-  [[nodiscard]] Expected<void> command(const std::string& text);
+  // `block`: bytes that follow the text at once, and that messages do not repeat.
+  [[nodiscard]] Expected<void> command(const std::string& text, std::string_view block = {});
   [[nodiscard]] Expected<std::string> query(const std::string& text);
   [[nodiscard]] Expected<double> query_number(const std::string& text);
   // The bytes of the block that answers; a block of more than `max_bytes` is malformed.
@@ -44,7 +45,7 @@ public:
                                                         std::size_t max_bytes);
   // Sends the command and asks for nothing: before the instrument is known to listen, or to end an
   // activity.
-  [[nodiscard]] Expected<void> send(const std::string& text);
+  [[nodiscard]] Expected<void> send(const std::string& text, std::string_view block = {});
 
   // Called twice a second while an answer lets wait, where the transport can do that (TCP), so that
   // a caller who waits long does not neglect everything else; returns false to wait no longer.

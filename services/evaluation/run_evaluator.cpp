@@ -38,7 +38,7 @@ RunEvaluator::RunEvaluator(Recipe recipe, const EvaluationLimits& limits)
       evaluations_(limits.evaluations_at_once) {
   records_.copy_samples(evaluations_.in_background());
   records_.may_begin_late(limits.may_begin_late);
-  begin_work(count_, "evaluating", "steps", recipe_->steps.size());
+  begin_work(count_, "evaluating", "steps", recipe_->excitations());
   if (auto source = method_->clock_source()) {
     clock_.emplace(std::move(*source), recipe_->roles.temperature);
   }

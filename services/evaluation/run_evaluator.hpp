@@ -142,7 +142,7 @@ public:
   // The run takes nothing more: its end is made, or was handed over.
   [[nodiscard]] bool is_ending() const { return ending_.valid() || finished_; }
   // Every planned step has been evaluated; some may be excited again.
-  [[nodiscard]] bool has_planned_steps() const { return next_step_ >= recipe_->steps.size(); }
+  [[nodiscard]] bool has_planned_steps() const { return next_step_ >= recipe_->excitations(); }
   // Nobody conducts this run, and its records do not show all planned steps one after the other, or
   // not the same ones: whether each was taken for the right one, only a survey of all that they
   // show can tell (step_survey.hpp). REQUIRES: finished()

@@ -5,6 +5,7 @@
 
 #include "services/evaluation/method/method.hpp"
 #include "services/evaluation/record/step_alignment.hpp"
+#include "services/evaluation/record/step_order.hpp"
 
 namespace dyncal::inline evaluation {
 
@@ -14,7 +15,7 @@ StepSurvey::StepSurvey(const Recipe& recipe) : recipe_(recipe) {
     const bool has_reference = recipe.reference().source == searched.channel.source;
     records_.emplace_back(searched.channel,
                           has_reference ? std::optional(recipe.reference().channel) : std::nullopt,
-                          recipe.steps);
+                          recipe);
   }
 }
 
@@ -42,8 +43,9 @@ void StepSurvey::add(const std::string& source, const SourceBlock& block) {
 
 std::shared_ptr<const RunSchedule> StepSurvey::schedule() const {
   std::vector<const RecipeStep*> plan;
-  for (const RecipeStep& step : recipe_.steps) {
-    plan.push_back(&step);
+  const StepOrder order(recipe_);
+  for (std::size_t place = 0; place < order.size(); ++place) {
+    plan.push_back(&order.step(place));
   }
   std::vector<RecordedExcitations> found;
   for (const ExcitationSurvey& one : records_) {

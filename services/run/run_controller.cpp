@@ -209,6 +209,11 @@ RunController::open(const std::vector<analysis::AdcCalibrationPoint>& adc_calibr
                             "alone: for a run leave it out of the bench file",
                             recipe.channel_responses.front().channel.text()));
   }
+  if (recipe.is_multisine()) { // nor this
+    return fail(ErrorCode::bad_argument,
+                "a multi-sine is evaluated by 'dyncal analyse' from files alone: a run excites one "
+                "frequency after the other (excitation.kind = \"sine\")");
+  }
   wire::Measurement measurement = to_message(recipe);
   measurement.planned_utc_ns(clock_.utc_now_ns());
   add_adc_file(adc_file_of(bench_), measurement);

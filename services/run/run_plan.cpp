@@ -22,7 +22,9 @@ std::vector<RecipeStep> plan_steps(const BenchFile& file) {
                      .frequency = frequency,
                      .level_m_s2 = excitation.levels_m_s2[i],
                      .excited_axis = excitation.axis,
-                     .settling_s = planned_settling_s(file, frequency.hz(), repetition),
+                     .settling_s = excitation.multisine
+                                       ? excitation.settling_s
+                                       : planned_settling_s(file, frequency.hz(), repetition),
                      .duration_s = excitation.duration_s});
   };
   for (int repetition = 1; repetition <= excitation.repetitions; ++repetition) {
@@ -61,6 +63,9 @@ Expected<Recipe> plan_recipe(const BenchFile& file, const std::string& run,
   recipe.settling_from_data = file.excitation.settling_from_data;
   recipe.monte_carlo_trials = file.uncertainty.monte_carlo_trials;
   recipe.whole_record = file.excitation.whole_record;
+  if (file.excitation.multisine) {
+    recipe.multisine_period_s = file.excitation.multisine->period_s;
+  }
   recipe.frequency_search_rel = file.method.frequency_search_rel;
   recipe.clock_tolerance_rel = 1e-6 * file.method.clock_tolerance_ppm;
   recipe.dut_phase = file.method.dut_phase;

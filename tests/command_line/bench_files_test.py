@@ -56,6 +56,28 @@ def check_combinations(folder):
         expect((folder / f"{name}.toml").read_bytes() == before, f"{name}.toml has changed")
 
 
+def check_multisine(folder):
+    write_records(folder)
+    files = ["--sensor", "file", "--sensor-file", "dau.csv", "--acs", "file", "--acs-file"]
+    files += ["acs.csv", "--generator", "none"]
+    wishes = ["--frequencies", "third-octave 10..250"]
+    succeed("new-bench", "--name", "lines", "--multisine", "10", *wishes, *files, cwd=folder)
+    text = (folder / "lines.toml").read_text()
+    lines = re.search(r"frequencies_hz = \[(.*)\]", text)[1].replace('"', "").split(", ")
+    expect(len(lines) == 15, text)
+    tenths = [round(10 * float(line)) for line in lines]
+    expect(all(line % 2 == 1 for line in tenths), text)
+    found = succeed("check", "lines.toml", cwd=folder)
+    expect("multi-sines of 15 lines" in found, found)
+    (folder / "collide.toml").write_text(text.replace(f'"{lines[1]}"', f'"{3 * tenths[0] / 10}"'))
+    refuse(3, f"3 times {lines[0]} Hz", "check", "collide.toml", cwd=folder)
+    refuse(1, f"3 times {lines[0]} Hz", "analyse", "collide.toml", cwd=folder)
+    refuse(2, "--sensor file", "new-bench", "--name", "x", "--multisine", "10", cwd=folder)
+    dense = ["--frequencies", "10,10.1,10.2,10.3"]
+    near = ["--name", "x", "--multisine", "10", *dense, *files]
+    refuse(2, "no line", "new-bench", *near, cwd=folder)
+
+
 # Values that the check refuses, by option; further options that make them count.
 REFUSED = [
     (["--name", "a b"], []),
@@ -102,6 +124,7 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         check_combinations(folder)
+        check_multisine(folder)
         check_refusals(folder)
         refuse(2, "--name is missing", "new-bench", cwd=folder, input="")
         refuse(2, "nothing was written", "new-bench", "--name", "a b", cwd=folder)

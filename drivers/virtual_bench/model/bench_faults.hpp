@@ -6,6 +6,7 @@
 //
 //   range      end stops at +-range, which its description states, whatever the level
 //   soft ends  end stops before the channel's own noise and converter, at one end or both
+//   curved     a second order: x + part x^2 / signal, before its soft ends
 //   held       samples, drawn one by one, that have the value of the one before
 //   stuck      the value of one sample for so many samples, again and again
 //   hum        mains: an added sine of constant amplitude, between the steps too, or only while the
@@ -29,6 +30,7 @@ struct ChannelFaults {
   double range = 0.0;      // in the channel's unit; 0: one that holds the highest level
   double soft_upper = 0.0; // in the channel's unit; 0: none
   double soft_lower = 0.0; // of the opposite sign
+  double second_order_rel = 0.0;
   double held_part = 0.0;
   std::size_t stuck_samples = 0;
   double stuck_every_s = 1.0;

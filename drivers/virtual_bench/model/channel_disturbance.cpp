@@ -38,7 +38,10 @@ double ChannelDisturbance::added(double time_s, const Motion& motion) const {
 }
 
 double ChannelDisturbance::cut(double value) const {
-  const double upper = faults_.soft_upper > 0.0 ? std::min(value, faults_.soft_upper) : value;
+  const double curved = faults_.second_order_rel != 0.0
+                            ? value + faults_.second_order_rel * value * value / signal_
+                            : value;
+  const double upper = faults_.soft_upper > 0.0 ? std::min(curved, faults_.soft_upper) : curved;
   return faults_.soft_lower > 0.0 ? std::max(upper, -faults_.soft_lower) : upper;
 }
 

@@ -2,7 +2,7 @@
 //
 //   added    signal (hum_rel sin(2 pi hum_hz t + phase) + drift_rel_per_s s + knock)
 //            s: seconds since the generator was last changed, 0 while its output is off
-//   cut      -soft_lower .. soft_upper
+//   cut      x + second_order_rel x^2 / signal, within -soft_lower .. soft_upper
 //   held     the value before in a held_part of the samples; every `stuck_every_s` the value of one
 //   sample in place of the next ones
 //
@@ -27,7 +27,7 @@ public:
 
   // To add before the converter, in the channel's unit.
   [[nodiscard]] double added(double time_s, const Motion& motion) const;
-  // What its soft ends leave of the signal, before noise.
+  // What its curve and its soft ends make of the signal, before noise.
   [[nodiscard]] double cut(double value) const;
   // What the converter delivers in place of `value`. REQUIRES: times rise.
   [[nodiscard]] double held(double value, double time_s);

@@ -10,6 +10,8 @@ namespace {
 
 constexpr double pause_s = 0.3;
 constexpr double margin_s = 0.1; // a step lasts a little longer than is evaluated
+constexpr double multisine_margin_s = 3.0;
+constexpr double multisine_pause_s = 3.0;
 constexpr double slice_s = 0.1;
 
 // Shortest text that reads back as the same number.
@@ -84,22 +86,44 @@ void run_for(VirtualBench& bench, double duration_s, CsvFiles& files) {
   }
 }
 
+DriveLine line_of(const Programme& programme, std::size_t step) {
+  return {std::strtod(programme.frequencies_hz[step].c_str(), nullptr),
+          programme.levels_m_s2[step] / VirtualBench::level_per_volt,
+          step < programme.phases_rad.size() ? programme.phases_rad[step] : 0.0};
+}
+
+void record_steps(VirtualBench& bench, const Programme& programme, CsvFiles& files) {
+  for (std::size_t step = 0; step < programme.frequencies_hz.size(); ++step) {
+    run_for(bench, pause_s, files);
+    const DriveLine line = line_of(programme, step);
+    bench.set_drive({line.frequency_hz, line.amplitude_v, true});
+    run_for(bench, programme.settling_s + programme.duration_s + margin_s, files);
+    bench.set_drive({line.frequency_hz, 0.0, false});
+  }
+}
+
+void record_multisine(VirtualBench& bench, const Programme& programme, CsvFiles& files) {
+  run_for(bench, multisine_pause_s, files);
+  Drive drive{.on = true};
+  for (std::size_t step = 0; step < programme.frequencies_hz.size(); ++step) {
+    drive.lines.push_back(line_of(programme, step));
+  }
+  bench.set_drive(drive);
+  run_for(bench, programme.settling_s + programme.duration_s + multisine_margin_s, files);
+  drive.on = false;
+  bench.set_drive(drive);
+}
+
 } // namespace
 
 Expected<void> record_csv(VirtualBench& bench, const Programme& programme,
                           const std::filesystem::path& folder) {
   CsvFiles files(bench, folder);
+  const bool multisine = !programme.phases_rad.empty();
   for (int repetition = 0; repetition < programme.repetitions; ++repetition) {
-    for (std::size_t step = 0; step < programme.frequencies_hz.size(); ++step) {
-      run_for(bench, pause_s, files);
-      const double frequency_hz = std::strtod(programme.frequencies_hz[step].c_str(), nullptr);
-      bench.set_drive(
-          {frequency_hz, programme.levels_m_s2[step] / VirtualBench::level_per_volt, true});
-      run_for(bench, programme.settling_s + programme.duration_s + margin_s, files);
-      bench.set_drive({frequency_hz, 0.0, false});
-    }
+    multisine ? record_multisine(bench, programme, files) : record_steps(bench, programme, files);
   }
-  run_for(bench, pause_s, files);
+  run_for(bench, multisine ? multisine_pause_s : pause_s, files);
   if (!files.complete()) {
     return fail(ErrorCode::refused,
                 folder.string() + ": acs.csv and dau.csv cannot be written there");

@@ -8,7 +8,7 @@
 namespace dyncal::drivers::virtual_bench {
 namespace {
 
-constexpr std::size_t max_line = 4096;
+constexpr std::size_t max_line = 4096 + 2 * WaveformMemory::max_packet_points;
 constexpr std::size_t max_clients = 16;
 constexpr std::chrono::milliseconds max_wait{500};
 
@@ -56,7 +56,7 @@ bool LineClients::serve(Client& client, double bench_time_s) {
 
 void LineClients::execute_lines(Client& client, double bench_time_s) {
   std::size_t end = 0;
-  while (!client.wait_until_s && (end = client.received.find('\n')) != std::string::npos) {
+  while (!client.wait_until_s && (end = end_of_line(client.received)) != std::string::npos) {
     const ScpiInstrument::Reply reply =
         instrument_.execute(std::string_view(client.received).substr(0, end));
     client.received.erase(0, end + 1);

@@ -2,7 +2,8 @@
 //
 // A client that waits for a bench time (:BENCh:WAIT?) is answered when the time has come, or after
 // half a second of the host's time with the bench time by then; its further lines wait meanwhile. A
-// line without an end after 4096 bytes closes its connection. One thread.
+// line without an end after 4096 bytes, beside a packet of a waveform, closes its connection. One
+// thread.
 #pragma once
 
 #include <chrono>

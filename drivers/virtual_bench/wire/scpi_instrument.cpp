@@ -13,6 +13,7 @@ namespace {
 constexpr std::size_t max_errors = 20;
 constexpr double max_frequency_hz = 5000.0;
 constexpr double max_voltage_vpp = 20.0;
+constexpr double max_rate_hz = 60e6; // of the points of an arbitrary waveform
 
 // Long and short mnemonics, with and without the leading colon, become one form: "SOUR1:FREQ".
 std::string canonical(std::string_view header) {
@@ -20,7 +21,8 @@ std::string canonical(std::string_view header) {
       {"SOURCE", "SOUR"}, {"FREQUENCY", "FREQ"}, {"VOLTAGE", "VOLT"}, {"FUNCTION", "FUNC"},
       {"OUTPUT", "OUTP"}, {"SYSTEM", "SYST"},    {"ERROR", "ERR"},    {"BENCH", "BENC"},
       {"STATE", "STAT"},  {"IMPEDANCE", "IMP"},  {"OFFSET", "OFFS"},  {"POLARITY", "POL"},
-      {"BURST", "BURS"},  {"SWEEP", "SWE"},      {"PHASE", "PHAS"}};
+      {"BURST", "BURS"},  {"SWEEP", "SWE"},      {"PHASE", "PHAS"},   {"TRACE", "TRAC"},
+      {"SRATE", "SRAT"}};
   std::string text = upper(header);
   if (!text.empty() && text.front() == ':') {
     text.erase(0, 1);
@@ -57,13 +59,17 @@ void ScpiInstrument::complain(const char* error) {
 }
 
 ScpiInstrument::Reply ScpiInstrument::execute(std::string_view line) {
-  line = trimmed(line);
+  if (line.find('#') == std::string_view::npos) { // else it ends with a block, whatever is in it
+    line = trimmed(line);
+  }
   if (line.empty()) {
     return {};
   }
   const std::size_t space = std::min(line.find(' '), line.size());
   const std::string_view header = line.substr(0, space);
-  const std::string_view argument = trimmed(line.substr(space));
+  const bool has_block = line.find('#') != std::string_view::npos;
+  const std::string_view argument =
+      has_block ? line.substr(std::min(space + 1, line.size())) : trimmed(line.substr(space));
   if (header.back() == '?') {
     return query(canonical(header.substr(0, header.size() - 1)), argument);
   }
@@ -126,6 +132,7 @@ void ScpiInstrument::set(const std::string& header, std::string_view argument) {
     errors_.clear();
   } else if (header == "*RST") {
     bench_.set_drive(Drive{});
+    waveform_.clear();
     is_on_ = false;
     left_over_.reset();
   } else if (header == "SOUR1:FREQ") {
@@ -136,6 +143,8 @@ void ScpiInstrument::set(const std::string& header, std::string_view argument) {
     set_output(argument);
   } else if (header == "SOUR1:FUNC") {
     set_function(argument);
+  } else if (set_waveform(header, argument)) {
+    return;
   } else if (header == "SOUR1:VOLT:UNIT") {
     if (upper(argument) != "VPP") {
       complain("-224,\"Illegal parameter value\"");
@@ -153,13 +162,63 @@ void ScpiInstrument::set(const std::string& header, std::string_view argument) {
 
 void ScpiInstrument::set_function(std::string_view argument) {
   const std::string word = upper(argument);
+  if (word == "ARB" && waveform_.is_complete()) {
+    play_waveform(bench_.drive());
+    return;
+  }
   Drive drive = bench_.drive();
+  drive.lines.clear();
   drive.rectangle = word.starts_with("SQU");
   if (!drive.rectangle && !word.starts_with("SIN")) {
     complain("-224,\"Illegal parameter value\"");
     return;
   }
   bench_.set_drive(drive);
+}
+
+// Its peak has the voltage that is set.
+void ScpiInstrument::play_waveform(Drive drive) {
+  drive.rectangle = false;
+  drive.lines = waveform_.lines();
+  for (DriveLine& line : drive.lines) {
+    if (line.frequency_hz > max_frequency_hz || !bench_.has_response_at(line.frequency_hz)) {
+      complain("-222,\"Data out of range\"");
+      return;
+    }
+    line.amplitude_v *= drive.amplitude_v;
+  }
+  bench_.set_drive(drive);
+}
+
+bool ScpiInstrument::set_waveform(const std::string& header, std::string_view argument) {
+  if (bench_.settings().generator_words != GeneratorWords::dg4000) {
+    return false;
+  }
+  if (header == "SOUR1:TRAC:DATA:DAC16") {
+    if (!waveform_.take(argument)) {
+      complain("-161,\"Invalid block data\"");
+    }
+    return true;
+  }
+  if (header == "SOUR1:FUNC:ARB:MODE") {
+    if (!upper(argument).starts_with("SRAT")) {
+      complain("-224,\"Illegal parameter value\"");
+    }
+    return true;
+  }
+  if (header != "SOUR1:FUNC:ARB:SRAT") {
+    return false;
+  }
+  const auto rate_hz = parse_parameter(argument);
+  if (!rate_hz || !(*rate_hz > 0.0 && *rate_hz <= max_rate_hz)) {
+    complain("-222,\"Data out of range\"");
+    return true;
+  }
+  waveform_.set_rate(*rate_hz);
+  if (!bench_.drive().lines.empty()) {
+    play_waveform(bench_.drive());
+  }
+  return true;
 }
 
 void ScpiInstrument::set_frequency(std::string_view argument) {
@@ -185,7 +244,7 @@ void ScpiInstrument::set_voltage(std::string_view argument) {
   } else {
     Drive drive = bench_.drive();
     drive.amplitude_v = 0.5 * *voltage_vpp;
-    bench_.set_drive(drive);
+    drive.lines.empty() ? bench_.set_drive(drive) : play_waveform(drive);
   }
 }
 

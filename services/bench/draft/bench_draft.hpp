@@ -43,6 +43,7 @@ struct BenchDraft {
   int repetitions = 3;
   double settling_s = 1.0;
   double duration_s = 3.0;
+  double multisine_period_s = 0.0; // all frequencies at once; 0: one after the other
 
   std::string reference = "reference"; // channels of the ACS
   std::string reference_file;          // of its calibration; empty: not known yet

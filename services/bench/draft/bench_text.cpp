@@ -47,25 +47,45 @@ std::string number(double value) {
   return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
 }
 
+constexpr const char* multisine_kind =
+    R"(kind = "multisine" # all frequencies at once, as lines of one waveform
+)";
+
+std::string times_of_steps(const BenchDraft& draft) {
+  return fmt::format(
+      R"(repeat_first = true # the first frequency once more at the end: shows a drift
+settling_s = {:<13} # before every step
+duration_s = {:<13} # of every step; at least three periods of the lowest frequency
+)",
+      number(draft.settling_s), number(draft.duration_s));
+}
+
+std::string times_of_multisine(const BenchDraft& draft) {
+  return fmt::format(R"(period_s = {:<15} # of the waveform
+dropped_periods = 1.0     # at the beginning of every excitation
+duration_s = {:<13} # of every excitation: whole periods
+)",
+                     number(draft.multisine_period_s), number(draft.multisine_period_s));
+}
+
 void add_head(const BenchDraft& draft, std::string& text) {
+  const bool multisine = draft.multisine_period_s > 0.0;
   text += fmt::format(R"(# Bench {}, made by 'dyncal new-bench'. Hold it against what is there:
 #   dyncal check FILE        the whole file, without driving anything
 #   dyncal run FILE          one run
 bench = {}
 
 [excitation]
-# Decimal text, because 199.87 is not exact as a number.
+{}# Decimal text, because 199.87 is not exact as a number.
 frequencies_hz = {}
 level = {:<18} # m/s^2, amplitude; or a list, one level for every frequency
 # level_displacement_mm = 5.0 # within the stroke of the exciter: the smaller of both holds
 repetitions = {}
-repeat_first = true # the first frequency once more at the end: shows a drift
-settling_s = {:<13} # before every step
-duration_s = {:<13} # of every step; at least three periods of the lowest frequency
-)",
+{})",
                       draft.name.find('\n') == std::string::npos ? draft.name : "",
-                      toml_string(draft.name), frequencies_text(draft), number(draft.level_m_s2),
-                      draft.repetitions, number(draft.settling_s), number(draft.duration_s));
+                      toml_string(draft.name), multisine ? multisine_kind : "",
+                      frequencies_text(draft), number(draft.level_m_s2), draft.repetitions,
+                      multisine ? times_of_multisine(draft) : times_of_steps(draft));
 }
 
 void add_generator(const BenchDraft& draft, std::string& text) {

@@ -11,6 +11,7 @@
 #include "services/bench/file/bench_tables.hpp"
 #include "services/bench/file/check_table.hpp"
 #include "services/bench/file/conditions_table.hpp"
+#include "services/bench/file/multisine_keys.hpp"
 #include "services/bench/file/run_end_table.hpp"
 #include "services/bench/file/sensitivity_keys.hpp"
 #include "services/bench/file/toml_lines.hpp"
@@ -102,6 +103,9 @@ BenchFile read_tables(const toml::table& parsed, const std::filesystem::path& pa
   }
   if (auto method = required_table(root, "method")) {
     file.method = read_method(std::move(*method), file.sources);
+  }
+  if (auto excitation = root.table("excitation")) {
+    check_multisine(std::move(*excitation), file);
   }
   if (auto corrections = root.table("corrections")) {
     file.corrections = read_corrections(std::move(*corrections), files);

@@ -37,6 +37,11 @@ struct NetworkSettings {
   std::string interface_name;
 };
 
+struct MultisineSettings {
+  double period_s = 10.0;
+  double dropped_periods = 1.0;
+};
+
 struct ExcitationSettings {
   std::vector<std::string> frequencies_hz; // decimal text, checked to be a positive number
   std::vector<double> levels_m_s2;         // one per frequency
@@ -52,6 +57,7 @@ struct ExcitationSettings {
   bool settling_from_data = false; // settling_s is the longest that may be left out
   bool whole_record =
       false; // evaluate each record as a whole: one step, nothing searched, nothing left out
+  std::optional<MultisineSettings> multisine{}; // all frequencies at once
 };
 
 enum class GeneratorDriver { none, by_hand, scpi };

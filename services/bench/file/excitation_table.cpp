@@ -9,6 +9,7 @@
 #include "analysis/base/frequency.hpp"
 #include "analysis/base/preferred_frequencies.hpp"
 #include "services/bench/file/excitation_levels.hpp"
+#include "services/bench/file/multisine_keys.hpp"
 
 namespace dyncal::inline bench {
 namespace {
@@ -151,6 +152,7 @@ ExcitationSettings read_excitation(TomlTable table) {
   excitation.settling_from_data =
       table.one_of("settling", {"fixed", "from-data"}, "fixed") == "from-data";
   read_window(table, excitation);
+  read_multisine(table, excitation);
   table.finish();
   return excitation;
 }

@@ -30,6 +30,15 @@ void report_plan(const BenchView& view, const Recipe& recipe, Findings& findings
   for (const RecipeStep& step : recipe.steps) {
     seconds += step.settling_s + step.duration_s + between_steps_s;
   }
+  if (recipe.is_multisine()) {
+    findings.push_back(
+        view.at(Severity::note, {"excitation"},
+                fmt::format("has {} multi-sines of {} lines, about {}; 'dyncal analyse' evaluates "
+                            "them from files, 'dyncal run' does not excite them",
+                            recipe.excitations(), recipe.lines_at_once(),
+                            time_text(seconds / static_cast<double>(recipe.lines_at_once())))));
+    return;
+  }
   findings.push_back(view.at(
       Severity::note, {"excitation"},
       fmt::format("has {} steps ({} frequencies, {} repetition{}), about {}", recipe.steps.size(),

@@ -15,7 +15,8 @@ namespace {
 using analysis::LineAmplitude;
 using analysis::LineKind;
 
-constexpr double shorter = 0.7; // steps may be shorter than this one by so much
+constexpr double shorter = 0.7;           // steps may be shorter than this one by so much
+constexpr double turns_beside_line = 2.0; // in a record, that tell it from a line of a multi-sine
 
 struct WantedLine {
   LineKind kind;
@@ -78,22 +79,37 @@ MeasuredLine measured_line(const WantedLine& line, const LineAmplitude& found, d
   return {line.kind, line.line_hz, line.order, {found.amplitude / unit, found.u_component / unit}};
 }
 
+// That a fit of them has taken out of the residuals.
+bool is_at_line(const std::vector<double>& fitted_hz, double hz, double duration_s) {
+  return std::ranges::any_of(fitted_hz, [&](double fitted) {
+    return std::abs(hz - fitted) < turns_beside_line / duration_s;
+  });
+}
+
+struct Residuals {
+  std::span<const double> values;
+  std::vector<double> fitted_hz{}; // lines beside that of the step that are not in them
+};
+
 void measure_in_step(const std::vector<WantedLine>& wanted, const analysis::ChannelFit& fit,
-                     std::span<const std::int64_t> stamps_ns, std::span<const double> values,
+                     std::span<const std::int64_t> stamps_ns, const Residuals& of_step,
                      ChannelLines& lines) {
+  const std::span<const double> residuals = of_step.values;
   const double f = fit.frequency.hz();
   const double rate_hz = rate_of(stamps_ns);
   double highest_hz = 0.0;
   for (const WantedLine& one : wanted) {
     highest_hz = std::max(highest_hz, analysis::folded_hz(one.line_hz, rate_hz));
   }
-  const std::vector<double> residuals =
-      analysis::residuals_of(fit.frequency, fit.fit, fit.phase_origin_ns, stamps_ns, values);
   const auto background =
       highest_hz > 0.0
           ? analysis::BackgroundSpectrum::of_residuals(f, highest_hz, stamps_ns, residuals)
           : std::nullopt;
   for (const WantedLine& one : wanted) {
+    const double hz = one.kind == LineKind::harmonic ? one.order * f : one.line_hz;
+    if (is_at_line(of_step.fitted_hz, analysis::folded_hz(hz, rate_hz), lines.duration_s)) {
+      continue;
+    }
     if (one.kind != LineKind::harmonic) {
       const auto found =
           background ? background->line(analysis::folded_hz(one.line_hz, rate_hz)) : std::nullopt;
@@ -155,7 +171,7 @@ double planned_hz(const Recipe& recipe, double found_hz) {
 
 StepLines check_step(const Recipe& recipe, const LineSubject& subject,
                      const analysis::ChannelFit& fit, std::span<const std::int64_t> stamps_ns,
-                     std::span<const double> values) {
+                     const Residuals& residuals) {
   StepLines found;
   ChannelLines& lines = found.lines;
   lines.channel = fit.channel;
@@ -171,8 +187,23 @@ StepLines check_step(const Recipe& recipe, const LineSubject& subject,
   lines.unresolved =
       analysis::unresolved_lines(fit.frequency.hz(), lines.duration_s, rate_hz, recipe.mains_hz);
   found.wanted = wanted_lines(recipe, lines.duration_s, rate_hz);
-  measure_in_step(found.wanted, fit, stamps_ns, values, lines);
+  measure_in_step(found.wanted, fit, stamps_ns, residuals, lines);
   return found;
+}
+
+StepLines check_step(const Recipe& recipe, const LineSubject& subject,
+                     const analysis::ChannelFit& fit, std::span<const std::int64_t> stamps_ns,
+                     std::span<const double> values) {
+  const std::vector<double> residuals =
+      analysis::residuals_of(fit.frequency, fit.fit, fit.phase_origin_ns, stamps_ns, values);
+  return check_step(recipe, subject, fit, stamps_ns, Residuals{residuals});
+}
+
+ChannelLines with_quiet_time(StepLines found, const SelectedChannels& selected, std::size_t index) {
+  if (!found.wanted.empty()) {
+    measure_in_quiet(found.wanted, selected.quiet_samples(), index, found.lines);
+  }
+  return std::move(found.lines);
 }
 
 } // namespace
@@ -186,12 +217,24 @@ ChannelLines check_lines(const Recipe& recipe, const LineSubject& subject,
 ChannelLines check_lines(const Recipe& recipe, const LineSubject& subject,
                          const analysis::ChannelFit& fit, const SelectedChannels& selected,
                          std::size_t index) {
-  StepLines found =
-      check_step(recipe, subject, fit, selected.stamps_ns(), selected.channel(index).values);
-  if (!found.wanted.empty()) {
-    measure_in_quiet(found.wanted, selected.quiet_samples(), index, found.lines);
+  return with_quiet_time(
+      check_step(recipe, subject, fit, selected.stamps_ns(), selected.channel(index).values),
+      selected, index);
+}
+
+ChannelLines check_lines_beside(const Recipe& recipe, const LineSubject& subject,
+                                const analysis::ChannelFit& fit, const SelectedChannels& selected,
+                                std::size_t index, std::span<const double> rest) {
+  std::vector<double> values(rest.begin(), rest.end());
+  for (double& value : values) {
+    value -= fit.fit.offset;
   }
-  return std::move(found.lines);
+  Residuals residuals{values};
+  for (std::size_t i = 0; i < recipe.lines_at_once(); ++i) {
+    residuals.fitted_hz.push_back(recipe.steps[i].frequency.hz());
+  }
+  return with_quiet_time(check_step(recipe, subject, fit, selected.stamps_ns(), residuals),
+                         selected, index);
 }
 
 std::vector<double> kindred_lines_hz(const analysis::UnresolvedLine& line) {

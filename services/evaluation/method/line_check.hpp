@@ -38,6 +38,13 @@ struct LineSubject {
                                        const analysis::ChannelFit& fit,
                                        const SelectedChannels& selected, std::size_t index);
 
+// Of a line of a multi-sine: `rest` is what all its lines leave of the channel. What is at a line
+// itself does not show there, and is left to the quiet time.
+[[nodiscard]] ChannelLines check_lines_beside(const Recipe& recipe, const LineSubject& subject,
+                                              const analysis::ChannelFit& fit,
+                                              const SelectedChannels& selected, std::size_t index,
+                                              std::span<const double> rest);
+
 // Low multiples of the same mains with the same parity (rectifiers make even ones), which show
 // whether there is hum at all where the line itself is never told from an excitation.
 [[nodiscard]] std::vector<double> kindred_lines_hz(const analysis::UnresolvedLine& line);

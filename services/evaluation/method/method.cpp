@@ -40,6 +40,9 @@ std::unique_ptr<Method> make_method(std::shared_ptr<const Recipe> recipe) {
   case EvaluationMethod::sample_timestamping:
     break;
   }
+  if (recipe->is_multisine()) {
+    return make_multisine_time_stamping(std::move(recipe));
+  }
   if (has_own_clocks(recipe->dut(), recipe->roles.sync_sensor)) {
     return make_own_clock_sample_stamping(std::move(recipe));
   }

@@ -10,6 +10,8 @@ namespace dyncal::inline evaluation {
 [[nodiscard]] std::unique_ptr<Method> make_absolute_time(std::shared_ptr<const Recipe> recipe);
 [[nodiscard]] std::unique_ptr<Method> make_analogue(std::shared_ptr<const Recipe> recipe);
 [[nodiscard]] std::unique_ptr<Method>
+make_multisine_time_stamping(std::shared_ptr<const Recipe> recipe);
+[[nodiscard]] std::unique_ptr<Method>
 make_own_clock_sample_stamping(std::shared_ptr<const Recipe> recipe);
 [[nodiscard]] std::unique_ptr<Method>
 make_sample_time_stamping(std::shared_ptr<const Recipe> recipe);

@@ -75,6 +75,15 @@ std::vector<SignalCheck> check_common(const std::vector<analysis::ChannelFit>& f
   return checks;
 }
 
+ChannelLines lines_of(const StepTask& task, const StepInput& input, const LineSubject& subject,
+                      const analysis::ChannelFit& fit, const SelectedChannel& channel,
+                      std::size_t place) {
+  return input.rests.empty()
+             ? check_lines(*task.recipe, subject, fit, *channel.selected, channel.index)
+             : check_lines_beside(*task.recipe, subject, fit, *channel.selected, channel.index,
+                                  input.rests[place]);
+}
+
 // Lines beside the excitation in the channels that all results share.
 std::vector<ChannelLines> lines_of_common(const StepTask& task, const StepInput& input,
                                           const std::vector<analysis::ChannelFit>& fits) {
@@ -82,8 +91,8 @@ std::vector<ChannelLines> lines_of_common(const StepTask& task, const StepInput&
       {"the reference"}, {"the ACS sync", false}, {"the DAU sync", false}};
   std::vector<ChannelLines> lines;
   for (std::size_t i = 0; i < input.common.size(); ++i) {
-    lines.push_back(check_lines(*task.recipe, subjects[std::min<std::size_t>(i, 2)], fits[i],
-                                *input.common[i].selected, input.common[i].index));
+    lines.push_back(
+        lines_of(task, input, subjects[std::min<std::size_t>(i, 2)], fits[i], input.common[i], i));
   }
   return lines;
 }
@@ -200,8 +209,9 @@ std::vector<StepResult> make_results(const StepTask& task, const StepInput& inpu
     add_check(check_signal(step->points[i].dut), result);
     check_shape(step->common_fits.front(), step->points[i].dut, result);
     std::vector<ChannelLines> lines = common_lines;
-    lines.push_back(check_lines(*task.recipe, {"the sensor"}, step->points[i].dut,
-                                *input.first_dut.selected, input.first_dut.index + i));
+    lines.push_back(lines_of(task, input, {"the sensor"}, step->points[i].dut,
+                             {input.first_dut.selected, input.first_dut.index + i},
+                             input.common.size() + i));
     add_lines(std::move(lines), result);
     if (result.valid) {
       add_monte_carlo_check(task.recipe->monte_carlo_trials, step->points[i], step->common_fits,

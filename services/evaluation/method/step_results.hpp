@@ -39,6 +39,8 @@ struct StepInput {
   std::string data_sha256;
   std::vector<SelectedChannel> common; // in the order of the common fits
   SelectedChannel first_dut;           // the points are of this channel and those after it
+  // Of a multi-sine: what its lines leave of each of these channels, in their order.
+  std::span<const std::vector<double>> rests{};
 };
 
 // Everything but the numbers: not valid, magnitude and phase NaN.

@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include "services/evaluation/record/good_samples.hpp"
+#include "services/evaluation/record/line_finder.hpp"
 
 namespace dyncal::inline evaluation {
 namespace {
@@ -113,7 +114,7 @@ ShownSine shown_sine(const Recipe& recipe, const RunRecords& records, std::size_
     return ShownSine::unknown;
   }
   const analysis::Frequency& frequency = records.planned(step).frequency;
-  analysis::ExcitationWindowFinder finder(frequency);
+  analysis::ExcitationWindowFinder finder = finder_of(records.excitation().order().lines(step));
   push_good_samples(record, *column, {0, where.begin_ns, where.end_ns}, finder);
   finder.finish();
   const auto window = finder.window();

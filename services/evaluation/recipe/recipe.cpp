@@ -4,6 +4,8 @@
 
 #include <fmt/core.h>
 
+#include "analysis/sine/multisine_lines.hpp"
+
 namespace dyncal::inline evaluation {
 namespace {
 
@@ -18,6 +20,49 @@ void add_once(std::vector<std::string>& names, const std::string& name) {
 
 tl::unexpected<Error> refuse(std::string sentence) {
   return fail(ErrorCode::bad_argument, std::move(sentence));
+}
+
+// The lines of every repetition are those of the first.
+bool has_whole_waveforms(const Recipe& recipe) {
+  const std::size_t lines = recipe.lines_at_once();
+  for (std::size_t i = 0; i < recipe.steps.size(); ++i) {
+    const RecipeStep& step = recipe.steps[i];
+    const RecipeStep& first = recipe.steps[i / lines * lines];
+    if (step.repetition != first.repetition || step.duration_s != first.duration_s ||
+        step.settling_s != first.settling_s ||
+        step.frequency_text_hz != recipe.steps[i % lines].frequency_text_hz) {
+      return false;
+    }
+  }
+  return recipe.steps.size() % lines == 0;
+}
+
+Expected<void> check_multisine(const Recipe& recipe, bool own_clocks) {
+  if (recipe.method() != EvaluationMethod::sample_timestamping || own_clocks) {
+    return refuse("a multi-sine is evaluated with sample time stamping by a DAU that records sync, "
+                  "and with no other method; excite one frequency after the other "
+                  "(excitation.kind = \"sine\")");
+  }
+  if (recipe.settling_from_data || recipe.whole_record || recipe.monte_carlo_trials > 0 ||
+      !(recipe.frequency_search_rel > 0.0)) {
+    return refuse("a multi-sine has neither settling = \"from-data\" nor window = "
+                  "\"whole-record\" nor monte_carlo_trials, and its clocks are always searched "
+                  "for; leave them out of the bench file");
+  }
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < recipe.lines_at_once(); ++i) {
+    lines.push_back(recipe.steps[i].frequency_text_hz);
+  }
+  const auto checked =
+      analysis::check_multisine_lines(lines, recipe.multisine_period_s, recipe.mains_hz);
+  if (!checked) {
+    return refuse("the lines of the multi-sine: " + checked.error().message);
+  }
+  if (!has_whole_waveforms(recipe)) {
+    return refuse("the repetitions of a multi-sine have the same lines in the same order, each of "
+                  "one duration");
+  }
+  return {};
 }
 
 Expected<void> check_responses(const Recipe& recipe) {
@@ -39,6 +84,15 @@ Expected<void> check_responses(const Recipe& recipe) {
 }
 
 } // namespace
+
+std::size_t Recipe::lines_at_once() const {
+  if (!is_multisine()) {
+    return 1;
+  }
+  const auto other = std::ranges::find_if(
+      steps, [&](const RecipeStep& step) { return step.repetition != steps.front().repetition; });
+  return std::max<std::size_t>(1, static_cast<std::size_t>(other - steps.begin()));
+}
 
 std::vector<ChannelName> Recipe::channels() const {
   std::vector<ChannelName> all{reference(), excitation()};
@@ -91,6 +145,9 @@ Expected<void> check_recipe(const Recipe& recipe) {
   const bool own_clocks = recipe.method() == EvaluationMethod::absolute_time ||
                           (recipe.method() == EvaluationMethod::sample_timestamping &&
                            has_own_clocks(recipe.dut(), recipe.roles.sync_sensor));
+  if (recipe.is_multisine()) {
+    DYNCAL_TRY(check_multisine(recipe, own_clocks));
+  }
   if (recipe.method() == EvaluationMethod::series_timestamping &&
       (recipe.settling_from_data || recipe.monte_carlo_trials > 0)) {
     return refuse("series time stamping has neither settling = \"from-data\" nor "

@@ -7,6 +7,7 @@
 // Standard uncertainties begin with u_. Plain data; any thread.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -63,7 +64,10 @@ struct Recipe {
   bool settling_from_data = false;      // RecipeStep::settling_s is the longest that is left out
   std::uint64_t monte_carlo_trials = 0; // 0: no cross-check
   bool whole_record = false;            // one step; nothing is searched, nothing is left out
-  double frequency_search_rel = 1e-3;   // 0: the frequency is known exactly in every clock
+  // Of a multi-sine's waveform, of which the steps of a repetition are the lines; 0: one step is
+  // excited after the other.
+  double multisine_period_s = 0.0;
+  double frequency_search_rel = 1e-3; // 0: the frequency is known exactly in every clock
   // Part by which the measured level of a step may be off the planned one without a flag.
   double level_deviation_rel = 0.1;
   double clock_tolerance_rel = 2e-4; // how right the crystals of ACS and DAU are
@@ -82,6 +86,10 @@ struct Recipe {
   std::map<std::string, std::string> source_settings;
 
   [[nodiscard]] EvaluationMethod method() const { return roles.method; }
+  [[nodiscard]] bool is_multisine() const { return multisine_period_s > 0.0; }
+  // Steps that are excited together; they follow one another.
+  [[nodiscard]] std::size_t lines_at_once() const;
+  [[nodiscard]] std::size_t excitations() const { return steps.size() / lines_at_once(); }
   [[nodiscard]] const ChannelName& reference() const { return roles.reference; }
   [[nodiscard]] const std::vector<ChannelName>& dut() const { return roles.dut; }
   // The channel of the ACS that the steps are found in: sync, or the reference where there is none.
@@ -97,8 +105,8 @@ struct Recipe {
 };
 
 // Fails (bad_argument) with what this version cannot evaluate: roles that the method does not
-// allow, no steps, settings that the method does not have, steps at which the reference, or a
-// channel whose response is stated, was not calibrated.
+// allow, no steps, settings that the method or a multi-sine does not have, lines of one that
+// collide, steps at which the reference, or a channel whose response is stated, was not calibrated.
 [[nodiscard]] Expected<void> check_recipe(const Recipe& recipe);
 
 // Of the reference at the step's frequency and planned level, by its calibration; without one: 1.

@@ -36,8 +36,7 @@ struct StepAnnouncement {
 // were excited again.
 class ExcitationProgress {
 public:
-  explicit ExcitationProgress(const Recipe& recipe)
-      : planned_(recipe.steps.size()), order_(recipe) {}
+  explicit ExcitationProgress(const Recipe& recipe) : order_(recipe) {}
 
   // Passes over a step that the recipe does not have.
   void announce(const StepAnnouncement& announcement);
@@ -64,7 +63,6 @@ public:
   [[nodiscard]] bool is_broken_off(std::size_t step) const { return broken_off_.contains(step); }
 
 private:
-  std::size_t planned_; // steps
   StepOrder order_;
   std::set<std::size_t> over_;
   std::set<std::size_t> broken_off_;

@@ -9,6 +9,8 @@
 #include "services/contract/unit.hpp"
 #include "services/evaluation/record/channel_level.hpp"
 #include "services/evaluation/record/good_samples.hpp"
+#include "services/evaluation/record/line_finder.hpp"
+#include "services/evaluation/record/step_order.hpp"
 
 namespace dyncal::inline evaluation {
 namespace {
@@ -41,16 +43,21 @@ bool is_better(const FoundExcitation& a, const FoundExcitation& b) {
 } // namespace
 
 ExcitationSurvey::ExcitationSurvey(ChannelName searched, std::optional<std::string> reference,
-                                   const std::vector<RecipeStep>& plan)
-    : searched_(std::move(searched)), reference_(std::move(reference)), record_(searched_.source) {
+                                   const Recipe& recipe)
+    : searched_(std::move(searched)),
+      reference_(recipe.is_multisine() ? std::nullopt : std::move(reference)),
+      record_(searched_.source) {
+  const StepOrder order(recipe);
   std::set<std::string> known;
   double lowest = std::numeric_limits<double>::infinity(), highest = 0.0;
-  for (const RecipeStep& step : plan) {
+  for (std::size_t place = 0; place < order.size(); ++place) {
+    const RecipeStep& step = order.step(place);
     lowest = std::min(lowest, step.level_m_s2);
     highest = std::max(highest, step.level_m_s2);
     longest_step_s_ = std::max(longest_step_s_, step.settling_s + step.duration_s);
     if (known.insert(step.frequency_text_hz).second) {
-      tracks_.push_back({.frequency = step.frequency, .from_ns = beginning_of_time});
+      const auto lines = order.lines(place);
+      tracks_.push_back({.lines = {lines.begin(), lines.end()}, .from_ns = beginning_of_time});
     }
   }
   level_range_ = highest > 0.0 && lowest > 0.0 ? lowest / highest : 1.0;
@@ -108,7 +115,7 @@ void ExcitationSurvey::search(Track& track) {
   const std::size_t column = *record_.channel(searched_.channel);
   for (bool found = true; found;) {
     if (!track.finder) {
-      track.finder.emplace(track.frequency);
+      track.finder.emplace(finder_of(track.lines));
       track.fed = 0;
     }
     const std::uint64_t first = std::max(track.fed, record_.forgotten()) - record_.forgotten();
@@ -131,10 +138,12 @@ void ExcitationSurvey::search(Track& track) {
 void ExcitationSurvey::keep(const Track& track, const analysis::ExcitationWindow& window) {
   FoundExcitation found{.window = window, .frame_ns = track.finder->frame_ns()};
   if (reference_) {
-    const auto last_ns = static_cast<std::int64_t>(1e9 * level_window_s(track.frequency.hz()));
-    found.level_m_s2 = level_in(
-        record_, *record_.channel(*reference_),
-        {std::max(window.begin_ns, window.end_ns - last_ns), window.end_ns - 1}, track.frequency);
+    const auto last_ns =
+        static_cast<std::int64_t>(1e9 * level_window_s(track.lines.front().frequency.hz()));
+    found.level_m_s2 =
+        level_in(record_, *record_.channel(*reference_),
+                 {std::max(window.begin_ns, window.end_ns - last_ns), window.end_ns - 1},
+                 track.lines.front().frequency);
   }
   std::vector<FoundExcitation>& all = result_.found;
   const auto rival = std::ranges::find_if(

@@ -25,9 +25,9 @@ namespace dyncal::inline evaluation {
 
 class ExcitationSurvey {
 public:
-  // `reference`: of the same source, for levels.
+  // `reference`: of the same source, for levels, which a multi-sine has none of.
   ExcitationSurvey(ChannelName searched, std::optional<std::string> reference,
-                   const std::vector<RecipeStep>& plan);
+                   const Recipe& recipe);
 
   [[nodiscard]] const std::string& source() const { return searched_.source; }
   void describe(drivers::SourceDescription description);
@@ -37,8 +37,8 @@ public:
   [[nodiscard]] RecordedExcitations result() const;
 
 private:
-  struct Track { // of one frequency
-    analysis::Frequency frequency;
+  struct Track { // of one frequency, or of all lines of a multi-sine
+    std::vector<RecipeStep> lines;
     std::optional<analysis::ExcitationWindowFinder> finder{};
     std::int64_t from_ns;
     std::uint64_t fed = 0; // samples of the record, counted from its very first

@@ -1,4 +1,5 @@
 // The excitations of a run in their order: the planned steps, then those that are excited again.
+// The lines of a multi-sine are one excitation, which counts as the first of their steps.
 //
 // Everything that follows a run through its samples counts excitations from 0 in this order, so
 // that a step that is repeated is one more to be found behind all others. Belongs to one thread;
@@ -8,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "services/evaluation/recipe/recipe.hpp"
@@ -16,13 +18,17 @@ namespace dyncal::inline evaluation {
 
 class StepOrder {
 public:
-  explicit StepOrder(const Recipe& recipe) : recipe_(recipe) {}
+  explicit StepOrder(const Recipe& recipe) : recipe_(recipe), lines_(recipe.lines_at_once()) {}
 
-  [[nodiscard]] std::size_t size() const { return recipe_.steps.size() + repeats_.size(); }
+  [[nodiscard]] std::size_t size() const { return planned() + repeats_.size(); }
   // REQUIRES for these: place < size()
   [[nodiscard]] std::size_t index(std::size_t place) const; // among the recipe's steps
   [[nodiscard]] const RecipeStep& step(std::size_t place) const {
     return recipe_.steps[index(place)];
+  }
+  // All that are excited together, this one first.
+  [[nodiscard]] std::span<const RecipeStep> lines(std::size_t place) const {
+    return std::span(recipe_.steps).subspan(index(place), lines_);
   }
   [[nodiscard]] std::uint32_t attempt(std::size_t place) const; // from 1
 
@@ -40,9 +46,12 @@ private:
     std::uint32_t attempt;
   };
 
+  [[nodiscard]] std::size_t planned() const { return recipe_.steps.size() / lines_; }
+  // Of the first step that is excited with it.
   [[nodiscard]] std::optional<std::size_t> index_of(std::uint32_t step) const;
 
   const Recipe& recipe_;
+  std::size_t lines_; // of an excitation
   std::vector<Repeat> repeats_;
 };
 

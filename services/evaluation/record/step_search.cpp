@@ -6,6 +6,7 @@
 
 #include "services/evaluation/record/cut_step.hpp"
 #include "services/evaluation/record/good_samples.hpp"
+#include "services/evaluation/record/line_finder.hpp"
 
 namespace dyncal::inline evaluation {
 namespace {
@@ -93,7 +94,7 @@ void StepSearch::feed() {
     if (const auto* seen = scheduled(step_); seen != nullptr && *seen) {
       search_from_ns_ = std::max(search_from_ns_, (*seen)->search_from_ns);
     }
-    finder_.emplace(order_.step(step_).frequency);
+    finder_.emplace(finder_of(order_.lines(step_)));
   }
   push_good_samples(
       record_, *channel,

@@ -249,6 +249,12 @@ Expected<RunOutcome> analyse_recording(const AnalyseOptions& command, const std:
     DYNCAL_TRY(const auto bench, read_bench_file(*command.recipe));
     DYNCAL_TRY(const auto adc, read_adc_calibration(bench));
     DYNCAL_TRY(wish.recipe, plan_recipe(bench, "recorded", adc));
+    if (wish.recipe->is_multisine()) {
+      return fail(ErrorCode::bad_argument,
+                  fmt::format("{}: a multi-sine is evaluated from file sources, not from a "
+                              "recording",
+                              bench.path.string()));
+    }
     adc_file = adc_file_of(bench);
     recipe = bench;
   }

@@ -9,6 +9,8 @@
 
 #include <fmt/core.h>
 
+#include "analysis/base/preferred_frequencies.hpp"
+#include "analysis/sine/multisine_lines.hpp"
 #include "drivers/can/dbc/dbc.hpp"
 #include "services/base/output_file.hpp"
 #include "services/base/per_enumerator.hpp"
@@ -82,6 +84,11 @@ void add_excitation(CLI::App& command, BenchDraft& draft) {
               CLI::Range(1, 1000));
   add_default(command, "--duration", draft.duration_s, "evaluated seconds of every step",
               CLI::PositiveNumber);
+  command
+      .add_option("--multisine", draft.multisine_period_s,
+                  "excite all at once, as lines of a waveform of so many seconds, near the "
+                  "--frequencies but where none falls on what others make; --duration is this")
+      ->check(CLI::PositiveNumber);
   add_default(command, "--level-per-volt", draft.level_per_volt, "m/s^2 at the exciter for 1 V",
               CLI::PositiveNumber);
   add_default(command, "--maximum-voltage", draft.maximum_voltage_v,
@@ -120,6 +127,30 @@ std::optional<Error> same_channel(const BenchDraft& draft) {
     return same("--sensor-sync", "--channel", channel);
   }
   return std::nullopt;
+}
+
+// Lines in place of frequencies.
+Expected<void> propose_lines(BenchDraft& draft) {
+  if (!(draft.multisine_period_s > 0.0)) {
+    return {};
+  }
+  using bench_draft::SensorKind;
+  if (draft.sensor != SensorKind::file || draft.acs != bench_draft::AcsKind::file ||
+      draft.generator != bench_draft::GeneratorKind::none) {
+    return fail(ErrorCode::bad_argument,
+                "--multisine is for records that 'dyncal analyse' evaluates: give --sensor file, "
+                "--acs file and --generator none as well");
+  }
+  std::vector<std::string> wishes = draft.frequencies_hz;
+  if (wishes.size() == 1) {
+    wishes = analysis::preferred_frequencies(wishes.front()).value_or(wishes);
+  }
+  auto lines = analysis::propose_multisine_lines(wishes, draft.multisine_period_s);
+  if (!lines) {
+    return fail(ErrorCode::bad_argument, "--multisine: " + lines.error().message);
+  }
+  draft.frequencies_hz = std::move(*lines);
+  return {};
 }
 
 // Of what a draft by options lacks, or has twice.
@@ -256,6 +287,7 @@ Expected<void> run_new_bench(NewBenchOptions& command) {
                                                "terminal to ask on");
   }
   DYNCAL_TRY(check_options(command.draft));
+  DYNCAL_TRY(propose_lines(command.draft));
   const auto path = path_of(command, command.draft.name);
   DYNCAL_TRY(const auto warnings, write_draft(command.draft, path));
   print_written(warnings, path);

@@ -5,6 +5,8 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include "analysis/sine/multisine_lines.hpp"
+#include "analysis/sine/schroeder_phases.hpp"
 #include "services/base/parsed_number.hpp"
 #include "services/base/version.hpp"
 #include "services/daemon/program/command_line.hpp"
@@ -15,6 +17,10 @@ namespace dyncal::inline programs::virtual_bench {
 namespace {
 
 namespace device = dyncal::drivers::virtual_bench;
+
+// By which the exciter may raise the peaks of a multi-sine: it turns every line by another angle.
+constexpr double dispersion = 1.4;
+constexpr std::size_t samples_of_period = 1 << 15;
 
 // The words of the command line as they come, before they are checked against each other.
 struct Words {
@@ -34,6 +40,7 @@ struct Words {
   std::vector<std::string> faults;
   std::vector<std::string> frequencies{"10", "20", "40", "80", "160"};
   std::vector<double> levels{10.0};
+  double multisine_period_s = 0.0;
 };
 
 template <class... Parts>
@@ -121,7 +128,7 @@ void add_path_options(CLI::App& app, Words& words, BenchOptions& options) {
               "most datagrams in a second of this host", CLI::PositiveNumber);
 }
 
-void add_recording_options(CLI::App& app, BenchOptions& options) {
+void add_recording_options(CLI::App& app, Words& words, BenchOptions& options) {
   app.add_option("--record-csv", options.record_folder,
                  "write acs.csv and dau.csv into this folder instead of opening sockets");
   add_checked(app, "--repetitions", options.programme.repetitions, "with --record-csv",
@@ -130,6 +137,10 @@ void add_recording_options(CLI::App& app, BenchOptions& options) {
               CLI::NonNegativeNumber);
   add_checked(app, "--duration-per-step", options.programme.duration_s,
               "with --record-csv, seconds", CLI::PositiveNumber);
+  app.add_option("--multisine", words.multisine_period_s,
+                 "with --record-csv: all frequencies at once, as lines of a waveform of so many "
+                 "seconds")
+      ->check(CLI::PositiveNumber);
   app.add_flag("--exit-with-parent", options.exit_with_parent,
                "end when the process that started this one ends");
 }
@@ -139,7 +150,7 @@ void add_options(CLI::App& app, Words& words, BenchOptions& options) {
   add_can_options(app, words, options);
   add_model_options(app, words, options);
   add_path_options(app, words, options);
-  add_recording_options(app, options);
+  add_recording_options(app, words, options);
 }
 
 Expected<void> read_addresses(const Words& words, device::ServerSettings& server) {
@@ -177,6 +188,30 @@ Expected<void> read_scope_faults(const std::vector<std::string>& texts,
   return {};
 }
 
+// Phases that keep the peaks low, and the ranges of the instruments by these peaks.
+Expected<void> read_multisine(const Words& words, BenchOptions& options) {
+  device::Programme& programme = options.programme;
+  if (options.record_folder.empty()) {
+    return refuse("--multisine is for --record-csv");
+  }
+  const auto checked =
+      analysis::check_multisine_lines(programme.frequencies_hz, words.multisine_period_s);
+  if (!checked) {
+    return refuse("--frequencies: {}", checked.error().message);
+  }
+  programme.phases_rad = analysis::schroeder_phases(programme.levels_m_s2);
+  std::vector<analysis::MultisineLine> lines;
+  for (std::size_t i = 0; i < programme.phases_rad.size(); ++i) {
+    lines.push_back({*parsed_number<double>(programme.frequencies_hz[i]), programme.levels_m_s2[i],
+                     programme.phases_rad[i]});
+  }
+  const auto waveform =
+      analysis::multisine_waveform(lines, words.multisine_period_s, samples_of_period);
+  const auto [lowest, highest] = std::ranges::minmax(waveform);
+  options.bench.highest_level_m_s2 = dispersion * std::max(-lowest, highest);
+  return {};
+}
+
 Expected<void> read_programme(const Words& words, BenchOptions& options) {
   for (const std::string& text : words.frequencies) {
     const auto frequency_hz = parsed_number<double>(text);
@@ -198,7 +233,7 @@ Expected<void> read_programme(const Words& words, BenchOptions& options) {
       words.levels.size() == 1 ? std::vector<double>(words.frequencies.size(), words.levels.front())
                                : words.levels;
   options.bench.highest_level_m_s2 = *std::max_element(words.levels.begin(), words.levels.end());
-  return {};
+  return words.multisine_period_s > 0.0 ? read_multisine(words, options) : Expected<void>{};
 }
 
 Expected<void> read_can(const Words& words, BenchOptions& options) {

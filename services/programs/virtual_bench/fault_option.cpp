@@ -176,6 +176,10 @@ constexpr std::array known_faults{
             read_of_channel<&ChannelFaults::range>(text, faults, "LIMIT", 1e-3, 1e4);
           }},
     Fault{"soft-ends=LIMIT,at=CHANNEL[,end=upper|lower]", read_soft_ends},
+    Fault{"second-order=PART,at=CHANNEL",
+          [](FaultText& text, BenchFaults& faults) {
+            read_of_channel<&ChannelFaults::second_order_rel>(text, faults, "PART", -0.5, 0.5);
+          }},
     Fault{"held=PART,at=CHANNEL",
           [](FaultText& text, BenchFaults& faults) {
             read_of_channel<&ChannelFaults::held_part>(text, faults, "PART", 0.0, 1.0);

@@ -23,7 +23,7 @@ double planned_seconds(const Recipe& recipe) {
   for (const RecipeStep& step : recipe.steps) {
     seconds += step.settling_s + step.duration_s + between_steps_s;
   }
-  return seconds;
+  return seconds / static_cast<double>(recipe.lines_at_once());
 }
 
 double sampled_bytes(const RunSource& source, double seconds,

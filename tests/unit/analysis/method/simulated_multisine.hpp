@@ -32,10 +32,15 @@ struct SimulatedMultisine {
   double corner_hz = 900.0;  // first order
   double delay_s = 1.1e-3;
   double second_order = 0.0; // at full scale, of the sensor
+  double third_order = 0.0;
   double full_scale_m_s2 = 127.0;
   double end_stop_m_s2 = 1e9;
   double sensor_noise = 0.08;
   double reference_noise = 0.01;
+  // What the reference measures, in SI; the motion of its table beside the excitation, in metres,
+  // at 0.7 Hz, of a displacement alone.
+  MotionQuantity reference = MotionQuantity::acceleration;
+  double table_m = 0.0;
   double hum_hz = 0.0;
   double hum_m_s2 = 0.0;        // in the sensor alone
   double sync_v = 0.2;          // of a line
@@ -70,6 +75,9 @@ struct MultisineRecords {
     made.period_s = bench.period_s;
     made.acs_stamps_ns = acs_ns;
     made.reference = {.name = "acs/reference", .values = reference};
+    if (bench.reference != MotionQuantity::acceleration) {
+      made.reference.motion = {.measured = bench.reference, .per = MotionQuantity::acceleration};
+    }
     made.sync_acs = {.name = "acs/sync", .values = sync_acs};
     made.dau_stamps_ns = dau_ns;
     made.sync_dau = {.name = "dau/sync", .values = sync_dau, .resolution = bench.sync_step_v};
@@ -122,8 +130,9 @@ inline MultisineRecords simulate(const SimulatedMultisine& bench, unsigned seed)
   for (const MultisineLine& line : made.excited) {
     responses.push_back(line.amplitude * true_response(bench, line.frequency_hz));
   }
-  const auto motion = [](const MultisineLine& line) {
-    return std::complex<double>(line.amplitude);
+  const auto motion = [&](const MultisineLine& line) {
+    return line.amplitude *
+           motion_factor(MotionQuantity::acceleration, bench.reference, two_pi * line.frequency_hz);
   };
   const auto drive = [&](const MultisineLine&) { return std::complex<double>(bench.sync_v); };
   const auto felt = [&](const MultisineLine& line) {
@@ -134,7 +143,8 @@ inline MultisineRecords simulate(const SimulatedMultisine& bench, unsigned seed)
     const double t = i / bench.acs_rate_hz;
     made.acs_ns.push_back(std::llround(1e9 * t));
     const double true_s = t * (1.0 - bench.acs_clock_rel);
-    made.reference.push_back(sum(true_s, motion) + bench.reference_noise * normal(random));
+    made.reference.push_back(sum(true_s, motion) + bench.reference_noise * normal(random) +
+                             bench.table_m * std::sin(two_pi * 0.7 * true_s));
     made.sync_acs.push_back(sum(true_s, drive) + 1e-4 * normal(random));
   }
   const double hum_turns = part(random);
@@ -149,7 +159,9 @@ inline MultisineRecords simulate(const SimulatedMultisine& bench, unsigned seed)
     made.dau_ns.push_back(1'700'000'000'123'456'789 +
                           std::llround(1e9 * (since * (1.0 + bench.dau_clock_rel) + drift)));
     double value = sum(true_s, felt);
-    value += bench.second_order * value * value / bench.full_scale_m_s2;
+    const double of_scale = value / bench.full_scale_m_s2;
+    value += bench.full_scale_m_s2 * of_scale * of_scale *
+             (bench.second_order + bench.third_order * of_scale);
     value += bench.hum_m_s2 * std::sin(two_pi * (bench.hum_hz * true_s + hum_turns));
     value = std::clamp(value, -bench.end_stop_m_s2, bench.end_stop_m_s2);
     // Noise of the converter behind the end stop is not there.

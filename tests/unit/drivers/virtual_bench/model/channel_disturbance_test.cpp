@@ -57,6 +57,9 @@ TEST(ChannelDisturbance, SoftEndsCutTheSignalAtEither) {
   EXPECT_EQ(both.cut(-9.5), -8.0);
   EXPECT_EQ(both.cut(3.0), 3.0);
   EXPECT_EQ(ChannelDisturbance(3, "sensor", {.soft_upper = 9.0}, 20.0).cut(-9.5), -9.5);
+  const ChannelDisturbance curved(3, "sensor", {.second_order_rel = 0.01}, 20.0);
+  EXPECT_DOUBLE_EQ(curved.cut(20.0), 20.2);
+  EXPECT_DOUBLE_EQ(curved.cut(-10.0), -9.95);
 }
 
 TEST(ChannelDisturbance, HeldSamplesHaveTheValueOfTheOneBefore) {

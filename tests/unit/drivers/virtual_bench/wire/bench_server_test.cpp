@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <arpa/inet.h>
+#include <cmath>
 #include <gtest/gtest.h>
 #include <mutex>
+#include <numbers>
 #include <sys/socket.h>
 #include <sys/time.h>
 #include <thread>
@@ -214,6 +216,41 @@ TEST_F(ServedBench, SwitchesTheOutputOffWhenTheGeneratorIsGivenBack) {
   stop_.raise();
   thread_ = {};
   EXPECT_FALSE(bench_.drive().on);
+}
+
+// In packets whose bytes may be line ends.
+TEST_F(ServedBench, PlaysTheWaveformThatTheDriverOfTheGeneratorLoads) {
+  constexpr double two_pi = 2.0 * std::numbers::pi;
+  constexpr double rate_hz = 2000.0;
+  std::vector<double> samples_v;
+  for (int i = 0; i < 20'000; ++i) {
+    const double t = i / rate_hz;
+    samples_v.push_back(0.2 * std::sin(two_pi * 10.1 * t) + 0.1 * std::cos(two_pi * 63.1 * t));
+  }
+  start(1.0, 0.0);
+  {
+    auto generator = generator::ScpiGenerator::connect(address(server_->generator_port()), 0.4);
+    ASSERT_TRUE(generator) << generator.error().message;
+    const auto loaded = (*generator)->set_waveform(samples_v, rate_hz);
+    ASSERT_TRUE(loaded) << loaded.error().message;
+    ASSERT_TRUE((*generator)->set_output(true));
+    for (double& value : samples_v) {
+      value *= 2.0;
+    }
+    const auto refused = (*generator)->set_waveform(samples_v, rate_hz);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::invalid_setting); // above its maximum voltage
+  }
+  stop_.raise();
+  thread_ = {};
+  const std::vector<DriveLine> lines = bench_.drive().lines;
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_NEAR(lines[0].frequency_hz, 10.1, 1e-9);
+  EXPECT_NEAR(lines[0].amplitude_v, 0.2, 1e-4);
+  EXPECT_NEAR(lines[0].phase_rad, 0.0, 1e-3);
+  EXPECT_NEAR(lines[1].frequency_hz, 63.1, 1e-9);
+  EXPECT_NEAR(lines[1].amplitude_v, 0.1, 1e-4);
+  EXPECT_NEAR(lines[1].phase_rad, 0.5 * std::numbers::pi, 1e-3);
 }
 
 TEST(BenchServer, RefusesAnAddressThatIsTaken) {

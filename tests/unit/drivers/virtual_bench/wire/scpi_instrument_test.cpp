@@ -150,5 +150,35 @@ TEST_F(Scpi, SetsAndResetsWhatIsLeftOver) {
   EXPECT_EQ(ask(":SYST:ERR?"), "-224,\"Illegal parameter value\"");
 }
 
+// Eight points of a sine of one turn, at 80 points a second.
+TEST_F(Scpi, PlaysAnArbitraryWaveformAtTheVoltageThatIsSet) {
+  std::string block = "#216";
+  for (const int code : {8192, 13984, 16383, 13984, 8192, 2399, 0, 2399}) {
+    block += static_cast<char>(code & 0xFF);
+    block += static_cast<char>(code >> 8);
+  }
+  ask(":SOUR1:FUNC ARB");
+  EXPECT_EQ(ask(":SYST:ERR?"), "-224,\"Illegal parameter value\""); // nothing is loaded yet
+  ask(":SOURce1:VOLTage 0.4");
+  ask(":SOURce1:TRACe:DATA:DAC16 VOLATILE,END," + block);
+  ask(":SOURce1:FUNCtion ARB");
+  ask(":SOURce1:FUNCtion:ARB:MODE SRATE");
+  ask(":SOURce1:FUNCtion:ARB:SRATe 80");
+  EXPECT_EQ(ask(":SYST:ERR?"), "0,\"No error\"");
+  const auto line = [&] {
+    return bench_.drive().lines.empty() ? DriveLine{} : bench_.drive().lines.front();
+  };
+  EXPECT_DOUBLE_EQ(line().frequency_hz, 10.0);
+  EXPECT_NEAR(line().amplitude_v, 0.2, 1e-4);
+  EXPECT_NEAR(line().phase_rad, 0.0, 1e-3);
+  ask(":SOURce1:VOLTage 0");
+  ask(":SOURce1:VOLTage 1.0");
+  EXPECT_NEAR(line().amplitude_v, 0.5, 1e-4);
+  ask(":SOURce1:TRACe:DATA:DAC16 VOLATILE,END,#9");
+  EXPECT_EQ(ask(":SYST:ERR?"), "-161,\"Invalid block data\"");
+  ask(":SOURce1:FUNCtion SINusoid");
+  EXPECT_TRUE(bench_.drive().lines.empty());
+}
+
 } // namespace
 } // namespace dyncal::drivers::virtual_bench

@@ -89,5 +89,28 @@ TEST(BenchText, TextsOfTheDraftStayTexts) {
   EXPECT_EQ(reading.problems[0].key, "bench");
 }
 
+TEST(BenchText, AMultisineHasItsPeriodsInPlaceOfSettling) {
+  const tests::TemporaryFolder folder;
+  write_records(folder);
+  BenchDraft draft;
+  draft.name = "new-1";
+  draft.sensor = SensorKind::file;
+  draft.acs = AcsKind::file;
+  draft.generator = GeneratorKind::none;
+  draft.sensor_file = "dau.csv";
+  draft.acs_file = "acs.csv";
+  draft.frequencies_hz = {"10.1", "12.3", "16.1"};
+  draft.multisine_period_s = 10.0;
+  const auto view =
+      bench_check::look_at_bench_text(bench_text(draft, ""), folder.path() / "bench.toml");
+  EXPECT_TRUE(view.problems.empty());
+  ASSERT_TRUE(view.bench.excitation.multisine);
+  EXPECT_EQ(view.bench.excitation.multisine->period_s, 10.0);
+  EXPECT_EQ(view.bench.excitation.duration_s, 10.0);
+  EXPECT_FALSE(view.bench.excitation.repeat_first);
+  const std::string findings = bench_check::as_text(bench_check::check_benches(std::vector{view}));
+  EXPECT_THAT(findings, testing::HasSubstr("3 multi-sines of 3 lines"));
+}
+
 } // namespace
 } // namespace dyncal::inline bench::bench_draft

@@ -14,7 +14,7 @@ namespace {
 RecordedExcitations survey(const tests::SyntheticRun& run, const tests::SyntheticRun& planned,
                            std::size_t first_block = 0) {
   const Recipe recipe = *parse_recipe(planned.measurement());
-  ExcitationSurvey survey({"acs", "sync"}, "reference", recipe.steps);
+  ExcitationSurvey survey({"acs", "sync"}, "reference", recipe);
   survey.describe(from_message(run.acs_description()));
   const auto blocks = run.acs_blocks();
   for (std::size_t i = first_block; i < blocks.size(); ++i) {

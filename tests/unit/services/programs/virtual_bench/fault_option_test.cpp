@@ -29,6 +29,7 @@ TEST(FaultOption, EveryFaultReachesItsPlaceInTheDescription) {
                                         "loss=0.05,at=acs",
                                         "soft-ends=9.7,at=sensor",
                                         "soft-ends=9,at=reference,end=lower",
+                                        "second-order=0.001,at=sensor",
                                         "held=0.1,at=sensor",
                                         "fifo=8",
                                         "free-running",
@@ -50,6 +51,7 @@ TEST(FaultOption, EveryFaultReachesItsPlaceInTheDescription) {
   EXPECT_EQ(faults.sensor.soft_lower, 9.7);
   EXPECT_EQ(faults.reference.soft_upper, 0.0);
   EXPECT_EQ(faults.reference.soft_lower, 9.0);
+  EXPECT_EQ(faults.sensor.second_order_rel, 0.001);
   EXPECT_EQ(faults.sensor.held_part, 0.1);
   EXPECT_EQ(faults.fifo_samples, 8U);
   EXPECT_EQ(faults.sync_acs.stuck_samples, 50U);
