@@ -235,8 +235,18 @@ class Report(unittest.TestCase):
         )
         page = self.report("--no-pdf")
         self.assertEqual(page.count("data:image/svg+xml"), 1)
+        self.assertNotIn("<h2>Interferometer</h2>", page)
         self.assertIn("interval-over-time-dau.svg", page)
         self.assertIn("a document fetches nothing", page)
+
+    def test_ellipse_of_an_interferometer_has_a_section(self):
+        stored_run.write_run(self.run_folder / "figures", self.result)
+        ellipse = self.run_folder / "figures" / "ellipse-acs-displacement.svg"
+        ellipse.write_text('<svg xmlns="http://www.w3.org/2000/svg"><rect width="3"/></svg>')
+        page = self.report("--no-pdf")
+        section = page[page.index("<h2>Interferometer</h2>"):]
+        self.assertIn('alt="ellipse-acs-displacement.svg"', section)
+        self.assertEqual(page.count("data:image/svg+xml"), 1)
 
     def test_refuses_what_is_not_a_result(self):
         for name, text, part in (

@@ -36,15 +36,30 @@ AcsInstrument::AcsInstrument(const AcsSettings& settings)
   gain_error_ = draws.normal(settings.reference_magnitude_rel);
   phase_error_rad_ = draws.normal(settings.reference_phase_rad);
   hum_phase_rad_ = draws.uniform(0.0, 2.0 * std::numbers::pi);
-  reference_range_m_s2_ = settings.reference_faults.range > 0.0
-                              ? settings.reference_faults.range
-                              : 50.0 * std::ceil(1.3 * settings.highest_level_m_s2 / 50.0);
-  sync_range_v_ =
+  const double reference_range_m_s2 =
+      settings.reference_faults.range > 0.0
+          ? settings.reference_faults.range
+          : 50.0 * std::ceil(1.3 * settings.highest_level_m_s2 / 50.0);
+  const double sync_range_v =
       settings.sync_faults.range > 0.0 ? settings.sync_faults.range : usual_sync_range_v;
-  reference_scale_ = reference_range_m_s2_ / counts_per_range;
-  sync_scale_ = sync_range_v_ / counts_per_range;
+  reference_scale_ = reference_range_m_s2 / counts_per_range;
+  sync_scale_ = sync_range_v / counts_per_range;
+  channels_ = {{"reference", "Acceleration", "\\metre\\second\\tothe{-2}", reference_range_m_s2,
+                reference_scale_},
+               {"sync", "Voltage", "\\volt", sync_range_v, sync_scale_}};
   reference_gains_ = {std::polar(1.0 + gain_error_, phase_error_rad_), 1.0 + gain_error_,
                       1.0 + gain_error_};
+  if (settings.interferometer) {
+    InterferometerSettings interferometer = *settings.interferometer;
+    interferometer.spot = std::polar(1.0 + gain_error_, phase_error_rad_);
+    interferometer_.emplace(interferometer, settings.seed, interval_s(),
+                            SyncLevel{settings.sync_amplitude_v, settings.sync_is_first_output});
+    channels_ = Interferometer::channels();
+  }
+}
+
+double AcsInstrument::interval_s() const {
+  return (1.0 + rate_error_) / static_cast<double>(settings_.rate_hz);
 }
 
 double AcsInstrument::sync_amplitude_v(const Motion& motion) const {
@@ -54,10 +69,24 @@ double AcsInstrument::sync_amplitude_v(const Motion& motion) const {
 }
 
 void AcsInstrument::sample_until(double time_s, const Excitation& excitation, AcsSamples& samples) {
+  samples.channels = channels_.size();
   if (samples.counts.empty()) {
     samples.first_sample = next_sample_;
   }
-  const double interval_s = (1.0 + rate_error_) / static_cast<double>(settings_.rate_hz);
+  if (interferometer_) {
+    const std::uint64_t from = next_sample_;
+    while (static_cast<double>(next_sample_) * interval_s() < time_s) {
+      ++next_sample_;
+    }
+    interferometer_->sample(from, next_sample_, excitation, samples.counts);
+  } else {
+    sample_reference_until(time_s, excitation, samples);
+  }
+}
+
+void AcsInstrument::sample_reference_until(double time_s, const Excitation& excitation,
+                                           AcsSamples& samples) {
+  const double interval_s = this->interval_s();
   for (double at_s = static_cast<double>(next_sample_) * interval_s; at_s < time_s;
        at_s = static_cast<double>(++next_sample_) * interval_s) {
     const Motion motion = excitation.motion(at_s);
@@ -99,15 +128,15 @@ std::int64_t AcsInstrument::stamp_ns(std::uint64_t sample) const {
 
 std::string AcsInstrument::description_line() const {
   using Json = nlohmann::ordered_json;
-  const Json reference = {{"name", "reference"},
-                          {"quantity", "Acceleration"},
-                          {"unit", "\\metre\\second\\tothe{-2}"},
-                          {"minimum", -reference_range_m_s2_},
-                          {"maximum", reference_range_m_s2_},
-                          {"scale", reference_scale_}};
-  const Json sync = {{"name", "sync"},           {"quantity", "Voltage"},
-                     {"unit", "\\volt"},         {"minimum", -sync_range_v_},
-                     {"maximum", sync_range_v_}, {"scale", sync_scale_}};
+  Json channels = Json::array();
+  for (const AcsChannel& channel : channels_) {
+    channels.push_back({{"name", channel.name},
+                        {"quantity", channel.quantity},
+                        {"unit", channel.unit},
+                        {"minimum", -channel.range},
+                        {"maximum", channel.range},
+                        {"scale", channel.scale}});
+  }
   const Json line = {{"protocol", "dyncal-acs-stream"},
                      {"version", 1},
                      {"device", "virtual analogue calibration system"},
@@ -116,7 +145,7 @@ std::string AcsInstrument::description_line() const {
                      {"origin_ns", settings_.origin_ns},
                      {"time_base", settings_.utc ? "utc" : "local"},
                      {"values", "int32"},
-                     {"channels", Json::array({reference, sync})}};
+                     {"channels", channels}};
   return line.dump();
 }
 

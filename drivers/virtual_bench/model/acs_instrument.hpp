@@ -1,21 +1,25 @@
-// The analogue calibration system of the virtual bench: reference acceleration and sync,
-// equidistant in a clock of its own.
+// The analogue calibration system of the virtual bench: reference acceleration and sync, or the two
+// signals of an interferometer and sync (interferometer.hpp), equidistant in a clock of its own.
 //
 // Sample n is taken at bench time n (1 + rate_error) / rate and stamped origin_ns + n / rate:
 // neither epoch nor rate is that of the bench, unless it is disciplined to UTC. The reference has a
-// gain and a phase error, drawn once from the standard uncertainties that the recipe states.
+// gain and a phase error, drawn once from the standard uncertainties that the recipe states; of an
+// interferometer it is the spot on the table at which it looks that moves by so much differently.
 //
-// Values are counts of a 24-bit converter; drivers/acs/README.md describes the stream that carries
-// them. One thread.
+// Values are counts of a 24-bit converter, of 14 bits with an interferometer, whose channels have
+// none of `reference_faults` and `sync_faults`; drivers/acs/README.md describes the stream that
+// carries them. One thread.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "drivers/virtual_bench/model/bench_faults.hpp"
 #include "drivers/virtual_bench/model/channel_disturbance.hpp"
 #include "drivers/virtual_bench/model/excitation.hpp"
+#include "drivers/virtual_bench/model/interferometer.hpp"
 #include "drivers/virtual_bench/model/random.hpp"
 
 namespace dyncal::drivers::virtual_bench {
@@ -34,14 +38,16 @@ struct AcsSettings {
   bool utc = false; // disciplined: the rate has no error, and origin_ns is UTC
   ChannelFaults reference_faults;
   ChannelFaults sync_faults;
-  SampleLoss loss; // of what it sends at a time
+  SampleLoss loss;                                      // of what it sends at a time
+  std::optional<InterferometerSettings> interferometer; // in place of the reference channel
 };
 
 struct AcsSamples {
   std::uint64_t first_sample = 0;
-  std::vector<std::int32_t> counts; // reference, sync, reference, sync, ...
+  std::size_t channels = 2;
+  std::vector<std::int32_t> counts; // sample after sample, the channels of one side by side
 
-  [[nodiscard]] std::size_t samples() const { return counts.size() / 2; }
+  [[nodiscard]] std::size_t samples() const { return counts.size() / channels; }
 };
 
 class AcsInstrument {
@@ -55,6 +61,10 @@ public:
   [[nodiscard]] bool sends(AcsSamples& samples);
 
   [[nodiscard]] std::string description_line() const; // without the line end
+  [[nodiscard]] const std::vector<AcsChannel>& channels() const { return channels_; }
+  [[nodiscard]] const std::optional<Interferometer>& interferometer() const {
+    return interferometer_;
+  }
   [[nodiscard]] std::int64_t stamp_ns(std::uint64_t sample) const;
   [[nodiscard]] double reference_scale() const { return reference_scale_; } // m/s^2 per count
   [[nodiscard]] double sync_scale() const { return sync_scale_; }           // V per count
@@ -68,14 +78,16 @@ private:
   Random loss_;
   ChannelDisturbance reference_disturbance_;
   ChannelDisturbance sync_disturbance_;
+  std::optional<Interferometer> interferometer_;
+  std::vector<AcsChannel> channels_;
   double rate_error_ = 0.0;
   double gain_error_ = 0.0;
   double phase_error_rad_ = 0.0;
   double hum_phase_rad_ = 0.0;
-  double reference_range_m_s2_ = 0.0;
   double reference_scale_ = 0.0;
-  double sync_range_v_ = 0.0;
   double sync_scale_ = 0.0;
+  [[nodiscard]] double interval_s() const; // of bench time
+  void sample_reference_until(double time_s, const Excitation& excitation, AcsSamples& samples);
   [[nodiscard]] double sync_amplitude_v(const Motion& motion) const;
 
   HarmonicGains reference_gains_;

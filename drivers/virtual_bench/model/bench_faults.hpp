@@ -40,6 +40,8 @@ struct ChannelFaults {
   double drift_rel_per_s = 0.0;
   double knock_rel = 0.0;
   double knock_after_s = 1.0;
+
+  bool operator==(const ChannelFaults&) const = default;
 };
 
 // The sensor's filter switches, so long after each change of the generator.

@@ -10,6 +10,31 @@ namespace {
 constexpr double two_pi = 2.0 * std::numbers::pi;
 constexpr double crest_factor = 3.6; // of a multi-sine: sync stays within its amplitude
 
+constexpr double instant_s = 1e-6; // over which a velocity is taken
+
+const ExcitationSegment& segment_at(const Excitation::Line& line, double time_s) {
+  std::size_t i = line.size() - 1;
+  while (i > 0 && line[i].begin_s > time_s) {
+    --i;
+  }
+  return line[i];
+}
+
+// What is left of the change at the beginning of the segment: 1 then, 0 in the end.
+double left_of_change(const ExcitationSegment& segment, double time_s) {
+  const double x = (time_s - segment.begin_s) / segment.decay_s;
+  return x > 40.0 ? 0.0 : std::exp(-std::max(x, 0.0));
+}
+
+std::complex<double> envelope(const ExcitationSegment& segment, double time_s) {
+  return segment.target + (segment.initial - segment.target) * left_of_change(segment, time_s);
+}
+
+double carrier_angle(const ExcitationSegment& segment, double time_s) {
+  const double turns = segment.turns + (time_s - segment.begin_s) * segment.frequency_hz;
+  return two_pi * (turns - std::floor(turns));
+}
+
 bool same_frequencies(const Drive& one, const Drive& other) {
   return std::ranges::equal(one.lines, other.lines, {}, &DriveLine::frequency_hz,
                             &DriveLine::frequency_hz);
@@ -30,23 +55,6 @@ HarmonicGains harmonic_gains(const AxisResponse& response, double frequency_hz) 
           response.magnitude_at(2.0 * frequency_hz), response.magnitude_at(3.0 * frequency_hz)};
 }
 
-const Excitation::Segment& Excitation::segment_at(const Line& line, double time_s) {
-  std::size_t i = line.size() - 1;
-  while (i > 0 && line[i].begin_s > time_s) {
-    --i;
-  }
-  return line[i];
-}
-
-std::complex<double> Excitation::envelope(const Segment& segment, double time_s) const {
-  const double x =
-      (time_s - segment.begin_s) / (segment.on ? exciter_.settling_time_s : exciter_.ring_down_s);
-  if (x > 40.0) {
-    return segment.target;
-  }
-  return segment.target + (segment.initial - segment.target) * std::exp(-std::max(x, 0.0));
-}
-
 double Excitation::wandering(double time_s) const {
   return 1.0 + exciter_.wandering_part * std::sin(two_pi * time_s / exciter_.wandering_period_s);
 }
@@ -57,7 +65,7 @@ void Excitation::change(double time_s, const Drive& drive) {
     lines.push_back({drive.frequency_hz, drive.amplitude_v, 0.0});
   }
   const bool keeps_phases = drive.lines.empty() || (drive_.on && same_frequencies(drive_, drive));
-  lines_.resize(std::max(lines_.size(), lines.size()), Line{Segment{}});
+  lines_.resize(std::max(lines_.size(), lines.size()), Line{ExcitationSegment{}});
   for (std::size_t i = 0; i < lines_.size(); ++i) {
     const bool is_driven = i < lines.size();
     const DriveLine line = is_driven ? lines[i] : DriveLine{lines_[i].back().frequency_hz};
@@ -72,8 +80,8 @@ void Excitation::change(double time_s, const Drive& drive) {
 
 void Excitation::change(Line& line, double time_s, const DriveLine& drive, bool on,
                         bool keeps_phase) const {
-  const Segment& last = line.back();
-  Segment next;
+  const ExcitationSegment& last = line.back();
+  ExcitationSegment next;
   next.begin_s = time_s;
   const double turns = keeps_phase ? last.turns + (time_s - last.begin_s) * last.frequency_hz
                                    : drive.phase_rad / two_pi;
@@ -81,8 +89,16 @@ void Excitation::change(Line& line, double time_s, const DriveLine& drive, bool 
   next.frequency_hz = drive.frequency_hz;
   next.initial = envelope(last, time_s);
   next.target = on ? drive.amplitude_v * exciter_.at(drive.frequency_hz) : std::complex<double>{};
+  next.decay_s = on ? exciter_.settling_time_s : exciter_.ring_down_s;
   next.on = on;
   next.amplitude_v = on ? drive.amplitude_v : 0.0;
+  const auto missing_m = [&](double from_change_s) {
+    const double at_s = time_s + from_change_s;
+    return displacement_in(last, at_s) - displacement_in(next, at_s);
+  };
+  const double missing_now_m = missing_m(0.0);
+  next.velocity_m_s = (missing_m(instant_s) - missing_now_m) / instant_s;
+  next.position_m = missing_now_m;
   line.push_back(next);
   while (line.size() > 2 && line[1].begin_s < time_s - memory_s) {
     line.pop_front();
@@ -90,9 +106,8 @@ void Excitation::change(Line& line, double time_s, const DriveLine& drive, bool 
 }
 
 Motion Excitation::motion(double time_s, std::size_t line) const {
-  const Segment& segment = segment_at(lines_[line], time_s);
-  const double turns = segment.turns + (time_s - segment.begin_s) * segment.frequency_hz;
-  const double angle = two_pi * (turns - std::floor(turns));
+  const ExcitationSegment& segment = segment_at(lines_[line], time_s);
+  const double angle = carrier_angle(segment, time_s);
   return {.sine = std::sin(angle),
           .cosine = std::cos(angle),
           .envelope = wandering(time_s) * envelope(segment, time_s),
@@ -114,6 +129,35 @@ double Excitation::acceleration(const Motion& motion, const HarmonicGains& gains
   const double third = third_.real() * sine3 + third_.imag() * cosine3;
   return fundamental.real() * motion.sine + fundamental.imag() * motion.cosine +
          amplitude * (gains.second * second + gains.third * third);
+}
+
+double Excitation::displacement(double time_s, std::size_t line) const {
+  return displacement_in(segment_at(lines_[line], time_s), time_s);
+}
+
+double Excitation::displacement_in(const ExcitationSegment& segment, double time_s) const {
+  const DisplacementTerms terms = displacement_terms(segment, second_, third_);
+  const double left = left_of_change(segment, time_s);
+  const std::complex<double> carrier = std::polar(1.0, carrier_angle(segment, time_s));
+  const double from_begin_s = time_s - segment.begin_s;
+  const double moved = std::imag((terms.settled + terms.changing * left) * carrier) +
+                       std::abs(envelope(segment, time_s)) *
+                           std::imag((terms.second + terms.third * carrier) * carrier * carrier);
+  return wandering(time_s) * moved + (segment.position_m + terms.return_m_s * from_begin_s) *
+                                         std::exp(-from_begin_s / suspension_s);
+}
+
+DisplacementTerms displacement_terms(const ExcitationSegment& segment,
+                                     std::complex<double> second_harmonic,
+                                     std::complex<double> third_harmonic) {
+  const double angular_hz = two_pi * segment.frequency_hz;
+  const std::complex<double> steady(0.0, angular_hz);
+  const std::complex<double> decaying(-1.0 / segment.decay_s, angular_hz);
+  return {.settled = segment.target / (steady * steady),
+          .changing = (segment.initial - segment.target) / (decaying * decaying),
+          .second = second_harmonic / (4.0 * steady * steady),
+          .third = third_harmonic / (9.0 * steady * steady),
+          .return_m_s = segment.velocity_m_s + segment.position_m / Excitation::suspension_s};
 }
 
 } // namespace dyncal::drivers::virtual_bench

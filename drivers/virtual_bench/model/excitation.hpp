@@ -12,6 +12,11 @@
 // at the instant at which the output is switched on. The sync output has all lines with equal
 // amplitudes then.
 //
+// Displacement is the double integral of the acceleration: of the fundamental exactly, also while
+// the envelope changes; of the harmonics and of an amplitude that wanders as if they were settled.
+// Each change leaves a step in position and velocity of that integral, which the suspension takes
+// back with exp(-t/25 ms); the sensors' model does not show the acceleration of that.
+//
 // Bench time is in seconds from the start of the bench. Times may be asked for up to `memory_s`
 // before the newest change. One thread.
 #pragma once
@@ -77,12 +82,44 @@ struct HarmonicGains {
 };
 [[nodiscard]] HarmonicGains harmonic_gains(const AxisResponse& response, double frequency_hz);
 
+// A line between two changes of the generator.
+struct ExcitationSegment {
+  double amplitude_v = 0.0; // of the first output
+  double begin_s = 0.0;
+  double turns = 0.0; // of the carrier at the beginning, 0..1
+  double frequency_hz = 100.0;
+  std::complex<double> target;  // envelope in the end
+  std::complex<double> initial; // envelope at the beginning
+  double decay_s = 0.04;        // time constant from the one to the other
+  bool on = false;
+  double sync_part = 1.0;
+  double position_m = 0.0; // at the beginning, which the suspension takes back
+  double velocity_m_s = 0.0;
+};
+
+// With the carrier c = e^{i theta}, the envelope E and t since the beginning of the segment:
+//
+//   s = Im{(settled + changing exp(-t/decay)) c} + |E| Im{second c^2 + third c^3}
+//       + (position + return_m_s t) exp(-t/suspension)
+struct DisplacementTerms {
+  std::complex<double> settled;
+  std::complex<double> changing;
+  std::complex<double> second;
+  std::complex<double> third;
+  double return_m_s = 0.0;
+};
+[[nodiscard]] DisplacementTerms displacement_terms(const ExcitationSegment& segment,
+                                                   std::complex<double> second_harmonic,
+                                                   std::complex<double> third_harmonic);
+
 class Excitation {
 public:
   static constexpr double memory_s = 1.0;
+  static constexpr double suspension_s = 0.025;
+  using Line = std::deque<ExcitationSegment>; // in the order of their beginnings
 
   explicit Excitation(const ExciterModel& exciter)
-      : exciter_(exciter), lines_(1, Line{Segment{}}),
+      : exciter_(exciter), lines_(1, Line{ExcitationSegment{}}),
         second_(std::polar(exciter.second_harmonic, exciter.second_phase_rad)),
         third_(std::polar(exciter.third_harmonic, exciter.third_phase_rad)) {}
 
@@ -95,23 +132,18 @@ public:
   [[nodiscard]] Motion motion(double time_s, std::size_t line = 0) const;
   // Acceleration of the moving table in m/s^2 as something with these gains sees it.
   [[nodiscard]] double acceleration(const Motion& motion, const HarmonicGains& gains) const;
+  // Of the moving table in m, by one line alone.
+  [[nodiscard]] double displacement(double time_s, std::size_t line = 0) const;
+
+  // What the motion is made of.
+  [[nodiscard]] const Line& segments(std::size_t line) const { return lines_[line]; }
+  [[nodiscard]] std::complex<double> second_harmonic() const { return second_; } // of |envelope|
+  [[nodiscard]] std::complex<double> third_harmonic() const { return third_; }
+  [[nodiscard]] double wandering(double time_s) const; // factor of the envelope
 
 private:
-  struct Segment {
-    double amplitude_v = 0.0; // of the first output
-    double begin_s = 0.0;
-    double turns = 0.0; // of the carrier at the beginning, 0..1
-    double frequency_hz = 100.0;
-    std::complex<double> target;  // envelope in the end
-    std::complex<double> initial; // envelope at the beginning
-    bool on = false;
-    double sync_part = 1.0;
-  };
-  using Line = std::deque<Segment>;
   void change(Line& line, double time_s, const DriveLine& drive, bool on, bool keeps_phase) const;
-  [[nodiscard]] static const Segment& segment_at(const Line& line, double time_s);
-  [[nodiscard]] double wandering(double time_s) const;
-  [[nodiscard]] std::complex<double> envelope(const Segment& segment, double time_s) const;
+  [[nodiscard]] double displacement_in(const ExcitationSegment& segment, double time_s) const;
 
   ExciterModel exciter_;
   std::vector<Line> lines_;

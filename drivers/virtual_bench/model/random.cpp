@@ -28,7 +28,7 @@ Random::Random(std::uint64_t seed, std::string_view name) {
   }
 }
 
-std::uint64_t Random::next() {
+std::uint64_t Random::bits() {
   const std::uint64_t result = std::rotl(state_[1] * 5U, 7) * 9U;
   const std::uint64_t shifted = state_[1] << 17U;
   state_[2] ^= state_[0];
@@ -41,7 +41,7 @@ std::uint64_t Random::next() {
 }
 
 double Random::uniform() {
-  return static_cast<double>(next() >> 11U) * 0x1.0p-53;
+  return static_cast<double>(bits() >> 11U) * 0x1.0p-53;
 }
 
 double Random::normal() {

@@ -17,6 +17,7 @@ public:
   // Streams of different names are independent of each other.
   Random(std::uint64_t seed, std::string_view name);
 
+  [[nodiscard]] std::uint64_t bits();
   [[nodiscard]] double uniform(); // [0, 1)
   [[nodiscard]] double uniform(double from, double to) { return from + (to - from) * uniform(); }
   [[nodiscard]] double normal(); // mean 0, standard deviation 1
@@ -26,8 +27,6 @@ public:
   }
 
 private:
-  std::uint64_t next();
-
   std::array<std::uint64_t, 4> state_{};
   double spare_ = 0.0;
   bool has_spare_ = false;

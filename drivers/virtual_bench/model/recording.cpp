@@ -27,7 +27,11 @@ public:
   CsvFiles(const VirtualBench& bench, const std::filesystem::path& folder)
       : bench_(bench), acs_(folder / "acs.csv", std::ios::binary),
         dau_(folder / "dau.csv", std::ios::binary) {
-    acs_ << "t_ns,reference,sync\n";
+    acs_ << "t_ns";
+    for (const AcsChannel& channel : bench.acs().channels()) {
+      acs_ << ',' << channel.name;
+    }
+    acs_ << '\n';
     dau_ << "t_ns,sample_number";
     for (const UnitChannel& channel : bench.unit().channels()) {
       dau_ << ',' << channel.name;
@@ -39,10 +43,11 @@ public:
     text_.clear();
     for (std::size_t i = 0; i < samples.samples(); ++i) {
       put(text_, bench_.acs().stamp_ns(samples.first_sample + i));
-      text_ += ',';
-      put(text_, samples.counts[2 * i] * bench_.acs().reference_scale());
-      text_ += ',';
-      put(text_, samples.counts[2 * i + 1] * bench_.acs().sync_scale());
+      for (std::size_t channel = 0; channel < samples.channels; ++channel) {
+        text_ += ',';
+        put(text_, samples.counts[samples.channels * i + channel] *
+                       bench_.acs().channels()[channel].scale);
+      }
       text_ += '\n';
     }
     acs_ << text_;

@@ -58,26 +58,51 @@ Json drawn_errors(const VirtualBench& bench) {
           {"third_harmonic", bench.exciter().third_harmonic}};
 }
 
+Json drawn_optics(const Interferometer& interferometer) {
+  const InterferometerTruth& truth = interferometer.truth();
+  const TableDrift& drift = interferometer.drift();
+  Json motions = Json::array();
+  for (const SlowMotion& motion : drift.motions()) {
+    motions.push_back({{"amplitude_m", motion.amplitude_m},
+                       {"frequency_hz", motion.frequency_hz},
+                       {"phase_rad", motion.phase_rad}});
+  }
+  return {{"p_v", truth.p_v},
+          {"q_v", truth.q_v},
+          {"radius_v", truth.radius_v},
+          {"r", truth.r},
+          {"alpha_rad", truth.alpha_rad},
+          {"wavelength_m", truth.wavelength_m},
+          {"phase_0_rad", truth.phase_0_rad},
+          {"detector_delay_s", truth.detector_delay_s},
+          {"skew_s", truth.skew_s},
+          {"table_drift_m_s", drift.velocity_m_s()},
+          {"table_motions", motions}};
+}
+
 } // namespace
 
 std::string truth_json(const VirtualBench& bench, const std::vector<std::string>& frequencies_hz) {
   const BenchSettings& settings = bench.settings();
   const Preset& preset = settings.preset;
-  const Json truth = {{"preset", preset.name},
-                      {"seed", settings.seed},
-                      {"transfer_function", transfer_function(preset, frequencies_hz)},
-                      {"group_delay", group_delay(preset)},
-                      {"sample_clock",
-                       {{"mean_interval_s", preset.mean_interval_s},
-                        {"sd_s", preset.interval_sd_s},
-                        {"nominal_rate_hz", preset.nominal_rate_hz},
-                        {"thermal_cycle_s", settings.thermal_cycle_s}}},
-                      {"range_m_s2", bench.unit().range_m_s2()},
-                      {"level_per_volt", VirtualBench::level_per_volt},
-                      {"uncertainty",
-                       {{"reference_magnitude_rel", settings.reference_magnitude_rel},
-                        {"reference_phase_rad", settings.reference_phase_rad}}},
-                      {"drawn", drawn_errors(bench)}};
+  Json truth = {{"preset", preset.name},
+                {"seed", settings.seed},
+                {"transfer_function", transfer_function(preset, frequencies_hz)},
+                {"group_delay", group_delay(preset)},
+                {"sample_clock",
+                 {{"mean_interval_s", preset.mean_interval_s},
+                  {"sd_s", preset.interval_sd_s},
+                  {"nominal_rate_hz", preset.nominal_rate_hz},
+                  {"thermal_cycle_s", settings.thermal_cycle_s}}},
+                {"range_m_s2", bench.unit().range_m_s2()},
+                {"level_per_volt", VirtualBench::level_per_volt},
+                {"uncertainty",
+                 {{"reference_magnitude_rel", settings.reference_magnitude_rel},
+                  {"reference_phase_rad", settings.reference_phase_rad}}},
+                {"drawn", drawn_errors(bench)}};
+  if (const auto& interferometer = bench.acs().interferometer()) {
+    truth["interferometer"] = drawn_optics(*interferometer);
+  }
   return truth.dump(2) + "\n";
 }
 

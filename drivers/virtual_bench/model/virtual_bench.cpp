@@ -71,6 +71,7 @@ AcsSettings acs_settings(const BenchSettings& settings) {
   acs.reference_faults = settings.faults.reference;
   acs.sync_faults = settings.faults.sync_acs;
   acs.loss = settings.faults.acs_loss;
+  acs.interferometer = settings.interferometer;
   return acs;
 }
 

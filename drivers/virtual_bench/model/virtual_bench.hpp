@@ -33,9 +33,10 @@ struct BenchSettings {
   double reference_phase_rad = 1.7e-3;
   GeneratorWords generator_words = GeneratorWords::dg4000;
   BenchFaults faults;
-  std::optional<ResponseTable> response; // of z, in place of the preset's
-  bool acs_utc = false;                  // the ACS stamps in UTC too
-  bool sync_is_first_output = false;     // see acs_instrument.hpp
+  std::optional<ResponseTable> response;                // of z, in place of the preset's
+  bool acs_utc = false;                                 // the ACS stamps in UTC too
+  bool sync_is_first_output = false;                    // see acs_instrument.hpp
+  std::optional<InterferometerSettings> interferometer; // of the ACS, in place of its reference
   // The instant of bench time 0 in UTC: ACS and unit then keep UTC, as instruments with a GPS
   // receiver do, instead of epochs of their own.
   std::optional<std::int64_t> utc_origin_ns;

@@ -18,6 +18,7 @@ constexpr double min_slice_s = 0.004; // of bench time, unless somebody waits fo
 constexpr double max_slice_s = 0.02;
 constexpr double max_arrears_s = 0.5; // host time that is made up for after a delay
 constexpr double frame_s = 0.05;
+constexpr double max_frame_samples = 32768.0; // what one slice adds stays below the stream's limit
 constexpr double max_backlog_s = 0.1;
 constexpr double datagram_burst = 32.0;
 constexpr std::size_t max_receive_queue =
@@ -149,7 +150,8 @@ bool BenchServer::consumers_keep_up() {
       std::min(datagram_burst, datagram_credit_ + passed_s * settings_.datagrams_per_s);
   credit_at_ = now;
   const double backlog_limit = max_backlog_s * static_cast<double>(bench_.settings().acs_rate_hz) *
-                               2.0 * sizeof(std::int32_t);
+                               static_cast<double>(bench_.acs().channels().size()) *
+                               sizeof(std::int32_t);
   return datagram_credit_ > 0.0 && datagrams_are_taken() &&
          static_cast<double>(stream_.backlog_bytes()) <= backlog_limit;
 }
@@ -228,7 +230,8 @@ void BenchServer::advance_to(double time_s) {
   if (!stream_.connected()) {
     frame_.counts.clear();
   } else if (static_cast<double>(frame_.samples()) >=
-             frame_s * static_cast<double>(bench_.settings().acs_rate_hz)) {
+             std::min(frame_s * static_cast<double>(bench_.settings().acs_rate_hz),
+                      max_frame_samples)) {
     send_frame();
   }
 }

@@ -37,6 +37,9 @@ struct Words {
   std::vector<std::string> scope_faults;
   std::size_t scope_pieces = 0;
   std::string response;
+  std::optional<std::int64_t> acs_rate_hz;
+  std::optional<double> interferometer_nm;
+  device::InterferometerSettings interferometer;
   std::vector<std::string> faults;
   std::vector<std::string> frequencies{"10", "20", "40", "80", "160"};
   std::vector<double> levels{10.0};
@@ -98,8 +101,8 @@ void add_model_options(CLI::App& app, Words& words, BenchOptions& options) {
   app.add_option("--levels", words.levels,
                  "in m/s^2, one or one per frequency; the highest decides the ranges")
       ->delimiter(',');
-  add_default(app, "--acs-rate", options.bench.acs_rate_hz, "samples per second",
-              CLI::Range(100, 1000000));
+  add_checked(app, "--acs-rate", words.acs_rate_hz,
+              "samples per second (20000; of an interferometer 500000)", CLI::Range(100, 1000000));
   app.add_flag("--acs-utc", options.bench.acs_utc, "the ACS stamps in UTC, as the unit does");
   app.add_flag(
       "--sync-is-first-output", options.bench.sync_is_first_output,
@@ -113,6 +116,21 @@ void add_model_options(CLI::App& app, Words& words, BenchOptions& options) {
   add_checked(app, "--reference-phase-rad", options.bench.reference_phase_rad,
               "standard uncertainty in rad", CLI::Range(0.0, 1.0));
   add_default(app, "--sensor", words.sensor, "id of the sensor in the unit");
+}
+
+void add_interferometer_options(CLI::App& app, Words& words) {
+  add_checked(app, "--interferometer", words.interferometer_nm,
+              "the ACS records the two signals of a laser interferometer instead of a reference; "
+              "wavelength in air, in nm",
+              CLI::Range(200.0, 20000.0));
+  add_default(app, "--wavelength-u-rel", words.interferometer.u_wavelength_rel,
+              "of the interferometer: standard uncertainty of the wavelength, relative",
+              CLI::Range(0.0, 1e-2));
+  add_default(app, "--detector-bandwidth", words.interferometer.detector_bandwidth_hz,
+              "of the interferometer, in Hz", CLI::PositiveNumber);
+  add_default(app, "--skew-u", words.interferometer.u_skew_s,
+              "of the interferometer: standard uncertainty of the delay of u2 after u1, in s",
+              CLI::Range(0.0, 1e-6));
 }
 
 void add_path_options(CLI::App& app, Words& words, BenchOptions& options) {
@@ -149,6 +167,7 @@ void add_options(CLI::App& app, Words& words, BenchOptions& options) {
   add_instrument_options(app, words, options);
   add_can_options(app, words, options);
   add_model_options(app, words, options);
+  add_interferometer_options(app, words);
   add_path_options(app, words, options);
   add_recording_options(app, words, options);
 }
@@ -310,6 +329,28 @@ Expected<void> read_response(const Words& words, BenchOptions& options) {
   return {};
 }
 
+// After the faults.
+Expected<void> read_acs(const Words& words, device::BenchSettings& bench) {
+  constexpr std::int64_t lowest_rate_hz = 100'000; // its motion is followed in blocks of samples
+  if (!words.interferometer_nm) {
+    bench.acs_rate_hz = words.acs_rate_hz.value_or(bench.acs_rate_hz);
+    return {};
+  }
+  bench.acs_rate_hz = words.acs_rate_hz.value_or(500'000);
+  if (bench.acs_rate_hz < lowest_rate_hz) {
+    return refuse("--acs-rate {}: an interferometer needs at least {} samples per second",
+                  bench.acs_rate_hz, lowest_rate_hz);
+  }
+  if (bench.faults.reference != device::ChannelFaults{} ||
+      bench.faults.sync_acs != device::ChannelFaults{}) {
+    return refuse("--fault: the channels of an interferometer have no faults at reference or "
+                  "sync_acs");
+  }
+  bench.interferometer = words.interferometer;
+  bench.interferometer->wavelength_m = *words.interferometer_nm * 1e-9;
+  return {};
+}
+
 Expected<void> read_words(const Words& words, BenchOptions& options) {
   const auto preset = device::preset_by_name(words.preset);
   if (!preset) {
@@ -334,6 +375,7 @@ Expected<void> read_words(const Words& words, BenchOptions& options) {
   options.server.sensor_id = *sensor;
   return read_addresses(words, options.server)
       .and_then([&] { return read_bench_faults(words, options.bench.faults); })
+      .and_then([&] { return read_acs(words, options.bench); })
       .and_then([&] { return read_programme(words, options); })
       .and_then([&] { return read_response(words, options); })
       .and_then([&] { return read_triggered(words, options); })

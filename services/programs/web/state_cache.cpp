@@ -147,7 +147,8 @@ Text StateCache::results(const std::string& name, const std::string& run_name,
 Text StateCache::figures(const std::string& name, const std::string& run_name,
                          const std::string& channel, dyncal::figures::ErrorBars error_bars) {
   const std::lock_guard lock(mutex_);
-  const network::Run* run = find_run(laboratory_.bench(name), run_name);
+  const network::Bench* bench = laboratory_.bench(name);
+  const network::Run* run = find_run(bench, run_name);
   if (run == nullptr) {
     return nullptr;
   }
@@ -160,7 +161,8 @@ Text StateCache::figures(const std::string& name, const std::string& run_name,
     return made->text;
   }
   Json pictures = Json::array();
-  for (const dyncal::figures::Figure& figure : live::run_figures(name, *run, channel, error_bars)) {
+  for (const dyncal::figures::Figure& figure :
+       live::run_figures(*bench, *run, channel, error_bars)) {
     pictures.push_back(picture_json(figure));
   }
   if (pictures.empty()) {

@@ -64,7 +64,8 @@ void add_pictures(const std::filesystem::path& run, ReportContents& contents) {
     for (std::filesystem::directory_iterator entry(folder, unknown), end; !unknown && entry != end;
          entry.increment(unknown)) {
       const std::string name = entry->path().filename().string();
-      if (entry->path().extension() == ".svg" && name.starts_with("interval-")) {
+      if (entry->path().extension() == ".svg" &&
+          (name.starts_with("interval-") || name.starts_with("ellipse-"))) {
         paths.push_back(entry->path());
       }
     }
@@ -156,8 +157,8 @@ std::string part_of(const ReportContents& contents, std::size_t first_figure) {
   }
   html += linearity_section(contents) + conformity_section(contents) + flag_section(contents) +
           closures_section(contents) + conditions_section(contents) + equipment_section(contents) +
-          losses_section(contents) + clock_section(contents) + remarks(contents) +
-          signatures(contents);
+          losses_section(contents) + clock_section(contents) + interferometer_section(contents) +
+          remarks(contents) + signatures(contents);
   html += other_channels(contents) + devices_section(contents) + software_section(contents) +
           budget_annex(contents) + single_results(contents) + journal_section(contents) +
           recipe_section(contents);

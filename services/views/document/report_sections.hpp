@@ -78,11 +78,15 @@ struct ReportContents {
 // What was decided of tolerances (report_conformity.cpp); empty without any.
 [[nodiscard]] std::string conformity_section(const ReportContents& contents);
 
+// Figures of the run folder, which are in English, with the facts of the sample clock in any
+// language (report_clock.cpp). Empty where there are none.
+[[nodiscard]] std::string clock_section(const ReportContents& contents);
+[[nodiscard]] std::string interferometer_section(const ReportContents& contents);
+
 // What they were measured with (report_setup.cpp).
 [[nodiscard]] std::string conditions_section(const ReportContents& contents);
 [[nodiscard]] std::string losses_section(const ReportContents& contents);
 [[nodiscard]] std::string closures_section(const ReportContents& contents);
-[[nodiscard]] std::string clock_section(const ReportContents& contents);
 [[nodiscard]] std::string equipment_section(const ReportContents& contents);
 [[nodiscard]] std::string devices_section(const ReportContents& contents);
 [[nodiscard]] std::string software_section(const ReportContents& contents);

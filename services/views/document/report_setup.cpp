@@ -91,38 +91,6 @@ std::map<std::string, SourceSamples> losses_of(const StoredResult& result,
   return losses;
 }
 
-std::string microseconds(double seconds, int decimals, Language language) {
-  return std::isfinite(seconds)
-             ? decimal(language, fmt::format("{:.{}f} µs", 1e6 * seconds, decimals))
-             : "";
-}
-
-std::string clock_facts(const analysis::SampleClockStatistics& clock, Language language) {
-  const double u_interval_s = clock.u_mean_interval_s;
-  const bool has_u = std::isfinite(u_interval_s) && u_interval_s > 0.0;
-  DefinitionTable table(language);
-  table.add(sentences::mean_rate,
-            has_u && clock.mean_interval_s > 0.0
-                ? stated_text(clock.mean_rate_hz, clock.of_mean_rate(), "Hz", language)
-                : sentences::rate_without_uncertainty(
-                      language, decimal(language, fmt::format("{:.6g}", clock.mean_rate_hz))));
-  if (clock.nominal_rate_hz > 0.0 && has_u) {
-    analysis::CombinedUncertainty of_deviation_ppm = clock.of_rate_deviation();
-    of_deviation_ppm.u *= 1e6;
-    table.add(sentences::rate_deviation,
-              stated_text(1e6 * clock.rate_deviation_rel(), of_deviation_ppm, "ppm", language));
-  }
-  table.add(sentences::intervals, std::to_string(clock.intervals));
-  table.add(sentences::median, fmt::format("{}; {}; {}", microseconds(clock.median_s, 3, language),
-                                           microseconds(clock.minimum_s, 3, language),
-                                           microseconds(clock.maximum_s, 3, language)));
-  table.add(sentences::standard_deviation, microseconds(clock.sd_s, 4, language));
-  table.add(sentences::tick, microseconds(clock.tick_s, 5, language));
-  table.add(sentences::events, std::to_string(clock.event_count));
-  table.add(sentences::lost_in_run, std::to_string(clock.lost));
-  return table.finish();
-}
-
 // A delay of the recipe, with all its digits.
 std::string delay_text(double delay_s, Language language) {
   return decimal(language, fmt::format("{:g}", 1e6 * delay_s));
@@ -270,27 +238,6 @@ std::string closures_section(const ReportContents& contents) {
     if (!table.empty()) {
       html += element("h2", sentences::closures_of(language, channel)) + table.finish();
     }
-  }
-  return html;
-}
-
-std::string clock_section(const ReportContents& contents) {
-  const Language language = contents.language;
-  std::string html;
-  for (const ClockReport& report : contents.result.clocks) {
-    html += element("h2", sentences::clock_of(language, report.source)) +
-            clock_facts(report.clock, language);
-  }
-  if (language != Language::english && !contents.pictures.empty()) {
-    return html + element("p", sentences::clock_figures, language); // they are drawn in English
-  }
-  for (const EmbeddedPicture& picture : contents.pictures) {
-    html += fmt::format("<figure><img src=\"{}\" alt=\"{}\"></figure>\n",
-                        escaped(picture.data_uri()), escaped(picture.file_name));
-  }
-  for (const std::string& reason : contents.left_out) {
-    const std::string why = language == Language::english ? ": " + reason : "";
-    html += element("p", sentences::figure_left_out(language, why), "warning");
   }
   return html;
 }

@@ -10,10 +10,10 @@ namespace dyncal::inline views::live {
 namespace {
 
 // As files are made of it, but with the results of one channel.
-RunOutcome outcome_of(const std::string& bench, const network::Run& run,
+RunOutcome outcome_of(const network::Bench& bench, const network::Run& run,
                       const std::string& channel) {
   RunOutcome outcome;
-  outcome.bench = bench;
+  outcome.bench = bench.name;
   outcome.run = run.name;
   for (const auto& [key, result] : run.results) {
     if (result.channel == channel) {
@@ -25,7 +25,7 @@ RunOutcome outcome_of(const std::string& bench, const network::Run& run,
 
 } // namespace
 
-std::vector<figures::Figure> run_figures(const std::string& bench, const network::Run& run,
+std::vector<figures::Figure> run_figures(const network::Bench& bench, const network::Run& run,
                                          const std::string& channel,
                                          figures::ErrorBars error_bars) {
   const RunOutcome outcome = outcome_of(bench, run, channel);
@@ -44,6 +44,15 @@ std::vector<figures::Figure> run_figures(const std::string& bench, const network
   if (report != run.clock_reports.end()) {
     for (figures::Figure& figure : clock_figures(outcome, report->second)) {
       drawn.push_back(std::move(figure));
+    }
+  }
+  const bool is_current = &run == bench.current_run();
+  for (const auto& [source_name, source] : bench.sources) {
+    if (is_current && source.description) {
+      for (figures::Figure& figure :
+           interferometer_figures(outcome, source_name, *source.description)) {
+        drawn.push_back(std::move(figure));
+      }
     }
   }
   return drawn;

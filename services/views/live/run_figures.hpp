@@ -6,14 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "services/network/run.hpp"
+#include "services/network/bench.hpp"
 #include "services/views/figures/transfer_function.hpp"
 
 namespace dyncal::inline views::live {
 
 // Transfer function and deviations of the channel, then the sample clock of its source as far as it
-// was reported. Empty: the run has no result of this channel.
-[[nodiscard]] std::vector<figures::Figure> run_figures(const std::string& bench,
+// was reported; of the bench's current run also the interferometers, as their sources describe them
+// now. Empty: the run has no result of this channel.
+[[nodiscard]] std::vector<figures::Figure> run_figures(const network::Bench& bench,
                                                        const network::Run& run,
                                                        const std::string& channel,
                                                        figures::ErrorBars error_bars);

@@ -8,6 +8,7 @@
 #include "services/base/output_file.hpp"
 #include "services/contract/run_identity.hpp"
 #include "services/views/figures/deviation.hpp"
+#include "services/views/figures/quadrature_ellipse.hpp"
 #include "services/views/figures/sample_clock.hpp"
 #include "services/views/report/closures_csv.hpp"
 #include "services/views/report/result_table.hpp"
@@ -53,6 +54,26 @@ std::vector<figures::Figure> clock_figures(const RunOutcome& outcome, const Cloc
   return drawn;
 }
 
+std::vector<figures::Figure> interferometer_figures(const RunOutcome& outcome,
+                                                    const std::string& source,
+                                                    const drivers::SourceDescription& description) {
+  std::vector<figures::Figure> drawn;
+  for (const drivers::QuadratureSignals& signals : description.quadrature_signals) {
+    const std::string channel = source + "/" + signals.channel;
+    figures::QuadratureEllipseData data{
+        .title = {fmt::format("Interferometer of {}", channel), run_line(outcome)},
+        .ellipse = {signals.centre_u1, signals.centre_u2, signals.radius_ratio,
+                    signals.quadrature_error_rad, signals.radius_u1},
+        .displacement_per_turn_m = signals.displacement_per_turn_m,
+        .u_ellipse_rad = signals.u_ellipse_rad,
+        .periodic_error_rad = signals.periodic_error_rad,
+        .below = fmt::format("Ellipse: {}, {:.3g} turns of phase.", signals.ellipse_from,
+                             signals.turns_covered)};
+    drawn.push_back(figures::quadrature_ellipse_figure(data, file_name("ellipse", channel)));
+  }
+  return drawn;
+}
+
 std::vector<figures::Figure> run_figures(const RunOutcome& outcome, figures::ErrorBars error_bars) {
   std::vector<figures::Figure> drawn;
   for (const TransferFunction& function : outcome.transfer_functions) {
@@ -66,6 +87,12 @@ std::vector<figures::Figure> run_figures(const RunOutcome& outcome, figures::Err
   }
   for (const ClockReport& report : outcome.clock_reports) {
     for (figures::Figure& figure : clock_figures(outcome, report)) {
+      drawn.push_back(std::move(figure));
+    }
+  }
+  for (const RunSource& source : outcome.sources) {
+    for (figures::Figure& figure :
+         interferometer_figures(outcome, source.source, source.description)) {
       drawn.push_back(std::move(figure));
     }
   }

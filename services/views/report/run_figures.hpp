@@ -1,7 +1,7 @@
 // The figures of a run: for every channel that responds magnitude and phase over frequency, and how
 // far the repetitions are from their mean; for the sample clock the histogram of intervals,
-// intervals over temperature and over time (paper figures 5 to 9). As files, each is SVG and CSV.
-// Any thread.
+// intervals over temperature and over time (paper figures 5 to 9); for an interferometer its
+// ellipse and what that leaves. As files, each is SVG and CSV. Any thread.
 #pragma once
 
 #include <filesystem>
@@ -28,6 +28,10 @@ channel_figures(const figures::TransferFunctionData& data, const std::string& ch
 // Those of one source; none of a source whose samples have no stamps.
 [[nodiscard]] std::vector<figures::Figure> clock_figures(const RunOutcome& outcome,
                                                          const ClockReport& report);
+// Of every displacement that the source makes of quadrature signals, as it described them last.
+[[nodiscard]] std::vector<figures::Figure>
+interferometer_figures(const RunOutcome& outcome, const std::string& source,
+                       const drivers::SourceDescription& description);
 
 // Fails (bad_file) when a file cannot be written.
 [[nodiscard]] Expected<std::vector<std::filesystem::path>>

@@ -124,3 +124,22 @@ def of_clock(report, subtitle):
                   dots=[[23 + 0.01 * i, 1e-3 * c["mean_interval_ns"] + 0.02 * math.sin(i)]
                         for i, c in enumerate(course)], dots_label="single intervals")],
             360, subtitle)]
+
+
+def of_interferometer(displacement, subtitle):
+    centre, radius, ratio, lag = (0.021, -0.018), 0.64, 1.046, 0.087
+    turn = [2 * math.pi * i / 180 for i in range(181)]
+    raw = [[centre[0] + radius * math.cos(x), centre[1] + radius / ratio * math.sin(x - lag), 0, 0]
+           for x in turn]
+    circle = [[radius * math.cos(x), radius * math.sin(x), 0, 0] for x in turn]
+    orders = [one_series(f"order {k}: {nm} nm", [[math.degrees(x), nm * math.sin(k * x), 0, 0]
+                                                 for x in turn],
+                         colour=COLOURS[k % 6], joined=True)
+              for k, nm in enumerate((0.004, 0.011, 0.002, 0.27), 1)]
+    return [picture("ellipse", f"Interferometer of {displacement}", [
+        panel("u1, corrected X, in the unit of the signals", "u2, Y", [
+            one_series("as recorded", raw, colour=COLOURS[1], joined=True),
+            one_series("corrected", circle, colour=COLOURS[0], joined=True)]),
+        panel("phase in degrees", "error of the displacement in nm", orders,
+              band=[[0, -0.01, 0.01], [360, -0.01, 0.01]], band_label="± u of the ellipse")],
+        374, subtitle)]

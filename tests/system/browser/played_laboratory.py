@@ -50,6 +50,7 @@ class Laboratory:
         self.flag_legend = [state.FLAG]
         self.journals = {}  # by bench: what was noted of its run
         self.figure_changes = {}  # of every picture
+        self.interferometers = set()  # benches that have one
         self.figures_wait = None  # an event: no figures before it is set
 
     def now_ms(self):
@@ -164,6 +165,8 @@ class Laboratory:
             channel, line, points, state.transfer(points), is_over, bars)
         if is_over:
             pictures += played_figures.of_clock(state.clock_report(), line)
+        if name in self.interferometers:
+            pictures += played_figures.of_interferometer("acs/displacement", line)
         return {"number": self.number, "bench": name, "run": run, "channel": channel,
                 "bars": bars, "pictures": [{**one, **self.figure_changes} for one in pictures]}
 

@@ -141,6 +141,32 @@ class Views(PageCase):
         for i in range(8):
             page.wait_for(f"{drawn_pixels(i)} > 200")
 
+    def test_run_shows_the_ellipse_of_its_interferometer(self):
+        panel = "document.querySelector('[data-panel=interferometer]')"
+        self.laboratory.interferometers.add("acc-2")
+        page = self.open("run/acc-1")
+        page.wait_for("document.querySelectorAll('.canvas').length > 2")
+        self.assertTrue(page.value(f"{panel}.hidden"))
+        page = self.open("run/acc-2")
+        page.wait_for("document.querySelectorAll('.canvas').length === 10")
+        self.assertFalse(page.value(f"{panel}.hidden"))
+        self.assertIn("Interferometer of acs/displacement",
+                      page.value(text_of("[data-panel=interferometer] h3")))
+        for text in ("as recorded", "corrected", "order 4: 0.27 nm", "u of the ellipse"):
+            self.assertIn(text, page.value(text_of("[data-panel=interferometer]")))
+        page.wait_for(f"{panel}.querySelectorAll('.canvas').length === 2")
+        first = page.value(f"[...document.querySelectorAll('.canvas')].indexOf("
+                           f"{panel}.querySelector('.canvas'))")
+        for chart in (first, first + 1):
+            page.wait_for(f"{drawn_pixels(chart)} > 500")
+        # The curve closes: as many pixels to the left of the middle of the circle as to the right.
+        columns = page.value(
+            f"(c => {{ const w = c.width, h = c.height, n = [0, 0]; const d = "
+            "c.getContext('2d').getImageData(0, 0, w, h).data; for (let i = 3, p = 0; "
+            "i < d.length; i += 4, ++p) n[p % w < w / 2 ? 0 : 1] += d[i] > 0; return n; })"
+            f"(document.querySelectorAll('.canvas')[{first}].querySelector('canvas'))")
+        self.assertGreater(min(columns) / max(columns), 0.5)
+
     def test_run_shows_its_closures_the_open_ones_first(self):
         page = self.open("run/acc-2")
         page.wait_for("document.querySelectorAll('[data-closure]').length === 3")

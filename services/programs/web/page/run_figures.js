@@ -22,6 +22,12 @@ export class RunFigures {
     this.message = element("p", { class: "quiet" }, NOTHING);
     this.response = new PictureList({ on_pick });
     this.clock = new PictureList({ is_pair: true });
+    this.interferometer = new PictureList();
+    this.interferometer_panel = element("section", { class: "panel",
+                                                     "data-panel": "interferometer" },
+                                        element("h2", {}, "Interferometer"),
+                                        this.interferometer.root);
+    set_shown(this.interferometer_panel, false);
     this.root = element("section", { class: "panel", "data-panel": "figures",
                                      "aria-label": "Transfer function" },
                         element("h2", {}, "Transfer function"), this.message, this.response.root);
@@ -74,19 +80,27 @@ export class RunFigures {
       return;
     }
     this.shown = asked;
-    const of_clock = ({ name }) => String(name).startsWith("interval-");
     const pictures = answer.pictures ?? [];
-    this.response.show(pictures.filter((picture) => !of_clock(picture)));
-    this.clock.show(pictures.filter(of_clock));
+    const named = (...starts) => pictures.filter(({ name }) =>
+      starts.some((start) => String(name).startsWith(start)));
+    this.response.show(named("transfer-function", "deviation"));
+    this.clock.show(named("interval-"));
+    this.show_interferometer(named("ellipse"));
     set_shown(this.message, false);
     set_attribute(this.root, "data-number", answer.number);
     set_attribute(this.root, "data-channel", answer.channel);
+  }
+
+  show_interferometer(pictures) {
+    set_shown(this.interferometer_panel, pictures.length > 0);
+    this.interferometer.show(pictures);
   }
 
   clear(message) {
     this.shown = null;
     this.response.show([]);
     this.clock.show([]);
+    this.show_interferometer([]);
     set_text(this.message, message);
     set_shown(this.message, true);
     set_attribute(this.root, "data-number", null);
@@ -97,6 +111,7 @@ export class RunFigures {
     clearTimeout(this.retry);
     this.response.destroy();
     this.clock.destroy();
+    this.interferometer.destroy();
   }
 }
 

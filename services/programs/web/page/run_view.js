@@ -68,8 +68,8 @@ export class RunView {
               this.channel.root, this.bars.root),
       this.note, this.progress, this.delay,
       this.figures.root, this.comparison.root, this.budget.root, this.flags.root, this.closures.root,
-      this.conformity.root, this.table.root, this.clock_panel.root, this.journal.root,
-      this.files.root,
+      this.conformity.root, this.table.root, this.figures.interferometer_panel,
+      this.clock_panel.root, this.journal.root, this.files.root,
     );
   }
 

@@ -146,6 +146,57 @@ TEST_F(ServedBench, RunsAStepAsFastAsTheConsumersAllow) {
   EXPECT_EQ(datagrams.size() - static_cast<std::size_t>(data), 12U); // two bursts of six
 }
 
+class ServedInterferometer : public ServedBench {
+protected:
+  ServedInterferometer() : ServedBench(settings()) {}
+  static BenchSettings settings() {
+    BenchSettings settings = bench_settings();
+    settings.acs_rate_hz = 1'000'000; // frames of 50 ms would be too long for the stream
+    settings.interferometer.emplace();
+    return settings;
+  }
+};
+
+TEST_F(ServedInterferometer, SendsBothSignalsAndSync) {
+  start(0.0, 1.0);
+  acs::SocketAcs acs({address(server_->acs_port())});
+  const auto description = acs.describe();
+  ASSERT_TRUE(description) << description.error().message;
+  ASSERT_EQ(description->channels.size(), 3U);
+  tests::CollectingSink sink;
+  std::jthread reading([&] { EXPECT_TRUE(acs.run(sink)); });
+  auto connected = generator::ScpiGenerator::connect(address(server_->generator_port()));
+  ASSERT_TRUE(connected) << connected.error().message;
+  generator::Generator& source = **connected;
+  ASSERT_TRUE(source.set_frequency("80"));
+  ASSERT_TRUE(source.set_amplitude_v(0.2));
+  ASSERT_TRUE(source.set_output(true));
+  static_cast<void>(source.wait_until_s(1.0, {}));
+  reading.join();
+
+  std::uint64_t next = sink.blocks.front().first_sample;
+  double high[3] = {-10.0, -10.0, -10.0};
+  double low[3] = {10.0, 10.0, 10.0};
+  for (const SampleBlock& block : sink.blocks) {
+    ASSERT_EQ(block.first_sample, next);
+    next += block.samples;
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      const auto values =
+          block.values.begin() + static_cast<std::ptrdiff_t>(channel * block.samples);
+      const auto [least, most] =
+          std::minmax_element(values, values + static_cast<std::ptrdiff_t>(block.samples));
+      low[channel] = std::min(low[channel], *least);
+      high[channel] = std::max(high[channel], *most);
+    }
+  }
+  EXPECT_NEAR(static_cast<double>(next), 1e6, 2.0);
+  const InterferometerTruth& truth = bench_.acs().interferometer()->truth();
+  EXPECT_NEAR((high[0] - low[0]) / 2.0, truth.radius_v, 0.02 * truth.radius_v);
+  EXPECT_NEAR((high[0] + low[0]) / 2.0, truth.p_v, 0.01);
+  EXPECT_NEAR((high[1] - low[1]) / 2.0, truth.radius_v / truth.r, 0.02 * truth.radius_v);
+  EXPECT_NEAR(high[2], VirtualBench::sync_amplitude_v, 0.02);
+}
+
 TEST_F(ServedBench, KeepsRealTimeWhenAskedTo) {
   start(2.0, 1.0);
   const auto begin = std::chrono::steady_clock::now();

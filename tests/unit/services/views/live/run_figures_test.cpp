@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "services/bus/memory/stepped_clock.hpp"
+#include "services/contract/source_description.hpp"
 #include "services/evaluation/result/result_messages.hpp"
 #include "services/network/bus_state.hpp"
 #include "services/views/report/picture_json.hpp"
@@ -83,7 +84,8 @@ protected:
     }
   }
   std::vector<figures::Figure> figures(ErrorBars bars, const std::string& of = channel) {
-    return run_figures("acc-1", laboratory_.bench("acc-1")->runs.at("r1"), of, bars);
+    const network::Bench& bench = *laboratory_.bench("acc-1");
+    return run_figures(bench, bench.runs.at("r1"), of, bars);
   }
 
   bus::SteppedClock clock_;
@@ -134,6 +136,30 @@ TEST_F(RunFigures, ShowPlainMeansAndBarsOfRepetitionsWhileTheRunLasts) {
   EXPECT_EQ(without[0].picture.panels[0].series[1].label, "#1");
   EXPECT_EQ(without[0].picture.panels[0].series[1].points[0].half_bar, 0.0);
   EXPECT_EQ(without[1].picture.panels[0].series[0].points[0].half_bar, 0.0);
+}
+
+// As the source tells it now: of an earlier run nobody knows it any more.
+TEST_F(RunFigures, HaveTheEllipseOfTheCurrentRun) {
+  take_all(finished_run());
+  drivers::SourceDescription acs;
+  acs.quadrature_signals.push_back({.channel = "displacement",
+                                    .displacement_per_turn_m = 316e-9,
+                                    .radius_u1 = 0.64,
+                                    .ellipse_from = "the running signals",
+                                    .u_ellipse_rad = {1e-4, 1e-4},
+                                    .periodic_error_rad = {1e-4, 1e-4, 1e-4, 1e-3}});
+  wire::SourceDescription message = to_message(acs);
+  message.bench("acc-1");
+  message.source("acs");
+  laboratory_.take(message);
+  const auto drawn = figures(ErrorBars::standard);
+  ASSERT_EQ(drawn.size(), 6U);
+  EXPECT_EQ(drawn.back().name, "ellipse-acs-displacement");
+  EXPECT_EQ(drawn.back().picture.title.title, "Interferometer of acs/displacement");
+  EXPECT_EQ(drawn.back().picture.panels.at(0).series.size(), 4U);
+  const network::Bench& bench = *laboratory_.bench("acc-1");
+  const network::Run earlier = bench.runs.at("r1");
+  EXPECT_EQ(run_figures(bench, earlier, channel, ErrorBars::standard).size(), 5U);
 }
 
 TEST_F(RunFigures, AreThoseOfAChannelAlsoIfItDoesNotRespond) {
