@@ -34,7 +34,10 @@ FLOORS = {
         ["files/tdms", "link"],
         ["can/bus", "files"],
         ["can/dbc", "can/time"],
-        ["acs", "alsa", "can", "dso", "generator", "smartup", "tss", "virtual_bench/model"],
+        [
+            *("acs", "alsa", "can", "dso", "generator", "smartup", "text_stream", "tss"),
+            "virtual_bench/model",
+        ],
         ["virtual_bench/can", "virtual_bench/wire"],
         ["virtual_bench"],
     ],
