@@ -1,7 +1,6 @@
 #include "drivers/generator/left_over_state.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
 #include <string>
@@ -23,9 +22,16 @@ constexpr LeftOverState offset{"DC offset", ":SOURce1:VOLTage:OFFSet 0", offset_
 constexpr LeftOverState phase{"start phase", ":SOURce1:PHASe 0", ":SOURce1:PHASe?"};
 constexpr LeftOverState polarity{"polarity", ":OUTPut1:POLarity NORMal", ":OUTPut1:POLarity?"};
 
-constexpr std::array of_rigol{burst, sweep, modulation, offset, phase, polarity};
-constexpr std::array of_keysight{burst, sweep, am, fm, pm, sum, offset, phase, polarity};
-constexpr std::array of_unknown{burst, sweep, modulation, am, fm, pm, sum, offset, phase, polarity};
+// One row a family: name, words of *IDN?, and what may be left in it.
+const std::vector<GeneratorFamily>& families() {
+  static const std::vector<GeneratorFamily> rows{
+      {"keysight", {{",335"}, {",336"}}, {burst, sweep, am, fm, pm, sum, offset, phase, polarity}},
+      {"rigol",
+       {{"RIGOL", ",DG"}, {"DYNCAL VIRTUAL BENCH"}},
+       {burst, sweep, modulation, offset, phase, polarity}},
+  };
+  return rows;
+}
 
 std::string upper(std::string_view text) {
   std::string result(text);
@@ -37,28 +43,22 @@ std::string upper(std::string_view text) {
 
 } // namespace
 
-GeneratorFamily family_of(std::string_view identity) {
-  const std::string text = upper(identity);
-  const auto names = [&](const char* name) { return text.find(name) != std::string::npos; };
-  if (names(",335") || names(",336")) {
-    return GeneratorFamily::keysight;
-  }
-  if ((names("RIGOL") && names(",DG")) || names("DYNCAL VIRTUAL BENCH")) {
-    return GeneratorFamily::rigol;
-  }
-  return GeneratorFamily::unknown;
+std::span<const GeneratorFamily> generator_families() {
+  return families();
 }
 
-std::span<const LeftOverState> left_over_states(GeneratorFamily family) {
-  switch (family) {
-  case GeneratorFamily::rigol:
-    return of_rigol;
-  case GeneratorFamily::keysight:
-    return of_keysight;
-  case GeneratorFamily::unknown:
-    break;
-  }
-  return of_unknown;
+const GeneratorFamily& family_of(std::string_view identity, std::span<const GeneratorFamily> rows) {
+  static const GeneratorFamily unknown{
+      "unknown", {}, {burst, sweep, modulation, am, fm, pm, sum, offset, phase, polarity}, false};
+  const std::string text = upper(identity);
+  const auto has_all = [&](const std::vector<std::string_view>& words) {
+    return std::ranges::all_of(
+        words, [&](std::string_view word) { return text.find(word) != std::string::npos; });
+  };
+  const auto found = std::ranges::find_if(rows, [&](const GeneratorFamily& row) {
+    return std::ranges::any_of(row.identities, has_all);
+  });
+  return found == rows.end() ? unknown : *found;
 }
 
 std::optional<bool> says_reset(std::string_view answer) {

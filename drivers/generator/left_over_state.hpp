@@ -10,19 +10,15 @@
 //
 // An answer of "ON" or "1", of "INVerted", or of a number that is not 0 contradicts a reset; one
 // that says neither is no answer. Offset in V, phase in the instrument's unit. Another family is
-// another row of the table in left_over_state.cpp. Pure functions; any thread.
+// a row of `families` in left_over_state.cpp. Pure functions; any thread.
 #pragma once
 
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 namespace dyncal::drivers::generator {
-
-enum class GeneratorFamily { unknown, rigol, keysight };
-
-// `identity`: the answer to *IDN?.
-[[nodiscard]] GeneratorFamily family_of(std::string_view identity);
 
 struct LeftOverState {
   const char* name;  // for people
@@ -30,7 +26,21 @@ struct LeftOverState {
   const char* query;
 };
 
-[[nodiscard]] std::span<const LeftOverState> left_over_states(GeneratorFamily family);
+struct GeneratorFamily { // a row
+  const char* name;
+  // An instrument is of the family where the answer to *IDN?, in capitals, has all words of one of
+  // these lists in it.
+  std::vector<std::vector<std::string_view>> identities;
+  std::vector<LeftOverState> states;
+  bool is_known = true;
+};
+
+[[nodiscard]] std::span<const GeneratorFamily> generator_families();
+
+// The first row that the answer to *IDN? fits; where none does, one of all states that is not
+// known.
+[[nodiscard]] const GeneratorFamily&
+family_of(std::string_view identity, std::span<const GeneratorFamily> rows = generator_families());
 
 // One of all families' states, which is asked before the output is switched on each time.
 constexpr const char* offset_query = ":SOURce1:VOLTage:OFFSet?";

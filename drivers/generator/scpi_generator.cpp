@@ -58,7 +58,7 @@ Expected<void> ScpiGenerator::reconnect() {
   connection.call_while_waiting([this] { return go_on_waiting(); });
   if (auto ready = set_up(connection); !ready) {
     const bool knew_no_question = connection.lost() && ready.error().code == ErrorCode::timeout &&
-                                  reads_back_ && family_of(identity_) == GeneratorFamily::unknown;
+                                  reads_back_ && !family_of(identity_).is_known;
     if (!knew_no_question) {
       return ready;
     }
@@ -83,9 +83,9 @@ Expected<void> ScpiGenerator::set_up(ScpiConnection& connection) {
 }
 
 Expected<void> ScpiGenerator::reset(ScpiConnection& connection) {
-  const GeneratorFamily family = family_of(identity_);
+  const GeneratorFamily& family = family_of(identity_);
   answers_offset_ = false;
-  for (const LeftOverState& state : left_over_states(family)) {
+  for (const LeftOverState& state : family.states) {
     if (auto done = connection.command(state.reset); !done) {
       if (connection.lost()) {
         return done;
@@ -95,7 +95,7 @@ Expected<void> ScpiGenerator::reset(ScpiConnection& connection) {
     if (!reads_back_) {
       continue;
     }
-    connection.set_answer_limit(family == GeneratorFamily::unknown ? unknown_limit : connect_limit);
+    connection.set_answer_limit(family.is_known ? connect_limit : unknown_limit);
     const auto answer = connection.query(state.query);
     connection.set_answer_limit(connect_limit);
     DYNCAL_TRY(answer);

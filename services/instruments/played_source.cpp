@@ -9,6 +9,7 @@
 #include "drivers/alsa/capture_source.hpp"
 #include "drivers/files/file_source.hpp"
 #include "drivers/pps/pulse_stamped_source.hpp"
+#include "services/bench/file/acs_drivers.hpp"
 
 #ifdef DYNCAL_HAVE_ALSA
 #include "drivers/alsa/alsa_device.hpp"
@@ -74,6 +75,12 @@ Expected<std::unique_ptr<drivers::SampleSource>> make_device(const SourceSetting
   }
   if (settings.is<AlsaSourceSettings>()) {
     return make_capture(settings);
+  }
+  if (const auto* acs = settings.as<AcsSourceSettings>()) {
+    auto made = acs_driver_named(acs->driver)
+                    ->make({acs->texts, acs->numbers, settings.channels, settings.units});
+    return made ? Expected<std::unique_ptr<drivers::SampleSource>>(*std::move(made))
+                : fail(named(settings, made.error()));
   }
   const auto& played = std::get<FileSourceSettings>(settings.driver);
   drivers::files::FileSettings file;

@@ -36,7 +36,7 @@ FLOORS = {
         ["can/dbc", "can/time"],
         [
             "acs", "alsa", "can", "dso", "generator", "interferometer", "pps", "smartup",
-            "tables", "tss", "virtual_bench/model",
+            "tables", "text_stream", "tss", "virtual_bench/model",
         ],
         ["virtual_bench/can", "virtual_bench/wire"],
         ["virtual_bench"],

@@ -2,6 +2,7 @@
 // files. Any thread.
 #pragma once
 
+#include "drivers/acs_driver.hpp"
 #include "services/bench/file/named_files.hpp"
 #include "services/bench/file/source_settings.hpp"
 #include "services/bench/file/toml_table.hpp"
@@ -26,6 +27,9 @@ namespace dyncal::inline bench {
 //   sample_rate_hz = 48000             format = "s24-3le"      channel_count = 2
 //   scale = { reference = 98.1 }       value of full scale, by channel
 [[nodiscard]] AlsaSourceSettings read_alsa_source(TomlTable& table);
+
+// A driver of the table in acs_drivers.cpp, whose keys stand in its row.
+[[nodiscard]] AcsSourceSettings read_acs_source(TomlTable& table, const drivers::AcsDriver& driver);
 
 // The key `scale`: factors of channels.
 [[nodiscard]] std::map<std::string, double> read_scale(TomlTable& table);

@@ -34,6 +34,12 @@ struct AlsaSourceSettings : drivers::alsa::DeviceSettings { // driver = "alsa"
   std::map<std::string, double> scale{}; // our name of a channel -> value of full scale
 };
 
+struct AcsSourceSettings { // a driver of the table in acs_drivers.hpp
+  std::string driver;
+  std::map<std::string, std::string> texts{};
+  std::map<std::string, double> numbers{};
+};
+
 struct NamedChannel {         // "FILE:CHANNEL"
   std::filesystem::path path; // absolute
   std::string name;           // in the file, with its group and a slash before it where it has one
@@ -73,9 +79,10 @@ struct SeriesSourceSettings { // driver = "series"
   std::filesystem::path path; // absolute; folder the series are written into
 };
 
-using DriverSettings = std::variant<SmartupSourceSettings, SocketSourceSettings, AlsaSourceSettings,
-                                    FileSourceSettings, CanSourceSettings,
-                                    OscilloscopeSourceSettings, SeriesSourceSettings>;
+using DriverSettings =
+    std::variant<SmartupSourceSettings, SocketSourceSettings, AlsaSourceSettings,
+                 FileSourceSettings, CanSourceSettings, OscilloscopeSourceSettings,
+                 SeriesSourceSettings, AcsSourceSettings>;
 
 struct SourceSettings {
   std::string name;

@@ -9,6 +9,7 @@
 
 #include <fmt/core.h>
 
+#include "services/bench/file/acs_drivers.hpp"
 #include "services/bench/file/bench_name.hpp"
 #include "services/bench/file/driver_tables.hpp"
 #include "services/bench/file/pulses_table.hpp"
@@ -77,6 +78,9 @@ DriverSettings read_driver(TomlTable& table, const std::string& driver, NamedFil
   if (driver == "series") {
     return read_series_source(table, files);
   }
+  if (const auto* registered = acs_driver_named(driver)) {
+    return read_acs_source(table, *registered);
+  }
   return driver == "file" ? read_file_source(table, files) : FileSourceSettings{};
 }
 
@@ -142,8 +146,12 @@ SourceSettings read_source(TomlTable table, const std::string& name, NamedFiles&
   SourceSettings source;
   source.name = name;
   source.where = table.where("driver");
-  const std::string driver = table.one_of(
-      "driver", {"smartup", "socket", "alsa", "file", "can", "oscilloscope", "series"}, "");
+  std::vector<std::string> words{"smartup", "socket",       "alsa",  "file",
+                                 "can",     "oscilloscope", "series"};
+  for (const drivers::AcsDriver* registered : acs_drivers()) {
+    words.emplace_back(registered->name);
+  }
+  const std::string driver = table.one_of("driver", words, "");
   source.driver = read_driver(table, driver, files);
   source.identity = {.device = table.text("device"),
                      .serial = table.text("serial"),
@@ -158,8 +166,12 @@ SourceSettings read_source(TomlTable table, const std::string& name, NamedFiles&
   if (const auto* alsa = source.as<AlsaSourceSettings>()) {
     source.nominal_rate_hz = alsa->rate_hz;
   }
+  const auto* acs = source.as<AcsSourceSettings>();
+  if (acs != nullptr && acs->numbers.contains("sample_rate_hz")) {
+    source.nominal_rate_hz = acs->numbers.at("sample_rate_hz");
+  }
   read_units(table, source);
-  if (driver == "file" || driver == "socket" || driver == "alsa") {
+  if (driver == "file" || driver == "socket" || driver == "alsa" || acs != nullptr) {
     read_sensitivities(table, files, source);
   }
   read_ranges(table, source);

@@ -108,8 +108,9 @@ SourceView look_at_source(const BenchFile& bench, const SourceSettings& settings
     look_at_shots(bench, settings.name, view);
   } else if (settings.nominal_rate_hz) {
     view.rate_hz = *settings.nominal_rate_hz;
-    view.rate_origin =
-        settings.is<AlsaSourceSettings>() ? "by its sample_rate_hz" : "by its nominal_rate_hz";
+    view.rate_origin = settings.is<AlsaSourceSettings>() || settings.is<AcsSourceSettings>()
+                           ? "by its sample_rate_hz"
+                           : "by its nominal_rate_hz";
   }
   return view;
 }

@@ -74,6 +74,10 @@ std::string address_of(const SourceSettings& source) {
   if (const auto* socket = source.as<SocketSourceSettings>()) {
     return socket->address;
   }
+  if (const auto* acs = source.as<AcsSourceSettings>()) {
+    const auto address = acs->texts.find("address");
+    return address == acs->texts.end() ? "" : address->second;
+  }
   if (const auto* scope = source.as<OscilloscopeSourceSettings>()) {
     return scope->address;
   }

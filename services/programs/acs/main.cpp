@@ -23,7 +23,7 @@ Expected<Sources> prepare(const std::vector<BenchFile>& benches, const std::stop
   for (const BenchFile& bench : benches) {
     for (const SourceSettings& settings : bench.sources) {
       if (!settings.is<SocketSourceSettings>() && !settings.is<AlsaSourceSettings>() &&
-          !settings.is<FileSourceSettings>()) {
+          !settings.is<FileSourceSettings>() && !settings.is<AcsSourceSettings>()) {
         continue; // dyncal-dau, dyncal-can or dyncal-dso publishes it
       }
       auto source = PlayedSource::prepare(settings, stop);
@@ -36,7 +36,8 @@ Expected<Sources> prepare(const std::vector<BenchFile>& benches, const std::stop
   }
   if (sources.empty()) {
     return fail(ErrorCode::bad_argument,
-                "no source with driver \"socket\", \"alsa\" or \"file\" in the bench files given");
+                "no source in the bench files given is an analogue calibration system, a sound "
+                "device or a file (driver \"socket\", \"alsa\", \"file\", ...)");
   }
   return sources;
 }
@@ -55,8 +56,8 @@ int main(int argc, char** argv) {
       {.name = "dyncal-acs",
        .description =
            "Publishes the sources of bench files whose driver is \"socket\" (an analogue "
-           "calibration system's TCP stream), \"alsa\" (a sound device) or \"file\" (a recorded "
-           "series).",
+           "calibration system's TCP stream), \"alsa\" (a sound device), \"text-stream\" (lines of "
+           "numbers) or \"file\" (a recorded series).",
        .serve = serve,
        .publishes_samples = true});
 }

@@ -44,8 +44,7 @@ void ask_generator(const bench_check::BenchView& view, Findings& findings) {
   if (!identity) {
     findings.push_back(view.at(Severity::warning, {"generator", "address"},
                                fmt::format("cannot be asked: {}", identity.error().message)));
-  } else if (drivers::generator::family_of(*identity) ==
-             drivers::generator::GeneratorFamily::unknown) {
+  } else if (!drivers::generator::family_of(*identity).is_known) {
     findings.push_back(view.at(
         Severity::warning, {"generator", "address"},
         fmt::format("is a generator of no family that dyncal knows ({}): a DC offset, burst, sweep "

@@ -23,7 +23,8 @@ GuardedExciter exciter_of(const BenchFile& bench) {
   exciter.level_per_volt = bench.generator.level_per_volt;
   exciter.has_closed_loop = bench.generator.level_tolerance_rel.has_value();
   const SourceSettings* acs = bench.source(bench.method.reference.source);
-  if (acs != nullptr && (acs->is<SocketSourceSettings>() || acs->is<AlsaSourceSettings>())) {
+  if (acs != nullptr && (acs->is<SocketSourceSettings>() || acs->is<AlsaSourceSettings>() ||
+                         acs->is<AcsSourceSettings>())) {
     exciter.reference = bench.method.reference;
   }
   for (std::size_t i = 0; i < bench.excitation.frequencies_hz.size(); ++i) {
