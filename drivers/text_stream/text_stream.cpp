@@ -158,14 +158,15 @@ Expected<void> TextStream::read_session(SampleSink& sink) {
   };
   for (;;) {
     auto sample = read_sample();
-    if (sample) {
-      samples.push_back(*std::move(sample));
-    }
-    if (!samples.empty() && (!sample || samples.size() >= room)) {
-      hand_over();
-    }
     if (!sample) {
+      if (!samples.empty()) {
+        hand_over();
+      }
       return fail(sample.error());
+    }
+    samples.push_back(*std::move(sample));
+    if (samples.size() >= room) {
+      hand_over();
     }
   }
 }

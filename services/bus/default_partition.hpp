@@ -16,8 +16,8 @@
 namespace dyncal::bus {
 
 // Those that a writer gets which was asked for in `partitions`, in their order.
-[[nodiscard]] std::vector<std::string>
-partitions_of_writer(Profile profile, bool secured, std::vector<std::string> partitions);
+[[nodiscard]] std::vector<std::string> partitions_of_writer(Profile profile, bool secured,
+                                                            std::vector<std::string> partitions);
 
 // Every writer of live samples or records that this process makes from now on is there, too. Any
 // thread.
