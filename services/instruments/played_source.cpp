@@ -8,6 +8,7 @@
 #include "drivers/acs/socket_acs.hpp"
 #include "drivers/alsa/capture_source.hpp"
 #include "drivers/files/file_source.hpp"
+#include "drivers/interferometer/interferometer_source.hpp"
 #include "drivers/pps/pulse_stamped_source.hpp"
 #include "services/bench/file/acs_drivers.hpp"
 
@@ -64,10 +65,6 @@ Expected<std::unique_ptr<drivers::SampleSource>> make_capture(const SourceSettin
 #endif
 }
 
-} // namespace
-
-namespace {
-
 Expected<std::unique_ptr<drivers::SampleSource>> make_device(const SourceSettings& settings) {
   if (const auto* socket = settings.as<SocketSourceSettings>()) {
     return std::make_unique<drivers::acs::SocketAcs>(drivers::acs::SocketSettings{
@@ -112,6 +109,10 @@ Expected<std::unique_ptr<drivers::SampleSource>> make_device(const SourceSetting
 
 Expected<std::unique_ptr<drivers::SampleSource>> make_driver(const SourceSettings& settings) {
   DYNCAL_TRY(auto device, make_device(settings));
+  if (settings.interferometer) {
+    device = std::make_unique<drivers::interferometer::InterferometerSource>(
+        *settings.interferometer, std::move(device));
+  }
   if (settings.pulses) {
     device =
         std::make_unique<drivers::pps::PulseStampedSource>(std::move(device), *settings.pulses);

@@ -12,6 +12,7 @@
 #include "services/bench/file/acs_drivers.hpp"
 #include "services/bench/file/bench_name.hpp"
 #include "services/bench/file/driver_tables.hpp"
+#include "services/bench/file/interferometer_table.hpp"
 #include "services/bench/file/pulses_table.hpp"
 #include "services/bench/file/sensitivity_keys.hpp"
 #include "services/contract/channel_unit.hpp"
@@ -180,6 +181,9 @@ SourceSettings read_source(TomlTable table, const std::string& name, NamedFiles&
   }
   const bool is_usually_utc = driver == "smartup" || driver == "can" || source.pulses;
   const std::string usual = is_usually_utc ? "utc" : "local";
+  if (driver == "file" || driver == "socket" || driver == "alsa") {
+    read_interferometer(table, files, source);
+  }
   source.time_base = table.one_of("time_base", {"utc", "local"}, usual) == "utc"
                          ? drivers::TimeBase::utc
                          : drivers::TimeBase::local;
