@@ -13,7 +13,8 @@ std::string_view closure_title(ClosureKind kind, Language language) {
                           "Wiederholungen eines Punkts", "Streuung der Wiederholungen",
                           "erster Punkt, am Ende wiederholt", "Phase gegen die Gruppenlaufzeit",
                           "andere Gruppenlaufzeiten", "Phase gegen 0 Hz",
-                          "Laufzeiten gleichartiger Kanäle", "Takte der Kanäle eines Sensors"});
+                          "Laufzeiten gleichartiger Kanäle", "Takte der Kanäle eines Sensors",
+                          "Sync gegen UTC"});
 }
 
 std::string_view verdict_text(Verdict verdict, Language language) {
