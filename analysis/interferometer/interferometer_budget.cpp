@@ -7,16 +7,6 @@
 namespace dyncal::analysis {
 namespace {
 
-// By the model's derivatives: dp and r dq move the centre, dr / r and dalpha squeeze the circle by
-// half of it. Variances of cosine and sine of the error, in sum.
-std::array<double, 2> ellipse_errors(const EllipseFit& fit) {
-  const auto& v = fit.covariance;
-  const Ellipse& e = fit.ellipse;
-  const double square = e.radius * e.radius;
-  return {std::sqrt((v[0][0] + e.r * e.r * v[1][1]) / square),
-          std::sqrt((v[2][2] / (e.r * e.r) + v[3][3]) / 4.0)};
-}
-
 template <std::size_t orders>
 Contribution periodic_row(ContributionKind kind, Distribution distribution,
                           const std::array<double, orders>& error_rad, double phase_amplitude_rad,
@@ -43,6 +33,21 @@ Contribution bandwidth_row(double frequency_hz, double bandwidth_hz) {
 }
 
 } // namespace
+
+// By the model's derivatives: dp and r dq move the centre, dr / r and dalpha squeeze the circle by
+// half of it. Variances of cosine and sine of the error, in sum.
+EllipseErrors ellipse_errors(const EllipseFit& fit) {
+  const auto& v = fit.covariance;
+  const Ellipse& e = fit.ellipse;
+  const double square = e.radius * e.radius;
+  return {std::sqrt((v[0][0] + e.r * e.r * v[1][1]) / square),
+          std::sqrt((v[2][2] / (e.r * e.r) + v[3][3]) / 4.0)};
+}
+
+EllipseErrors ellipse_difference(const Ellipse& one, const Ellipse& other) {
+  return {std::hypot(one.p - other.p, one.r * (one.q - other.q)) / one.radius,
+          std::hypot(one.r / other.r - 1.0, one.alpha_rad - other.alpha_rad) / 2.0};
+}
 
 double largest_periodic_change(double error_rad, int order, double phase_amplitude_rad) {
   return 2.0 * error_rad * std::abs(std::cyl_bessel_j(1.0, order * phase_amplitude_rad)) /

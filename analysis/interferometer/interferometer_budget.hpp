@@ -32,6 +32,12 @@
 
 namespace dyncal::analysis {
 
+// What the ellipse leaves of the phase, in radians, orders 1 and 2: standard uncertainties; and by
+// how much the phases of two ellipses differ.
+using EllipseErrors = std::array<double, 2>;
+[[nodiscard]] EllipseErrors ellipse_errors(const EllipseFit& fit);
+[[nodiscard]] EllipseErrors ellipse_difference(const Ellipse& one, const Ellipse& other);
+
 struct DetectorSettings {
   std::optional<double> bandwidth_hz; // of the slower one; empty: fast enough not to matter
   double u_skew_s = 0.0;              // of the delay of u2 after u1
@@ -40,7 +46,7 @@ struct DetectorSettings {
 // Of a displacement that was made of quadrature signals, whatever the step.
 struct InterferometerErrors {
   double displacement_per_turn_m = 0.0;
-  std::array<double, 2> ellipse_rad{};              // orders 1 and 2: standard uncertainty
+  EllipseErrors ellipse_rad{};                      // orders 1 and 2: standard uncertainty
   std::array<double, radius_orders> periodic_rad{}; // e_k: amplitude
   double u_wavelength_rel = 0.0;
   DetectorSettings detectors;

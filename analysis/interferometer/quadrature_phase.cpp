@@ -62,28 +62,61 @@ void QuadraturePhase::unwrap(std::span<double> turns) {
   PhaseStatistics seen = statistics_;
   Unwrapping at = unwrapping_;
   for (double& phase : turns) {
-    if (seen.samples == 0) {
+    if (at.samples == 0) {
       at.last_turns = phase;
-      seen.min_turns = phase;
-      seen.max_turns = phase;
     }
     const double step = phase - at.last_turns;
     const double change = step - at.last_step;
     const double whole = (change + shift) - shift;
-    const double error = seen.samples < 2 ? 0.0 : std::abs(change - whole); // expected nothing yet
+    const double error = at.samples < 2 ? 0.0 : std::abs(change - whole); // expected nothing yet
     at.last_turns = phase;
     at.last_step = step;
     at.whole_steps += static_cast<std::int64_t>(whole);
     at.whole_turns += at.whole_steps;
-    phase -= static_cast<double>(at.whole_turns);
+    phase = (phase - static_cast<double>(at.whole_turns)) + at.offset;
     seen.doubtful += error > doubtful_turns ? 1 : 0;
     seen.max_prediction_error = std::max(seen.max_prediction_error, error);
     seen.min_turns = std::min(seen.min_turns, phase);
     seen.max_turns = std::max(seen.max_turns, phase);
     ++seen.samples;
+    ++at.samples;
   }
   statistics_ = seen;
   unwrapping_ = at;
+}
+
+void QuadraturePhase::adopt(const Ellipse& ellipse) {
+  correction_ = correction_of(ellipse);
+  radius_over_phase_ = {};
+  radius_sum_ = 0.0;
+  radius_samples_ = 0;
+  forget_extremes();
+  if (unwrapping_.samples == 0) {
+    return;
+  }
+  double turns = 0.0;
+  double radius_squared = 0.0;
+  kernel::best_quadrature_kernel().phase_of_double(&last_u1_, &last_u2_, 1, correction_, &turns,
+                                                   &radius_squared);
+  const double change = turns - unwrapping_.last_turns;
+  const double whole = std::round(change);
+  unwrapping_.last_turns = turns;
+  unwrapping_.whole_turns += static_cast<std::int64_t>(whole);
+  unwrapping_.offset -= change - whole;
+}
+
+void QuadraturePhase::begin_again() {
+  unwrapping_.samples = 0;
+  unwrapping_.last_step = 0.0;
+  unwrapping_.whole_steps = 0;
+}
+
+void QuadraturePhase::forget_extremes() {
+  const PhaseStatistics none;
+  statistics_.min_turns = none.min_turns;
+  statistics_.max_turns = none.max_turns;
+  statistics_.min_radius_squared = none.min_radius_squared;
+  statistics_.max_radius_squared = none.max_radius_squared;
 }
 
 template <class Number>
@@ -98,6 +131,10 @@ Expected<void> QuadraturePhase::push_samples(std::span<const Number> u1, std::sp
     phase_of(&u1[begin], &u2[begin], n, correction_, block.data(), radius_squared);
     DYNCAL_TRY(see_radius(block, radius_squared));
     unwrap(block);
+  }
+  if (!u1.empty()) {
+    last_u1_ = static_cast<double>(u1.back());
+    last_u2_ = static_cast<double>(u2.back());
   }
   return {};
 }

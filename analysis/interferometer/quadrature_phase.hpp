@@ -10,7 +10,8 @@
 // is then added, which the second difference (reference_motion.hpp) removes.
 //
 // Counted are the samples whose step is more than a quarter of a turn from the one expected
-// ("doubtful"): near half a turn it slips unnoticed. The radius is averaged over 16 samples before
+// ("doubtful"): near half a turn it slips unnoticed. A better ellipse may be adopted on the way:
+// the unwrapped phase goes on from its last value. The radius is averaged over 16 samples before
 // its extremes are taken; a detector that is too slow loses radius where the fringes are fast, and
 // its delay then depends on the velocity (warn below smallest_radius_ratio).
 //
@@ -36,12 +37,14 @@ struct PhaseStatistics {
   std::uint64_t samples = 0;
   std::uint64_t doubtful = 0;        // samples of a prediction error above a quarter of a turn
   double max_prediction_error = 0.0; // turns, at most 0.5
-  double min_turns = 0.0;
-  double max_turns = 0.0;
+  double min_turns = std::numeric_limits<double>::infinity();
+  double max_turns = -std::numeric_limits<double>::infinity();
   double min_radius_squared = std::numeric_limits<double>::infinity(); // means of 16 samples
   double max_radius_squared = 0.0;
 
-  [[nodiscard]] double turns_covered() const { return max_turns - min_turns; }
+  [[nodiscard]] double turns_covered() const {
+    return max_turns > min_turns ? max_turns - min_turns : 0.0;
+  }
   // Smallest over largest radius; empty for less than 16 samples.
   [[nodiscard]] std::optional<double> radius_ratio() const;
 };
@@ -58,6 +61,13 @@ public:
   [[nodiscard]] Expected<void> push(std::span<const double> u1, std::span<const double> u2,
                                     std::span<double> turns);
 
+  // The samples that follow are corrected by another ellipse, whose radius over phase begins anew.
+  void adopt(const Ellipse& ellipse);
+  // The samples that follow have nothing to do with those before: nothing is expected of the next.
+  void begin_again();
+  // Extremes of turns and radius are those of the samples that follow.
+  void forget_extremes();
+
   [[nodiscard]] const PhaseStatistics& statistics() const { return statistics_; }
   [[nodiscard]] const RadiusOverPhase& radius_over_phase() const { return radius_over_phase_; }
 
@@ -70,6 +80,8 @@ private:
   Expected<void> see_radius(std::span<const double> turns, const double* radius_squared);
 
   struct Unwrapping {
+    std::uint64_t samples = 0;    // since it began
+    double offset = 0.0;          // of the ellipses so far, so that the phase is continuous
     double last_turns = 0.0;      // wrapped
     double last_step = 0.0;       // of wrapped phases
     std::int64_t whole_steps = 0; // whole turns taken off the next step
@@ -80,6 +92,8 @@ private:
   PhaseStatistics statistics_;
   RadiusOverPhase radius_over_phase_;
   Unwrapping unwrapping_;
+  double last_u1_ = 0.0;
+  double last_u2_ = 0.0;
   double radius_sum_ = 0.0;
   unsigned radius_samples_ = 0;
 };

@@ -177,6 +177,25 @@ std::vector<double> without_slow_motion(double frequency_hz,
   return result;
 }
 
+CentredSamples centred_samples(double frequency_hz, std::span<const std::int64_t> stamps_ns,
+                               std::span<const double> values) {
+  CentredSamples centred;
+  if (stamps_ns.size() < 2) {
+    return centred;
+  }
+  const auto half_ns = static_cast<std::int64_t>(0.5e9 / frequency_hz);
+  for (const Part& part : parts_of(stamps_ns, usual_interval_ns(stamps_ns))) {
+    for (std::size_t i = part.begin; i < part.end; ++i) {
+      if (stamps_ns[i] - stamps_ns[part.begin] > half_ns &&
+          stamps_ns[part.end - 1] - stamps_ns[i] > half_ns) {
+        centred.stamps_ns.push_back(stamps_ns[i]);
+        centred.values.push_back(values[i]);
+      }
+    }
+  }
+  return centred;
+}
+
 std::string_view to_string(MotionQuantity quantity) {
   switch (quantity) {
   case MotionQuantity::velocity:

@@ -66,4 +66,15 @@ struct StepMotion {
                                                       std::span<const std::int64_t> stamps_ns,
                                                       std::span<const double> values);
 
+// The samples of those that have half a period on either side without a gap: what
+// without_slow_motion() leaves of the others still holds some of the drift, by which single samples
+// stand out. As many values as stamps.
+struct CentredSamples {
+  std::vector<std::int64_t> stamps_ns;
+  std::vector<double> values;
+};
+[[nodiscard]] CentredSamples centred_samples(double frequency_hz,
+                                             std::span<const std::int64_t> stamps_ns,
+                                             std::span<const double> values);
+
 } // namespace dyncal::analysis

@@ -98,9 +98,18 @@ Expected<std::vector<std::span<const double>>> values_of(std::span<const Channel
 void correct_shortening(double step, RecordedChannel& recorded) {
   ChannelFit& result = recorded.result;
   StampScatter& scatter = result.scatter;
-  scatter = measure_stamp_scatter(result.frequency, result.fit, result.phase_origin_ns,
-                                  recorded.stamps_ns, recorded.values(), step,
-                                  SlowScatter::corrected_in_blocks);
+  const bool moves = is_differentiated(recorded.samples);
+  const CentredSamples centred =
+      moves ? centred_samples(result.frequency.hz(), recorded.stamps_ns, recorded.values())
+            : CentredSamples{};
+  if (moves && centred.values.empty()) {
+    return;
+  }
+  scatter = measure_stamp_scatter(
+      result.frequency, result.fit, result.phase_origin_ns,
+      moves ? std::span<const std::int64_t>(centred.stamps_ns) : recorded.stamps_ns,
+      moves ? std::span<const double>(centred.values) : recorded.values(), step,
+      SlowScatter::corrected_in_blocks);
   const double shortening = scatter.correction_rel();
   if (shortening * result.fit.amplitude() > worth_correcting * result.fit.u_amplitude()) {
     recorded.lengthening = 1.0 / (1.0 - shortening);

@@ -5,7 +5,7 @@
 
 #include <fmt/core.h>
 
-#include "services/contract/unit.hpp"
+#include "services/contract/excitation_quantity.hpp"
 #include "services/evaluation/record/channel_level.hpp"
 
 namespace dyncal::inline evaluation {
@@ -35,7 +35,8 @@ std::optional<std::string> LevelWatch::look(const SourceRecord& reference,
     return std::nullopt;
   }
   const auto channel = reference.channel(recipe_.reference().channel);
-  if (!channel || !is_acceleration(reference.description().channels[*channel].unit)) {
+  if (!channel || !acceleration_factor(reference.description(), recipe_.reference().channel,
+                                       planned.frequency.angular())) {
     return std::nullopt;
   }
   looked_ns_ = newest_ns;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "services/contract/excitation_quantity.hpp"
 #include "services/evaluation/closures/closures.hpp"
 #include "services/evaluation/method/channel_responses.hpp"
 #include "services/evaluation/method/monte_carlo_check.hpp"
@@ -78,6 +79,19 @@ Expected<void> RunEvaluator::describe(const std::string& source,
     clock_->describe(record->description());
   }
   return {};
+}
+
+void RunEvaluator::describe_signals(const std::string& source,
+                                    std::vector<drivers::QuadratureSignals> signals) {
+  SourceRecord* record = records_.find(source);
+  if (record == nullptr || is_ending() || !record->described() ||
+      record->description().quadrature_signals == signals) {
+    return;
+  }
+  drivers::SourceDescription description = record->description();
+  description.quadrature_signals = std::move(signals);
+  record->describe(std::move(description));
+  ahead_.reset();
 }
 
 void RunEvaluator::add(const std::string& source, const SourceBlock& block,
@@ -319,9 +333,9 @@ std::vector<StepResult> RunEvaluator::settled_results() {
 // A result that was settled is handed over once, with its last flag.
 void RunEvaluator::close(EvaluationOutput& output) const {
   const SourceRecord& acs = records_.of(recipe_->reference().source);
-  const auto column = acs.channel(recipe_->reference().channel);
   const DescribedRun run{.recipe = *recipe_,
-                         .reference_unit = acs.description().channels[*column].unit,
+                         .reference_unit =
+                             excitation_unit(acs.description(), recipe_->reference().channel),
                          .nominal_rate_hz = [&](const std::string& source) {
                            return records_.of(source).description().nominal_rate_hz;
                          }};

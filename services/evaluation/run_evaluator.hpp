@@ -98,6 +98,9 @@ public:
   // frequency is not below half its sample rate, and when its time scale does not fit those of
   // others. Then the run goes on by the description that was accepted before, if any.
   Expected<void> describe(const std::string& source, drivers::SourceDescription description);
+  // The source tells anew of which quadrature signals it makes a displacement, within its session:
+  // its samples mean what they meant, and steps from now on have this uncertainty.
+  void describe_signals(const std::string& source, std::vector<drivers::QuadratureSignals> signals);
   // Sources of the recipe that have not described themselves yet.
   [[nodiscard]] std::vector<std::string> undescribed() const { return records_.undescribed(); }
 

@@ -53,9 +53,10 @@ double standard_deviation(std::span<const double> values) {
 Expected<LevelReading> read_level(const SourceRecord& record, std::size_t channel,
                                   const TimeInterval& window, const analysis::Frequency& frequency,
                                   double agreement_rel) {
-  const auto values = samples_in(record, channel, window);
   const drivers::ChannelDescription& described = record.description().channels[channel];
-  if (const double part = part_at_range(described, values); part > max_part_at_range) {
+  const double part = part_at_range(described, samples_in(record, channel, window));
+  const std::vector<double> values = part_of(record, channel, window, frequency).values;
+  if (part > max_part_at_range) {
     return fail(ErrorCode::device,
                 fmt::format("{}/{} is at an end of its range in {:.2g} % of its samples, so that "
                             "it shows less than there is; choose a wider range, or a lower level",

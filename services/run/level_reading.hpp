@@ -4,7 +4,8 @@
 // only if both halves of the window show it within the agreement asked for, and if the channel
 // shows more at this frequency than beside it:
 //
-//   A / sqrt 2 >= sqrt(s^2 - A^2 / 2),   s: standard deviation of the samples
+//   A / sqrt 2 >= sqrt(s^2 - A^2 / 2),   s: standard deviation of the samples (channel_level.hpp:
+//                                        of a displacement, those without slow motion)
 //
 // A reference that hums, or whose exciter is off, shows a little at any frequency: a loop that
 // raised the voltage for that would drive without end. Hum at the frequency itself cannot be told

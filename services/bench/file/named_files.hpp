@@ -44,6 +44,10 @@ public:
 
   // Absolute and in normal form; the folder itself for an empty name.
   [[nodiscard]] std::filesystem::path resolve(const std::string& name);
+  // Absolute; of what is written, and so is none of them.
+  [[nodiscard]] std::filesystem::path output(const std::string& name) const {
+    return std::filesystem::absolute(folder_ / name).lexically_normal();
+  }
   // All that were resolved, in this order, each once.
   [[nodiscard]] const std::vector<NamedFile>& all() const { return all_; }
 

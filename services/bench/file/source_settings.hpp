@@ -12,6 +12,7 @@
 
 #include "drivers/alsa/device_settings.hpp"
 #include "drivers/can/stream_settings.hpp"
+#include "drivers/interferometer/interferometer_settings.hpp"
 #include "drivers/sample_block.hpp"
 #include "services/bench/file/reference_file.hpp"
 #include "services/contract/bench_file_origin.hpp"
@@ -85,7 +86,9 @@ struct SourceSettings {
   std::map<std::string, ReferenceFile> sensitivities{}; // by our name
   drivers::TimeBase time_base = drivers::TimeBase::utc;
   std::optional<double> nominal_rate_hz{}; // of an instrument, as it is set: for checks beforehand
-  std::string where;                       // "bench.toml:21", for messages
+  // Of a device that records its quadrature signals.
+  std::optional<drivers::interferometer::InterferometerSettings> interferometer{};
+  std::string where; // "bench.toml:21", for messages
   BenchFileOrigin origin;
 
   // The settings of the driver, nullptr when the source has another one.

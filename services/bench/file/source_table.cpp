@@ -11,6 +11,7 @@
 
 #include "services/bench/file/bench_name.hpp"
 #include "services/bench/file/driver_tables.hpp"
+#include "services/bench/file/interferometer_table.hpp"
 #include "services/bench/file/sensitivity_keys.hpp"
 #include "services/contract/channel_unit.hpp"
 
@@ -162,6 +163,9 @@ SourceSettings read_source(TomlTable table, const std::string& name, NamedFiles&
     read_sensitivities(table, files, source);
   }
   read_ranges(table, source);
+  if (driver == "file" || driver == "socket" || driver == "alsa") {
+    read_interferometer(table, files, source);
+  }
   const std::string usual = driver == "smartup" || driver == "can" ? "utc" : "local";
   source.time_base = table.one_of("time_base", {"utc", "local"}, usual) == "utc"
                          ? drivers::TimeBase::utc

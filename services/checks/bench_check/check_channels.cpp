@@ -72,8 +72,31 @@ std::string no_unit_sentence(const Role& role, const std::string& channel) {
                      channel, name, name == "temperature" ? "degC" : "V");
 }
 
+// Of an interferometer, nothing of another source.
+const drivers::interferometer::InterferometerSettings*
+interferometer_of(const BenchView& view, const std::string& source) {
+  const SourceSettings* settings = view.bench.source(source);
+  return settings != nullptr && settings->interferometer ? &*settings->interferometer : nullptr;
+}
+
+bool is_raw_signal(const BenchView& view, const std::string& source, const std::string& channel) {
+  const auto* interferometer = interferometer_of(view, source);
+  return interferometer != nullptr &&
+         (channel == interferometer->u1 || channel == interferometer->u2);
+}
+
 void check_roles(const BenchView& view, Findings& findings) {
   for (const Role& role : roles_of(view.bench.method)) {
+    if (is_raw_signal(view, role.channel.source, role.channel.channel)) {
+      findings.push_back(view.at(
+          Severity::error, role.key,
+          fmt::format("names '{}', a raw signal of the interferometer, which is not published; its "
+                      "displacement is '{}/{}'",
+                      role.channel.text(), role.channel.source,
+                      interferometer_of(view, role.channel.source)->channel),
+          role.entry));
+      continue;
+    }
     const SourceView* source = view.source(role.channel.source);
     if (source == nullptr || !source->description) {
       continue;
@@ -109,7 +132,10 @@ std::optional<drivers::ChannelDescription> described(const BenchView& view,
   }
   drivers::ChannelDescription channel;
   channel.name = name.channel;
-  if (const auto unit = settings->units.find(name.channel); unit != settings->units.end()) {
+  if (const auto* interferometer = interferometer_of(view, name.source);
+      interferometer != nullptr && name.channel == interferometer->channel) {
+    channel.unit = R"(\metre)";
+  } else if (const auto unit = settings->units.find(name.channel); unit != settings->units.end()) {
     channel.unit = unit->second;
   } else if (const auto converted = settings->identity.units.find(name.channel);
              converted != settings->identity.units.end()) {
@@ -133,11 +159,15 @@ void check_quantities(const BenchView& view, Findings& findings) {
 // What is no quantity of a level at all is an error, of check_quantities().
 void check_reference_unit(const BenchView& view, Findings& findings) {
   const auto channel = described(view, view.bench.method.reference);
+  const auto* interferometer = interferometer_of(view, view.bench.method.reference.source);
+  const bool is_of_interferometer =
+      interferometer != nullptr && interferometer->channel == view.bench.method.reference.channel;
   const auto is_error = [](const Finding& finding) {
     return finding.severity == Severity::error && finding.subject == "method.reference";
   };
   if (channel && !channel->unit.empty() && channel->unit != R"(\one)" &&
-      !is_acceleration(channel->unit) && std::ranges::none_of(findings, is_error)) {
+      !is_acceleration(channel->unit) && !is_of_interferometer &&
+      std::ranges::none_of(findings, is_error)) {
     findings.push_back(view.at(
         Severity::warning, {"method", "reference"},
         fmt::format("is in {}, but excitation.level is planned in m/s^2: the level that was "
@@ -161,7 +191,7 @@ void check_names(const BenchView& view, const SourceSettings& settings, Findings
     return;
   }
   for (const auto& [device, ours] : settings.channels) {
-    if (find_channel(*source, ours) == nullptr) {
+    if (find_channel(*source, ours) == nullptr && !is_raw_signal(view, settings.name, ours)) {
       findings.push_back(view.at(Severity::warning, {"sources", settings.name, "channels"},
                                  fmt::format("renames '{}', which the source does not have; {}",
                                              device, those_there(*source, device))));
@@ -175,7 +205,7 @@ void check_names(const BenchView& view, const SourceSettings& settings, Findings
     with_unit.insert(channel);
   }
   for (const std::string& channel : with_unit) {
-    if (find_channel(*source, channel) == nullptr) {
+    if (find_channel(*source, channel) == nullptr && !is_raw_signal(view, settings.name, channel)) {
       findings.push_back(
           view.at(Severity::warning, {"sources", settings.name, "units"},
                   fmt::format("names channel '{}', which the source does not have; {}", channel,

@@ -34,6 +34,7 @@ KeyPath key_of(const BenchView& view, const NamedFile& named) {
     for (const char* key : {"path", "dbc", "log"}) {
       keys.push_back({"sources", source.name, key});
     }
+    keys.push_back({"sources", source.name, "interferometer", "ellipse"});
   }
   const auto found = std::ranges::find_if(
       keys, [&](const KeyPath& key) { return view.lines.text_at(key) == named.name; });

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "analysis/base/frequency.hpp"
+#include "analysis/interferometer/decimation_filter.hpp"
 #include "services/checks/bench_check/checks.hpp"
 
 namespace dyncal::inline checks::bench_check {
@@ -50,6 +51,33 @@ void check_source(const BenchView& view, const SourceView& source, Findings& fin
   }
 }
 
+// The filter before a displacement of quadrature signals is flat up to a part of its rate.
+void check_pass_band(const BenchView& view, Findings& findings) {
+  const ChannelName& reference = view.bench.method.reference;
+  const SourceSettings* settings = view.bench.source(reference.source);
+  const SourceView* source = view.source(reference.source);
+  if (settings == nullptr || source == nullptr || !settings->interferometer ||
+      settings->interferometer->channel != reference.channel) {
+    return;
+  }
+  const double rate_hz = source->rate_hz > 0.0
+                             ? source->rate_hz
+                             : settings->interferometer->output_rate_hz.value_or(0);
+  const auto& frequencies = view.bench.excitation.frequencies_hz;
+  for (std::size_t i = 0; i < frequencies.size() && rate_hz > 0.0; ++i) {
+    const auto frequency = analysis::Frequency::parse(frequencies[i]);
+    if (frequency && frequency->hz() > analysis::flat_pass_band * rate_hz) {
+      findings.push_back(view.at(
+          Severity::error, {"excitation", "frequencies_hz"},
+          fmt::format("holds \"{}\", but {} is right up to {:.6g} Hz only at its {:.6g} samples a "
+                      "second: take it out, or raise output_rate_hz of the interferometer",
+                      frequencies[i], reference.text(), analysis::flat_pass_band * rate_hz,
+                      rate_hz),
+          i));
+    }
+  }
+}
+
 void check_duration(const BenchView& view, Findings& findings) {
   const ExcitationSettings& excitation = view.bench.excitation;
   if (excitation.whole_record || !(excitation.duration_s > 0.0)) {
@@ -82,6 +110,7 @@ Findings check_rates(const BenchView& view) {
       check_source(view, source, findings);
     }
   }
+  check_pass_band(view, findings);
   check_duration(view, findings);
   return findings;
 }

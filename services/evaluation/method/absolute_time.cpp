@@ -5,6 +5,7 @@
 #include "services/evaluation/method/disturbance_cut.hpp"
 #include "services/evaluation/method/method_kinds.hpp"
 #include "services/evaluation/method/own_clock_sensors.hpp"
+#include "services/evaluation/method/reference_channel.hpp"
 #include "services/evaluation/method/step_results.hpp"
 #include "services/evaluation/method/step_task.hpp"
 
@@ -19,7 +20,7 @@ evaluate_channels(const StepTask& task, const SelectedChannels& acs, const Selec
   analysis::AbsoluteTimeInput input{.frequency = task.step().frequency};
   input.frequency_search_rel = recipe.frequency_search_rel;
   input.reference_stamps_ns = acs.stamps_ns();
-  input.reference = acs.channel(0);
+  DYNCAL_TRY(input.reference, reference_channel(acs));
   input.dut_stamps_ns = dut.stamps_ns();
   input.dut = dut.channels_from(0);
   input.reference_response = reference;
@@ -50,7 +51,7 @@ std::vector<StepResult> evaluate_sensor(StepTask task, const SourceInterval& acs
                                             [&] { return evaluate_channels(task, acs, dut); });
   return make_results(task,
                       {.dut = dut_of(recipe, sensor.record->source()),
-                       .reference_unit = acs.unit(0),
+                       .reference_unit = excitation_unit(acs),
                        .units = units_of(acs, dut, 0),
                        .samples = {acs.summary(), dut.summary()},
                        .data_sha256 = digest_of({&acs, &dut}),

@@ -1,6 +1,7 @@
 #include "analysis/method/analogue_comparison.hpp"
 #include "services/evaluation/method/disturbance_cut.hpp"
 #include "services/evaluation/method/method_kinds.hpp"
+#include "services/evaluation/method/reference_channel.hpp"
 #include "services/evaluation/method/step_results.hpp"
 #include "services/evaluation/method/step_settling.hpp"
 #include "services/evaluation/method/step_task.hpp"
@@ -28,9 +29,10 @@ SelectedChannels select_channels(const Recipe& recipe, SourceInterval source) {
 }
 
 void leave_settling_out(StepTask& task, SelectedChannels& channels) {
-  const StepSettling settling = find_settling_of_step(
-      task.step(), task.recipe->frequency_search_rel, {channels.samples(), 0, {0}},
-      sensor_columns(channels, first_dut(task)));
+  const StepSamples samples = settling_samples(channels, task.step().frequency.hz());
+  const StepSettling settling =
+      find_settling_of_step(task.step(), task.recipe->frequency_search_rel, {samples, 0, {0}},
+                            sensor_columns(channels, first_dut(task)));
   if (settling.flag) {
     task.flags.push_back(*settling.flag);
   }
@@ -39,12 +41,13 @@ void leave_settling_out(StepTask& task, SelectedChannels& channels) {
 }
 
 analysis::AnalogueInput input_of(const StepTask& task, const SelectedChannels& channels,
+                                 const analysis::ChannelSamples& reference_samples,
                                  const analysis::ReferenceResponse& reference) {
   const Recipe& recipe = *task.recipe;
   analysis::AnalogueInput input{.frequency = task.step().frequency};
   input.frequency_search_rel = recipe.frequency_search_rel;
   input.stamps_ns = channels.stamps_ns();
-  input.reference = channels.channel(0);
+  input.reference = reference_samples;
   if (first_dut(task) > 1) {
     input.sync = channels.channel(1);
   }
@@ -57,26 +60,28 @@ analysis::AnalogueInput input_of(const StepTask& task, const SelectedChannels& c
   return input;
 }
 
+analysis::Expected<EvaluatedStep> evaluate_channels(const StepTask& task,
+                                                    const SelectedChannels& channels) {
+  DYNCAL_TRY(const auto reference, reference_response(*task.recipe, task.step()));
+  DYNCAL_TRY(const auto samples, reference_channel(channels));
+  DYNCAL_TRY(const auto result,
+             analysis::evaluate_analogue(input_of(task, channels, samples, reference)));
+  EvaluatedStep step{{result.reference}, result.points, result.findings};
+  if (result.sync) {
+    step.common_fits.push_back(*result.sync);
+  }
+  return step;
+}
+
 std::vector<StepResult> evaluate(StepTask task, SourceInterval acs) {
   SelectedChannels channels = select_channels(*task.recipe, std::move(acs));
   if (task.recipe->settling_from_data) {
     leave_settling_out(task, channels);
   }
-  const auto evaluated = evaluate_without_knocks(task, {&channels}, [&] {
-    return reference_response(*task.recipe, task.step())
-        .and_then([&](const analysis::ReferenceResponse& reference) {
-          return analysis::evaluate_analogue(input_of(task, channels, reference));
-        })
-        .map([](const analysis::ComparisonResult& result) {
-          EvaluatedStep step{{result.reference}, result.points, result.findings};
-          if (result.sync) {
-            step.common_fits.push_back(*result.sync);
-          }
-          return step;
-        });
-  });
+  const auto evaluated =
+      evaluate_without_knocks(task, {&channels}, [&] { return evaluate_channels(task, channels); });
   StepInput input{.dut = task.recipe->dut(),
-                  .reference_unit = channels.unit(0),
+                  .reference_unit = excitation_unit(channels),
                   .units = units_of(channels, channels, first_dut(task)),
                   .samples = {channels.summary()},
                   .data_sha256 = digest_of({&channels}),

@@ -6,8 +6,10 @@
 
 #include <fmt/core.h>
 
+#include "analysis/interferometer/reference_motion.hpp"
 #include "analysis/sine/background_spectrum.hpp"
 #include "analysis/sine/stationary_line.hpp"
+#include "services/contract/excitation_quantity.hpp"
 
 namespace dyncal::inline evaluation {
 namespace {
@@ -110,12 +112,13 @@ void measure_in_step(const std::vector<WantedLine>& wanted, const analysis::Chan
 
 // An exciter rings down in the beginning of quiet time: what its later parts show counts, if the
 // whole of it does not last.
-void measure_in_quiet(const std::vector<WantedLine>& wanted, const StepSamples& quiet,
-                      std::size_t column, ChannelLines& lines) {
-  if (quiet.stamps_ns.size() < 3) {
+void measure_in_quiet(const std::vector<WantedLine>& wanted,
+                      std::span<const std::int64_t> stamps_ns, std::span<const double> values,
+                      ChannelLines& lines) {
+  if (stamps_ns.size() < 3) {
     return;
   }
-  const double rate_hz = rate_of(quiet.stamps_ns);
+  const double rate_hz = rate_of(stamps_ns);
   for (const WantedLine& one : wanted) {
     const bool own = one.kind == LineKind::background && one.line_hz == lines.frequency_hz;
     if (one.kind != LineKind::mains && !own) {
@@ -123,16 +126,27 @@ void measure_in_quiet(const std::vector<WantedLine>& wanted, const StepSamples& 
     }
     const double seen_hz = analysis::folded_hz(one.line_hz, rate_hz);
     for (const std::size_t part : {1, 2, 4}) {
-      const std::size_t first = quiet.stamps_ns.size() - quiet.stamps_ns.size() / part;
-      const auto found =
-          analysis::measure_stationary_line(one.line_hz, seen_hz, quiet.stamps_ns.subspan(first),
-                                            quiet.columns[column].subspan(first));
+      const std::size_t first = stamps_ns.size() - stamps_ns.size() / part;
+      const auto found = analysis::measure_stationary_line(
+          one.line_hz, seen_hz, stamps_ns.subspan(first), values.subspan(first));
       if (found) {
         lines.in_quiet.push_back(measured_line(one, *found, 1.0));
         break;
       }
     }
   }
+}
+
+// Below all that is looked for: what a displacement does there is slow motion of the table.
+double slowest_of(const Recipe& recipe) {
+  double slowest_hz = std::numeric_limits<double>::infinity();
+  for (const double line_hz : recipe.mains_hz) {
+    slowest_hz = std::min(slowest_hz, line_hz);
+  }
+  for (const RecipeStep& step : recipe.steps) {
+    slowest_hz = std::min(slowest_hz, step.frequency.hz());
+  }
+  return slowest_hz;
 }
 
 struct StepLines {
@@ -186,10 +200,24 @@ ChannelLines check_lines(const Recipe& recipe, const LineSubject& subject,
 ChannelLines check_lines(const Recipe& recipe, const LineSubject& subject,
                          const analysis::ChannelFit& fit, const SelectedChannels& selected,
                          std::size_t index) {
-  StepLines found =
-      check_step(recipe, subject, fit, selected.stamps_ns(), selected.channel(index).values);
+  const bool moves = quadrature_signals_of(selected.record().description(),
+                                           selected.description(index).name) != nullptr;
+  const double slowest_hz = slowest_of(recipe);
+  const auto without_drift = [&](std::span<const std::int64_t> stamps_ns,
+                                 std::span<const double> values) {
+    return moves ? analysis::without_slow_motion(slowest_hz, stamps_ns, values)
+                 : std::vector<double>{};
+  };
+  const std::span<const double> values = selected.channel(index).values;
+  const std::vector<double> without = without_drift(selected.stamps_ns(), values);
+  StepLines found = check_step(recipe, subject, fit, selected.stamps_ns(),
+                               moves ? std::span<const double>(without) : values);
   if (!found.wanted.empty()) {
-    measure_in_quiet(found.wanted, selected.quiet_samples(), index, found.lines);
+    const StepSamples quiet = selected.quiet_samples();
+    const auto column = quiet.columns.empty() ? std::span<const double>() : quiet.columns[index];
+    const std::vector<double> still = without_drift(quiet.stamps_ns, column);
+    measure_in_quiet(found.wanted, quiet.stamps_ns, moves ? std::span<const double>(still) : column,
+                     found.lines);
   }
   return std::move(found.lines);
 }

@@ -4,6 +4,7 @@
 #include "services/evaluation/method/disturbance_cut.hpp"
 #include "services/evaluation/method/method_kinds.hpp"
 #include "services/evaluation/method/own_clock_sensors.hpp"
+#include "services/evaluation/method/reference_channel.hpp"
 #include "services/evaluation/method/step_results.hpp"
 #include "services/evaluation/method/step_task.hpp"
 
@@ -28,10 +29,11 @@ analysis::Expected<EvaluatedStep> evaluate_channels(const StepTask& task,
   DYNCAL_TRY(require_samples(channels.dut));
   DYNCAL_TRY(const auto adc, adc_response(recipe, task.step()));
   DYNCAL_TRY(const auto reference, reference_response(recipe, task.step()));
+  DYNCAL_TRY(const auto reference_samples, reference_channel(channels.acs));
   analysis::SampleStampingInput input{.frequency = task.step().frequency,
                                       .frequency_search_rel = recipe.frequency_search_rel,
                                       .acs_stamps_ns = channels.acs.stamps_ns(),
-                                      .reference = channels.acs.channel(0),
+                                      .reference = reference_samples,
                                       .sync_acs = channels.acs.channel(1),
                                       .dau_stamps_ns = channels.sync.stamps_ns(),
                                       .sync_dau = channels.sync.channel(0),
@@ -65,7 +67,7 @@ std::vector<StepResult> evaluate_sensor(StepTask task, const StepSources& source
   return make_results(
       task,
       {.dut = dut_of(*task.recipe, sensor.record->source()),
-       .reference_unit = channels.acs.unit(0),
+       .reference_unit = excitation_unit(channels.acs),
        .units = units_of(channels.acs, channels.dut, 0),
        .samples = {channels.acs.summary(), channels.sync.summary(), channels.dut.summary()},
        .data_sha256 = digest_of({&channels.acs, &channels.sync, &channels.dut}),

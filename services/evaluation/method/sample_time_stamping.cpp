@@ -1,6 +1,7 @@
 #include "analysis/method/sample_stamping.hpp"
 #include "services/evaluation/method/disturbance_cut.hpp"
 #include "services/evaluation/method/method_kinds.hpp"
+#include "services/evaluation/method/reference_channel.hpp"
 #include "services/evaluation/method/step_results.hpp"
 #include "services/evaluation/method/step_settling.hpp"
 #include "services/evaluation/method/step_task.hpp"
@@ -27,8 +28,9 @@ std::vector<ChannelName> channels_under_calibration(const Recipe& recipe, const 
 }
 
 void leave_settling_out(StepTask& task, SelectedChannels& acs, SelectedChannels& dau) {
+  const StepSamples samples = settling_samples(acs, task.step().frequency.hz());
   const StepSettling settling = find_settling_of_step(
-      task.step(), task.recipe->frequency_search_rel, {acs.samples(), 1, {0}}, sensor_columns(dau));
+      task.step(), task.recipe->frequency_search_rel, {samples, 1, {0}}, sensor_columns(dau));
   if (settling.flag) {
     task.flags.push_back(*settling.flag);
   }
@@ -42,10 +44,11 @@ evaluate_channels(const StepTask& task, const SelectedChannels& acs, const Selec
   const Recipe& recipe = *task.recipe;
   DYNCAL_TRY(const auto adc, adc_response(recipe, task.step()));
   DYNCAL_TRY(const auto reference, reference_response(recipe, task.step()));
+  DYNCAL_TRY(const auto reference_samples, reference_channel(acs));
   analysis::SampleStampingInput input{.frequency = task.step().frequency,
                                       .frequency_search_rel = recipe.frequency_search_rel,
                                       .acs_stamps_ns = acs.stamps_ns(),
-                                      .reference = acs.channel(0),
+                                      .reference = reference_samples,
                                       .sync_acs = acs.channel(1),
                                       .dau_stamps_ns = dau.stamps_ns(),
                                       .sync_dau = dau.channel(0),
@@ -78,7 +81,7 @@ std::vector<StepResult> evaluate(StepTask task, SourceInterval acs_source,
                                             [&] { return evaluate_channels(task, acs, dau); });
   return make_results(task,
                       {.dut = dut,
-                       .reference_unit = acs.unit(0),
+                       .reference_unit = excitation_unit(acs),
                        .units = units_of(acs, dau, 1),
                        .samples = {acs.summary(), dau.summary()},
                        .data_sha256 = digest_of({&acs, &dau}),

@@ -10,6 +10,7 @@
 #include "analysis/base/phasor.hpp"
 #include "analysis/method/series_stamping.hpp"
 #include "services/evaluation/method/line_check.hpp"
+#include "services/evaluation/method/reference_channel.hpp"
 #include "services/evaluation/method/series_checks.hpp"
 #include "services/evaluation/method/series_shots.hpp"
 #include "services/evaluation/method/shape_check.hpp"
@@ -135,7 +136,8 @@ double u_phase_of(const std::vector<analysis::Contribution>& budget) {
 }
 
 void add_value(const SeriesSettings& settings, const EvaluatedSeries& evaluated,
-               const analysis::SeriesChannelResult& channel, StepResult& result) {
+               const SelectedChannels& acs, const analysis::SeriesChannelResult& channel,
+               StepResult& result) {
   double u_magnitude_rel = 0.0;
   result.valid = true;
   result.magnitude = channel.mean.magnitude;
@@ -145,7 +147,7 @@ void add_value(const SeriesSettings& settings, const EvaluatedSeries& evaluated,
       SeriesFinding{rate.real_rate_hz,
                     std::hypot(rate.u_real_rate_hz, settings.u_acs_rate_rel * rate.real_rate_hz),
                     to_string(evaluated.start.kind), evaluated.start.scatter_s};
-  result.fits = {evaluated.result.reference, evaluated.result.sync_acs};
+  result.fits = {excitation_fit(acs, evaluated.result.reference), evaluated.result.sync_acs};
   result.budget = budget_of(channel);
   for (const analysis::Contribution& row : result.budget) {
     u_magnitude_rel = std::hypot(u_magnitude_rel, row.u_magnitude_rel);
@@ -199,10 +201,10 @@ std::vector<std::size_t> columns_of(const SourceRecord& sensor,
 }
 
 analysis::SeriesStampingInput input_of(const StepTask& task, const SelectedChannels& acs,
+                                       analysis::ChannelSamples reference,
                                        const std::vector<ShotRecord::Shot>& shots, std::size_t sync,
                                        const std::vector<std::size_t>& columns) {
   // The quantisation of the ACS is not a row of this method's budget.
-  analysis::ChannelSamples reference = acs.channel(0);
   analysis::ChannelSamples sync_acs = acs.channel(1);
   reference.resolution = 0.0;
   sync_acs.resolution = 0.0;
@@ -221,7 +223,7 @@ analysis::SeriesStampingInput input_of(const StepTask& task, const SelectedChann
 StepInput made_of(const SeriesStepInput& input, const SelectedChannels& acs,
                   const std::vector<ShotRecord::Shot>& shots) {
   return {.dut = input.task.recipe->dut(),
-          .reference_unit = acs.unit(0),
+          .reference_unit = excitation_unit(acs),
           .units = {},
           .samples = {acs.summary(),
                       summary_of_shots(input.oscilloscope, shots, &ShotRecord::Shot::trace,
@@ -251,9 +253,10 @@ std::vector<StepResult> results_of(const SeriesStepInput& input, const SelectedC
   std::vector<StepResult> results;
   for (std::size_t i = 0; i < roles.dut.size(); ++i) {
     StepResult result = result_head(task.step(), roles.dut[i]);
-    add_value(task.recipe->series, evaluated, evaluated.result.channels[i], result);
+    add_value(task.recipe->series, evaluated, acs, evaluated.result.channels[i], result);
     const std::size_t column = *input.sensor.channel(roles.dut[i].channel);
-    result.unit = ratio_unit(acs.unit(0), input.sensor.description().channels[column].unit);
+    result.unit =
+        ratio_unit(excitation_unit(acs), input.sensor.description().channels[column].unit);
     add_input(task, of_step, result);
     for (Flag& flag : flags_of_agreement(evaluated.result.channels[i])) {
       result.flags.push_back(std::move(flag));
@@ -263,7 +266,8 @@ std::vector<StepResult> results_of(const SeriesStepInput& input, const SelectedC
     }
     std::vector<analysis::SineShape> shapes;
     add_check(check_series(checked, roles.dut[i], column, shapes), result);
-    check_shape_of_shots(evaluated.result.reference, roles.dut[i].text(), shapes, result);
+    check_shape_of_shots(evaluated.result.reference, is_differentiated(acs), roles.dut[i].text(),
+                         shapes, result);
     std::vector<ChannelLines> lines = common_lines;
     lines.push_back(lines_of_series(checked, roles.dut[i], column));
     add_lines(std::move(lines), result);
@@ -290,11 +294,15 @@ SeriesStepOutput evaluate_series_step(const SeriesStepInput& step) {
   if (shots.empty()) {
     return without_result(step, "the records of the shots lack a channel that was described");
   }
-  analysis::SeriesStampingInput input = input_of(step.task, acs, shots, sync, columns);
   const auto reference = reference_response(*step.task.recipe, step.task.step());
   if (!reference) {
     return without_result(step, reference.error().message);
   }
+  const auto samples = reference_channel(acs);
+  if (!samples) {
+    return without_result(step, samples.error().message);
+  }
+  analysis::SeriesStampingInput input = input_of(step.task, acs, *samples, shots, sync, columns);
   input.reference_response = *reference;
   const auto evaluated = evaluate_series(input, step.start_so_far);
   if (!evaluated) {

@@ -110,9 +110,9 @@ void check_peaks(const std::string& reference_name, const std::string& channel,
 }
 
 // Which quantity a voltage stands for nobody says.
-std::span<const int> derivatives_of(const std::string& unit) {
-  return unit == R"(\one)" ? std::span<const int>(analysis::same_quantity)
-                           : std::span<const int>(analysis::other_quantity);
+std::span<const int> derivatives_of(const std::string& unit, bool is_differentiated) {
+  return unit == R"(\one)" && !is_differentiated ? std::span<const int>(analysis::same_quantity)
+                                                 : std::span<const int>(analysis::other_quantity);
 }
 
 // The mean of every order that all shots show.
@@ -141,8 +141,8 @@ analysis::SineShape mean_shape(std::span<const analysis::SineShape> shots) {
 
 } // namespace
 
-void check_shape(const analysis::ChannelFit& reference, const analysis::ChannelFit& sensor,
-                 StepResult& result) {
+void check_shape(const analysis::ChannelFit& reference, bool is_differentiated,
+                 const analysis::ChannelFit& sensor, StepResult& result) {
   if (!result.valid) {
     return;
   }
@@ -153,17 +153,18 @@ void check_shape(const analysis::ChannelFit& reference, const analysis::ChannelF
   if (reference.integrity && sensor.integrity) {
     check_peaks(reference.channel, sensor.channel,
                 analysis::find_bent_peaks(sensor.integrity->shape, reference.integrity->shape,
-                                          derivatives_of(result.unit)),
+                                          derivatives_of(result.unit, is_differentiated)),
                 result, !holds_values(sensor) && !holds_values(reference));
   }
 }
 
-void check_shape_of_shots(const analysis::ChannelFit& reference, const std::string& channel,
-                          std::span<const analysis::SineShape> shots, StepResult& result) {
+void check_shape_of_shots(const analysis::ChannelFit& reference, bool is_differentiated,
+                          const std::string& channel, std::span<const analysis::SineShape> shots,
+                          StepResult& result) {
   if (result.valid && reference.integrity && !shots.empty()) {
     check_peaks(reference.channel, channel,
                 analysis::find_bent_peaks(mean_shape(shots), reference.integrity->shape,
-                                          derivatives_of(result.unit)),
+                                          derivatives_of(result.unit, is_differentiated)),
                 result);
   }
 }

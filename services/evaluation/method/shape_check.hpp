@@ -23,12 +23,14 @@
 
 namespace dyncal::inline evaluation {
 
-// `result` has its value and u. Channels without integrity are not judged.
-void check_shape(const analysis::ChannelFit& reference, const analysis::ChannelFit& sensor,
-                 StepResult& result);
+// `result` has its value and u; `is_differentiated`: the response is per another quantity than that
+// of the reference's samples. Channels without integrity are not judged.
+void check_shape(const analysis::ChannelFit& reference, bool is_differentiated,
+                 const analysis::ChannelFit& sensor, StepResult& result);
 
 // Bent peaks of a triggered series, by the mean shape of its shots.
-void check_shape_of_shots(const analysis::ChannelFit& reference, const std::string& channel,
-                          std::span<const analysis::SineShape> shots, StepResult& result);
+void check_shape_of_shots(const analysis::ChannelFit& reference, bool is_differentiated,
+                          const std::string& channel, std::span<const analysis::SineShape> shots,
+                          StepResult& result);
 
 } // namespace dyncal::inline evaluation

@@ -9,6 +9,7 @@
 #include "services/evaluation/method/clock_check.hpp"
 #include "services/evaluation/method/line_check.hpp"
 #include "services/evaluation/method/monte_carlo_check.hpp"
+#include "services/evaluation/method/reference_channel.hpp"
 #include "services/evaluation/method/shape_check.hpp"
 #include "services/evaluation/method/unstated_uncertainty.hpp"
 
@@ -30,6 +31,14 @@ std::optional<Flag> find_level_deviation(const RecipeStep& step, double level_de
   return flag_with_reason(
       ResultFlag::level_off_plan,
       fmt::format("{:.4g} m/s^2 in place of {:.4g} m/s^2", measured_m_s2, step.level_m_s2));
+}
+
+// The sines of the common channels as results show them: that of the reference in the unit that the
+// response is per.
+std::vector<analysis::ChannelFit> shown_fits(const StepInput& input,
+                                             std::vector<analysis::ChannelFit> common_fits) {
+  common_fits.front() = excitation_fit(*input.common.front().selected, common_fits.front());
+  return common_fits;
 }
 
 StepResult point_result(const StepTask& task, const ChannelName& channel,
@@ -183,10 +192,11 @@ std::vector<StepResult> make_results(const StepTask& task, const StepInput& inpu
   const std::vector<SignalCheck> common = check_common(step->common_fits);
   const std::vector<ChannelLines> common_lines = lines_of_common(task, input, step->common_fits);
   const std::vector<SteppedClock> stepped = stepped_clocks(task, input);
+  const std::vector<analysis::ChannelFit> shown = shown_fits(input, step->common_fits);
   std::vector<StepResult> results;
   for (std::size_t i = 0; i < input.dut.size() && !task.given_up.stop_requested(); ++i) {
     StepResult& result =
-        results.emplace_back(point_result(task, input.dut[i], step->points[i], step->common_fits));
+        results.emplace_back(point_result(task, input.dut[i], step->points[i], shown));
     result.unit = input.units[i];
     add_input(task, input, result);
     add_clock_check(stepped, result);
@@ -197,7 +207,8 @@ std::vector<StepResult> make_results(const StepTask& task, const StepInput& inpu
       add_check(check, result);
     }
     add_check(check_signal(step->points[i].dut), result);
-    check_shape(step->common_fits.front(), step->points[i].dut, result);
+    check_shape(step->common_fits.front(), is_differentiated(*input.common.front().selected),
+                step->points[i].dut, result);
     std::vector<ChannelLines> lines = common_lines;
     lines.push_back(check_lines(*task.recipe, {"the sensor"}, step->points[i].dut,
                                 *input.first_dut.selected, input.first_dut.index + i));
@@ -214,7 +225,7 @@ std::vector<std::string> units_of(const SelectedChannels& acs, const SelectedCha
                                   std::size_t first_dut) {
   std::vector<std::string> units;
   for (std::size_t i = first_dut; i < dut.size(); ++i) {
-    units.push_back(ratio_unit(acs.unit(0), dut.unit(i)));
+    units.push_back(ratio_unit(excitation_unit(acs), dut.unit(i)));
   }
   return units;
 }

@@ -1,6 +1,7 @@
 // Amplitude and phase of a sine of known frequency in part of a channel's record (three-parameter
 // approximation, analysis/sine/sine_fit.hpp), in the unit of the channel: for what is decided while
-// a step is excited, without uncertainty.
+// a step is excited, without uncertainty. A displacement that is made of quadrature signals is
+// taken without the slow motion of the table, as the acceleration at that frequency, in m/s^2.
 //
 // Plain functions, any thread.
 #pragma once
@@ -8,6 +9,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "analysis/base/frequency.hpp"
 #include "services/evaluation/record/source_record.hpp"
@@ -17,6 +20,15 @@ namespace dyncal::inline evaluation {
 
 // How many seconds of samples show the amplitude at this frequency: four periods, 0.2 s at least.
 [[nodiscard]] double level_window_s(double frequency_hz);
+
+struct ChannelPart {
+  std::span<const std::int64_t> stamps_ns; // of the record
+  std::vector<double> values;
+};
+// Empty where the record has no such column.
+[[nodiscard]] ChannelPart part_of(const SourceRecord& record, std::size_t channel,
+                                  const TimeInterval& interval,
+                                  const analysis::Frequency& frequency);
 
 struct SineOfPart {
   double amplitude = 0.0;

@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "analysis/interferometer/decimation_filter.hpp"
+#include "services/contract/excitation_quantity.hpp"
 #include "services/contract/role_quantities.hpp"
 
 namespace dyncal::inline evaluation {
@@ -40,6 +42,27 @@ Expected<void> check_quantities(const Recipe& recipe, const RunRecords& records)
                                                                    problems.front().sentence));
 }
 
+// A displacement of quadrature signals went through a filter that is flat up to a part of its rate.
+Expected<void> check_pass_band(const Recipe& recipe, const SourceRecord& source) {
+  const ChannelName& reference = recipe.reference();
+  const double limit_hz = analysis::flat_pass_band * source.description().nominal_rate_hz;
+  if (reference.source != source.source() ||
+      quadrature_signals_of(source.description(), reference.channel) == nullptr) {
+    return {};
+  }
+  for (const RecipeStep& step : recipe.steps) {
+    if (step.frequency.hz() > limit_hz) {
+      return fail(
+          ErrorCode::no_source,
+          fmt::format("step {} has {} Hz, but {} is right up to {:.6g} Hz only at its rate; "
+                      "raise output_rate_hz of its interferometer, or take the step out of "
+                      "the bench file",
+                      step.step, step.frequency_text_hz, reference.text(), limit_hz));
+    }
+  }
+  return {};
+}
+
 // A sine at or above half the sample rate looks like one of another frequency.
 Expected<void> check_frequencies(const Recipe& recipe, const SourceRecord& source) {
   const double rate_hz = source.description().nominal_rate_hz;
@@ -65,7 +88,8 @@ Expected<void> check_source(const Recipe& recipe, const RunRecords& records,
                             const SourceRecord& source) {
   return check_channels(recipe, source)
       .and_then([&] { return check_quantities(recipe, records); })
-      .and_then([&] { return check_frequencies(recipe, source); });
+      .and_then([&] { return check_frequencies(recipe, source); })
+      .and_then([&] { return check_pass_band(recipe, source); });
 }
 
 void keep_needed_channels(const Recipe& recipe, SourceRecord& source) {

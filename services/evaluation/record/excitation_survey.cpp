@@ -6,6 +6,7 @@
 #include <set>
 
 #include "analysis/base/statistics.hpp"
+#include "services/contract/excitation_quantity.hpp"
 #include "services/contract/unit.hpp"
 #include "services/evaluation/record/channel_level.hpp"
 #include "services/evaluation/record/good_samples.hpp"
@@ -64,7 +65,7 @@ void ExcitationSurvey::describe(drivers::SourceDescription description) {
   if (reference_) {
     const std::size_t reference = *record_.channel(*reference_);
     columns.insert(reference);
-    if (!is_acceleration(record_.description().channels[reference].unit)) {
+    if (!is_acceleration(excitation_unit(record_.description(), *reference_))) {
       reference_.reset();
     }
   }

@@ -57,9 +57,10 @@ Expected<void> SourceStreams::describe(const std::string& name, Stream& stream,
   const bool same_session = stream.description &&
                             stream.description->session() == description.session() &&
                             !is_triggered(stream);
-  if (same_session) {
+  if (same_session) { // what its samples mean was known from the beginning
+    evaluator_.describe_signals(name, from_message(description).quadrature_signals);
     take_description(stream, description);
-    return {}; // what its samples mean was known from the beginning
+    return {};
   }
   if (stream.description || begin_ == Begin::behind) {
     if (std::string why = rejection_reason(name, description); !why.empty()) {

@@ -116,6 +116,13 @@ void collect(EvaluationOutput output, RunOutcome& outcome) {
   append(output.clock_reports, outcome.clock_reports);
 }
 
+// An interferometer has found a better ellipse.
+void describe_anew(const std::string& source, const drivers::SourceDescription& description,
+                   RunEvaluator& evaluator, RunOutcome& outcome) {
+  std::ranges::find(outcome.sources, source, &RunSource::source)->description = description;
+  evaluator.describe_signals(source, description.quadrature_signals);
+}
+
 // Takes from the file that is behind in its own time, so that no record has to wait long for the
 // other.
 Expected<void> evaluate(Inputs inputs, RunEvaluator& evaluator, const std::stop_token& stop,
@@ -126,6 +133,9 @@ Expected<void> evaluate(Inputs inputs, RunEvaluator& evaluator, const std::stop_
           return a->reached_ns() < b->reached_ns();
         });
     DYNCAL_TRY(const auto block, (*behind)->next());
+    if (block.description) {
+      describe_anew((*behind)->source(), *block.description, evaluator, outcome);
+    }
     evaluator.add((*behind)->source(), (*behind)->view(block));
     collect(evaluator.take_output(), outcome);
     if (block.end_of_stream) {

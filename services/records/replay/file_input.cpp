@@ -36,6 +36,9 @@ Expected<std::unique_ptr<drivers::SampleSource>> driver_of(const SourceSettings&
   }
   SourceSettings at_once = settings;
   std::get<FileSourceSettings>(at_once.driver).play_speed = 0.0;
+  if (at_once.interferometer) {
+    at_once.interferometer->record.clear(); // its raw signals are recorded
+  }
   return make_driver(at_once);
 }
 
@@ -66,13 +69,20 @@ Expected<std::unique_ptr<FileInput>> FileInput::open(const SourceSettings& setti
                 fmt::format("source '{}': {}: leave the unit out of one of both", settings.name,
                             doubts.front()));
   }
+  input->identity_ = settings.identity;
   input->factors_ = unit_factors(*described, settings.identity);
   input->description_ = with_identity(std::move(*described), settings.identity);
   input->thread_ = std::jthread([raw = input.get()] { raw->read(); });
   return input;
 }
 
+void FileInput::describe(const drivers::SourceDescription& description) {
+  const std::lock_guard lock(mutex_);
+  described_.emplace_back(offered_, with_identity(description, identity_));
+}
+
 void FileInput::take(drivers::SampleBlock block) {
+  ++offered_;
   convert(factors_, block.samples, block.values);
   ahead_.offer_waiting(entry_of(std::move(block)), abandoned_.get_token());
 }
@@ -96,8 +106,21 @@ Expected<FileBlock> FileInput::next() {
                     : FileBlock{.samples = {}, .number = number_++, .end_of_stream = true};
   }
   FileBlock block{.samples = std::move(entry->block), .number = number_++};
+  take_description(block);
   note_time(view(block));
   return block;
+}
+
+// Of those before the block the newest.
+void FileInput::take_description(FileBlock& block) {
+  const std::lock_guard lock(mutex_);
+  while (!described_.empty() && described_.front().first <= block.number) {
+    if (!(described_.front().second == description_)) {
+      description_ = described_.front().second;
+      block.description = description_;
+    }
+    described_.pop_front();
+  }
 }
 
 SourceBlock FileInput::view(const FileBlock& block) const {

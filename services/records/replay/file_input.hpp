@@ -7,11 +7,15 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <stop_token>
 #include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "drivers/sample_source.hpp"
 #include "services/base/error.hpp"
@@ -24,6 +28,7 @@ namespace dyncal::inline records {
 // The next samples of a file, or the end of its stream without any.
 struct FileBlock {
   drivers::SampleBlock samples;
+  std::optional<drivers::SourceDescription> description{}; // where it has changed before them
   std::uint64_t number = 0;
   bool end_of_stream = false;
 };
@@ -50,19 +55,24 @@ public:
 private:
   FileInput(std::string source, std::unique_ptr<drivers::SampleSource> driver);
 
-  // One session, described before it is played; losses show as gaps of the sample numbers.
-  void describe(const drivers::SourceDescription& /*description*/) override {}
+  // One session; losses show as gaps of the sample numbers. Called in the reading thread.
+  void describe(const drivers::SourceDescription& description) override;
   void begin_session() override {}
   void count(const drivers::SampleCounts& /*counts*/) override {}
   void warn(const std::string& /*sentence*/) override {}
   void take(drivers::SampleBlock block) override;
   void read();
+  void take_description(FileBlock& block);
   void note_time(const SourceBlock& block);
 
   std::string source_;
   std::unique_ptr<drivers::SampleSource> driver_;
   drivers::SourceDescription description_;
+  DeviceIdentity identity_;
   std::vector<double> factors_; // as unit_factors()
+  std::mutex mutex_;            // of the descriptions to come
+  std::deque<std::pair<std::uint64_t, drivers::SourceDescription>> described_; // by the block after
+  std::uint64_t offered_ = 0; // blocks, in the reading thread
   std::uint64_t number_ = 0;
   std::optional<std::int64_t> first_ns_;
   std::int64_t reached_ns_ = 0;

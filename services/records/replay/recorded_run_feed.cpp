@@ -80,6 +80,8 @@ void RecordedRunFeed::take(const recording::MessageInFile& message) {
     take_excitation(message);
   } else if (topic == topics::measurement) {
     take_state(message);
+  } else if (topic == topics::source_description) {
+    take_description(message);
   } else if (topic == topics::dau_samples || topic == topics::acs_samples ||
              topic == topics::can_samples) {
     take_of_source<wire::SampleBlock>(message);
@@ -125,6 +127,23 @@ void RecordedRunFeed::take_state(const recording::MessageInFile& message) {
       (measurement->state() == wire::MEASUREMENT_DONE ||
        measurement->state() == wire::MEASUREMENT_ABORTED)) {
     announcements_.add(here(), measurement->state());
+  }
+}
+
+// A source describes its quadrature signals anew when it has found a better ellipse.
+void RecordedRunFeed::take_description(const recording::MessageInFile& message) {
+  const auto description = recording::decode<wire::SourceDescription>(message.message.data);
+  const auto found = description && description->bench() == bench_
+                         ? sources_.find(description->source().to_string())
+                         : sources_.end();
+  if (found == sources_.end()) {
+    return;
+  }
+  Source& source = found->second;
+  auto& signals = source.signals[description->session()];
+  signals = from_message(*description).quadrature_signals;
+  if (source.described == description->session() && !source.is_unfit) {
+    evaluator_.describe_signals(found->first, signals);
   }
 }
 
@@ -204,7 +223,11 @@ void RecordedRunFeed::describe(const std::string& name, Source& source, std::uin
   if (source.is_unfit) {
     return;
   }
-  if (auto described = evaluator_.describe(name, from_message(description)); !described) {
+  drivers::SourceDescription stated = from_message(description);
+  if (const auto walked = source.signals.find(session); walked != source.signals.end()) {
+    stated.quadrature_signals = walked->second;
+  }
+  if (auto described = evaluator_.describe(name, std::move(stated)); !described) {
     source.is_unfit = !is_first;
     outcome_of_walk_ = is_first ? std::move(described) : Expected<void>{};
   }

@@ -49,6 +49,8 @@ private:
     bool answered = false;
     std::optional<std::uint64_t> described{}; // session
     drivers::SourceDescription first{};       // what the run began with
+    // As far as the file has been walked, the newest of each session.
+    std::map<std::uint64_t, std::vector<drivers::QuadratureSignals>> signals{};
     std::deque<WaitingBlock> waiting{};
     std::uint64_t waiting_since = 0;
     // Its session: the run cannot go by what it describes
@@ -58,6 +60,7 @@ private:
 
   void take_excitation(const recording::MessageInFile& message);
   void take_state(const recording::MessageInFile& message);
+  void take_description(const recording::MessageInFile& message);
   template <class T>
   void take_of_source(const recording::MessageInFile& message);
   void add(const std::string& name, Source& source, const wire::SampleBlock& block,

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "services/contract/channel_name.hpp"
+#include "services/contract/excitation_quantity.hpp"
 #include "services/contract/unit.hpp"
 #include "services/views/report/json_members.hpp"
 #include "services/views/report/result_json.hpp"
@@ -44,10 +45,7 @@ std::optional<std::string> reference_of(const network::Bench& bench, const netwo
   if (source == bench.sources.end() || !source->second.description) {
     return std::nullopt;
   }
-  const auto& channels = source->second.description->channels;
-  const auto channel =
-      std::ranges::find(channels, name->channel, &drivers::ChannelDescription::name);
-  return channel != channels.end() && is_acceleration(channel->unit)
+  return is_acceleration(excitation_unit(*source->second.description, name->channel))
              ? std::optional(run.plan->reference)
              : std::nullopt;
 }

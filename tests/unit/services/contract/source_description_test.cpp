@@ -48,6 +48,20 @@ TEST(SourceDescription, ComesBackFromItsMessageAsItWasSent) {
   sent.nominal_rate_hz = 1000.0;
   sent.tick_s = 1e-8;
   sent.stamp_uncertainty_s = 2e-7;
+  sent.quadrature_signals = {{.channel = "temperature",
+                              .displacement_per_turn_m = -316e-9,
+                              .u_wavelength_rel = 2e-6,
+                              .centre_u1 = 0.02,
+                              .centre_u2 = -0.01,
+                              .radius_u1 = 0.6,
+                              .radius_ratio = 1.05,
+                              .quadrature_error_rad = 0.09,
+                              .turns_covered = 17.5,
+                              .ellipse_from = "a test",
+                              .u_ellipse_rad = {1e-3, 2e-3},
+                              .periodic_error_rad = {0.0, 0.1, 0.2, 0.3},
+                              .detector_bandwidth_hz = 1e6,
+                              .u_skew_s = 1e-9}};
   std::set<wire::StampInstant> instants;
   for (int i = 0; i <= static_cast<int>(drivers::StampInstant::frame_end); ++i) {
     sent.stamp_instant = static_cast<drivers::StampInstant>(i);
@@ -57,6 +71,7 @@ TEST(SourceDescription, ComesBackFromItsMessageAsItWasSent) {
     const drivers::SourceDescription read = from_message(message);
     EXPECT_EQ(read.stamp_instant, sent.stamp_instant);
     EXPECT_EQ(read.time_base, sent.time_base);
+    EXPECT_EQ(read.quadrature_signals, sent.quadrature_signals);
     EXPECT_EQ(read.device, "MPU-9250");
     EXPECT_EQ(read.serial, "0xbccb0100");
     EXPECT_EQ(read.firmware, "2.1");
