@@ -110,9 +110,14 @@ constexpr auto start_limit = 10s;
 constexpr int first_demo_domain = 20;
 constexpr int demo_domains = 80;
 
-// Of the virtual laser: the bench draws its errors from them and the recipe states them.
-constexpr DemoUncertainty reference_uncertainty{
-    .reference_magnitude_rel = 5e-4, .reference_phase_rad = 5e-4, .acs_rate_rel = 3e-7};
+// Of the reference: the bench draws its errors from them and the recipe states them. With the
+// interferometer on the bench it is for the motion of its spot beside the sensor.
+DemoUncertainty uncertainty_of(const DemoPreset& preset) {
+  const double of_reference = preset.laser ? 1e-4 : 5e-4;
+  return {.reference_magnitude_rel = of_reference,
+          .reference_phase_rad = of_reference,
+          .acs_rate_rel = 3e-7};
+}
 
 struct Demo {
   DemoPreset preset;
@@ -218,6 +223,7 @@ double bench_seconds(const DemoPreset& preset) {
 std::vector<std::string> bench_arguments(const DemoOptions& command, const Demo& demo,
                                          std::uint16_t dau_port) {
   const DemoPreset& preset = demo.preset;
+  const DemoUncertainty uncertainty = uncertainty_of(preset);
   std::vector<std::pair<std::string, std::string>> options{
       {"--preset", preset.sensor()},
       {"--seed", std::to_string(command.seed)},
@@ -230,9 +236,8 @@ std::vector<std::string> bench_arguments(const DemoOptions& command, const Demo&
       {"--ports-file", demo.folder / "ports.json"},
       {"--frequencies", fmt::format("{}", fmt::join(preset.frequencies_hz, ","))},
       {"--levels", fmt::format("{}", fmt::join(preset.levels_m_s2, ","))},
-      {"--reference-magnitude-rel",
-       fmt::format("{}", reference_uncertainty.reference_magnitude_rel)},
-      {"--reference-phase-rad", fmt::format("{}", reference_uncertainty.reference_phase_rad)},
+      {"--reference-magnitude-rel", fmt::format("{}", uncertainty.reference_magnitude_rel)},
+      {"--reference-phase-rad", fmt::format("{}", uncertainty.reference_phase_rad)},
       {"--thermal-cycle", fmt::format("{:.0f}", bench_seconds(preset))},
       {"--loss", std::to_string(command.loss)},
       {"--duplicate", std::to_string(command.duplicates)}};
@@ -240,6 +245,10 @@ std::vector<std::string> bench_arguments(const DemoOptions& command, const Demo&
     options.insert(options.end(), {{"--can", command.can_interface},
                                    {"--can-bus", command.can_bus},
                                    {"--dbc-file", demo.folder / "sensor.dbc"}});
+  }
+  if (preset.laser) {
+    const auto of_laser = laser_options();
+    options.insert(options.end(), of_laser.begin(), of_laser.end());
   }
   if (command.response) {
     options.emplace_back("--response", *command.response);
@@ -272,7 +281,7 @@ Expected<void> start_bench(const DemoOptions& command, Demo& demo) {
       write_output_file(demo.folder / "dso-delay.json", "{\"value_s\": 236e-9, \"u_s\": 1e-9}\n"));
   return write_output_file(
       demo.folder / "bench.toml",
-      demo_bench_file(demo.preset, demo.bench, addresses, reference_uncertainty));
+      demo_bench_file(demo.preset, demo.bench, addresses, uncertainty_of(demo.preset)));
 }
 
 Expected<void> start_services(Demo& demo) {

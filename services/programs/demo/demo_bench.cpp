@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "analysis/interferometer/air_wavelength.hpp"
+
 namespace dyncal::inline programs {
 namespace {
 
@@ -37,6 +39,53 @@ temperature = "dau/temperature"
 [corrections]
 adc = {{ file = "adc.json", channel = "ADC1", phase_sign = "lag" }}
 )";
+
+// The raw signals stay between the ACS and dyncal-acs, which publishes the displacement.
+constexpr const char* laser_sources = R"([sources.dau]
+driver = "smartup"
+listen = "{dau}"
+sensor = "0xbccb0100"
+channels = {{ Data_11 = "sync" }}
+time_base = "local"
+
+[sources.acs]
+driver = "socket"
+address = "{acs}"
+
+[sources.acs.interferometer]
+u1 = "u1"
+u2 = "u2"
+channel = "displacement"
+wavelength_vacuum_nm = {laser_nm}   # a He-Ne laser that runs freely
+u_wavelength_rel = {u_laser}
+detector_bandwidth_hz = {bandwidth}
+u_skew_s = {u_skew}
+output_rate_hz = 50000   # of 500000 that the ACS records
+
+[sources.acs.interferometer.air]
+temperature_degc = {degc}
+pressure_pa = {pa}
+humidity_rel = {humidity}
+u_temperature_k = {u_k}
+u_pressure_pa = {u_pa}
+u_humidity_rel = {u_humidity}
+
+[method]
+kind = "sample-timestamping"
+reference = "acs/displacement"
+sync_acs = "acs/sync"
+sync_dau = "dau/sync"
+temperature = "dau/temperature"
+
+[corrections]
+adc = {{ file = "adc.json", channel = "ADC1", phase_sign = "lag" }}
+)";
+
+constexpr analysis::Air laser_air{.temperature_c = 23.0};
+constexpr analysis::AirUncertainty u_laser_air{
+    .u_temperature_k = 0.5, .u_pressure_pa = 100.0, .u_relative_humidity = 0.1};
+constexpr double detector_bandwidth_hz = 20e6;
+constexpr double u_skew_s = 1e-9;
 
 constexpr const char* triggered_sources = R"([sources.dso]
 driver = "oscilloscope"
@@ -117,7 +166,13 @@ std::string sources_of(const DemoPreset& preset, const DemoAddresses& addresses)
         fmt::arg("bit_rate", addresses.can_bus == "500k" ? 500000 : 1000000),
         fmt::arg("data_bit_rate",
                  addresses.can_bus == "fd-5M" ? "data_bit_rate_per_s = 5000000\n" : ""),
-        fmt::arg("correction", preset.trigger_phase_correction));
+        fmt::arg("correction", preset.trigger_phase_correction),
+        fmt::arg("laser_nm", analysis::helium_neon_vacuum_wavelength_m * 1e9),
+        fmt::arg("u_laser", analysis::helium_neon_u_rel), fmt::arg("degc", laser_air.temperature_c),
+        fmt::arg("pa", laser_air.pressure_pa), fmt::arg("humidity", laser_air.relative_humidity),
+        fmt::arg("u_k", u_laser_air.u_temperature_k), fmt::arg("u_pa", u_laser_air.u_pressure_pa),
+        fmt::arg("u_humidity", u_laser_air.u_relative_humidity),
+        fmt::arg("bandwidth", detector_bandwidth_hz), fmt::arg("u_skew", u_skew_s));
   };
   switch (preset.can) {
   case DemoPreset::CanLink::absolute_time:
@@ -127,7 +182,9 @@ std::string sources_of(const DemoPreset& preset, const DemoAddresses& addresses)
   case DemoPreset::CanLink::none:
     break;
   }
-  return filled(preset.triggered ? triggered_sources : stamped_sources);
+  return filled(preset.triggered ? triggered_sources
+                : preset.laser   ? laser_sources
+                                 : stamped_sources);
 }
 
 } // namespace
@@ -158,6 +215,13 @@ const std::vector<DemoPreset>& demo_presets() {
        .levels_m_s2 = {2.75, 5.5, 23, 100, 100, 100},
        .repetitions = 1,
        .triggered = true},
+      // At 50 mm/s there are three samples to a fringe.
+      {.name = "laser",
+       .shows = "an MPU-9250 against a laser interferometer: two signals in quadrature at 500 kS/s",
+       .frequencies_hz = {"10", "16", "25", "40", "63", "80", "100", "125", "160", "250"},
+       .levels_m_s2 = {2.5, 5, 8, 12.5, 20, 25, 31.5, 40, 50, 80},
+       .repetitions = 2,
+       .laser = true},
       {.name = "can",
        .shows = "a sensor with CAN output on a busy bus, stamped in UTC as the analogue system is: "
                 "absolute time",
@@ -194,6 +258,16 @@ std::vector<std::string> keep_frequencies(DemoPreset& preset, double first_hz, d
   preset.frequencies_hz = std::move(frequencies_hz);
   preset.levels_m_s2 = std::move(levels_m_s2);
   return left_out;
+}
+
+std::vector<std::pair<std::string, std::string>> laser_options() {
+  const auto in_air =
+      analysis::wavelength_in_air(analysis::helium_neon_vacuum_wavelength_m,
+                                  analysis::helium_neon_u_rel, laser_air, u_laser_air);
+  return {{"--interferometer", fmt::format("{}", in_air->wavelength_m * 1e9)},
+          {"--wavelength-u-rel", fmt::format("{}", in_air->u_rel)},
+          {"--detector-bandwidth", fmt::format("{}", detector_bandwidth_hz)},
+          {"--skew-u", fmt::format("{}", u_skew_s)}};
 }
 
 std::string demo_bench_file(const DemoPreset& preset, const std::string& bench,

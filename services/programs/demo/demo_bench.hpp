@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace dyncal::inline programs {
@@ -20,8 +21,11 @@ struct DemoPreset {
   bool trigger_phase_correction = true; // of every shot
   enum class CanLink { none, absolute_time, sync_beside };
   CanLink can = CanLink::none; // a sensor with CAN output, and what links it to the ACS
+  bool laser = false;          // an interferometer in place of the reference channel
   // Of the virtual bench.
-  [[nodiscard]] std::string sensor() const { return can == CanLink::none ? name : "mpu9250-ptb"; }
+  [[nodiscard]] std::string sensor() const {
+    return can == CanLink::none && !laser ? name : "mpu9250-ptb";
+  }
 };
 
 [[nodiscard]] const std::vector<DemoPreset>& demo_presets();
@@ -47,6 +51,9 @@ struct DemoUncertainty {
   double reference_phase_rad = 0.0;
   double acs_rate_rel = 0.0;
 };
+
+// Options of the virtual bench that give it the interferometer that the bench file states.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> laser_options();
 
 [[nodiscard]] std::string demo_bench_file(const DemoPreset& preset, const std::string& bench,
                                           const DemoAddresses& addresses,

@@ -1,0 +1,66 @@
+// `dyncal demo --preset laser` as a whole, with either DDS implementation: two raw signals over
+// TCP, a displacement over DDS, the result against the truth.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/system/laboratory.hpp"
+
+namespace dyncal::tests {
+namespace {
+
+class LaserDemo : public testing::TestWithParam<const char*> {};
+
+// Of magnitude or phase, in standard uncertainties.
+double largest_deviation(const nlohmann::json& point, const nlohmann::json& truth) {
+  const double magnitude = point["magnitude"].get<double>() - truth["magnitude"].get<double>();
+  const double phase_rad = std::remainder(
+      point["phase_rad"].get<double>() - truth["phase_rad"].get<double>(), 2.0 * std::numbers::pi);
+  return std::max(std::abs(magnitude) / point["u_magnitude"].get<double>(),
+                  std::abs(phase_rad) / point["u_phase_rad"].get<double>());
+}
+
+TEST_P(LaserDemo, AgreesWithTheTruthWithoutAFlag) {
+  const auto folder = fresh_folder(std::string("laser-demo-") + GetParam());
+  const auto files = folder / "files";
+  ProgramRun demo("dyncal", {"demo", "--preset", "laser", "--dds", GetParam(), "--output", files},
+                  folder);
+  ASSERT_EQ(demo.wait(patience), 0) << demo.output() << demo.errors();
+  const nlohmann::json result = read_json(files / "result.json");
+  const nlohmann::json truth = read_json(files / "truth.json");
+  ASSERT_FALSE(result.is_discarded());
+  ASSERT_FALSE(truth.is_discarded());
+  std::size_t compared = 0;
+  for (const auto& expected : truth["transfer_function"]) {
+    for (const auto& point : result["transfer_function"]) {
+      if (point["channel"] == "dau/" + expected["channel"].get<std::string>() &&
+          point["frequency_hz"] == expected["frequency_hz"]) {
+        EXPECT_LT(largest_deviation(point, expected), 4.0) << point;
+        EXPECT_TRUE(point["flags"].empty()) << point["flags"];
+        ++compared;
+      }
+    }
+  }
+  EXPECT_EQ(compared, 30U); // three axes
+  for (const auto& point : result["points"]) {
+    EXPECT_TRUE(point["valid"].get<bool>()) << point;
+    EXPECT_TRUE(point["flags"].empty()) << point["flags"];
+    EXPECT_EQ(point["lost"], 0) << point["step"];
+  }
+  EXPECT_EQ(result["points"].size(), 60U);
+  for (const char* ending : {".svg", ".csv"}) {
+    const auto path = files / (std::string("ellipse-acs-displacement") + ending);
+    ASSERT_TRUE(std::filesystem::exists(path)) << path << "\n" << demo.output();
+    EXPECT_GT(std::filesystem::file_size(path), 3000U) << path;
+  }
+  EXPECT_TRUE(truth.contains("interferometer"));
+}
+
+INSTANTIATE_TEST_SUITE_P(BothVendors, LaserDemo, testing::Values("fastdds", "cyclonedds"));
+
+} // namespace
+} // namespace dyncal::tests
