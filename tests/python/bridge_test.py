@@ -68,7 +68,7 @@ def point_key(point):
 
 
 def services_of(laboratory):
-    for program in ("dyncal-analysis", "dyncal-dau", "dyncal-acs"):
+    for program in ("dyncal-analysis", "dyncal-acs"):
         laboratory.service(program)
 
 
