@@ -5,6 +5,7 @@
 //
 // 1. One of the paper's ways, by what links the clocks of sensor and reference:
 //    evaluate_sample_stamping()   both record sync, the sensor's samples have stamps
+//    evaluate_table_stamping()    the same, where the reference is a table of phasors
 //    evaluate_series_stamping()   the sensor records series after a trigger, an oscilloscope sync
 //    evaluate_absolute_time()     both clocks follow UTC
 //    evaluate_analogue()          sensor and reference are channels of one clock
@@ -25,6 +26,7 @@
 #include "analysis/method/repetitions.hpp"
 #include "analysis/method/sample_stamping.hpp"
 #include "analysis/method/series_stamping.hpp"
+#include "analysis/method/table_stamping.hpp"
 #include "analysis/method/transfer_check.hpp"
 #include "analysis/method/transfer_point.hpp"
 #include "analysis/uncertainty/budget.hpp"

@@ -9,38 +9,61 @@
 #include "analysis/clock/stamp_beat.hpp"
 #include "analysis/method/blocks_of_clock.hpp"
 #include "analysis/method/channels_of_one_clock.hpp"
+#include "analysis/method/clock_link.hpp"
+#include "analysis/method/dau_rows.hpp"
 #include "analysis/method/own_clock_channel.hpp"
 #include "analysis/method/stamp_rows.hpp"
 
 namespace dyncal::analysis {
 namespace {
 
-double common_jitter_s(const SystematicUncertainty& systematic) {
-  return std::max(systematic.dau_jitter_s, systematic.dau_tick_s / std::sqrt(12.0));
+// Noise of sync in both clocks.
+Budget noise_of_sync(const SampleStampingInput& input, const RecordedChannel& sync_acs,
+                     const RecordedChannel& sync_dau) {
+  Budget budget;
+  add_signal_rows(budget, "the ACS sync", sync_acs, 0.0, CountsIn::phase);
+  add_dau_sync_noise(budget, sync_dau, input.systematic);
+  return budget;
+}
+
+// Of the way of sync to the DAU's samples.
+Budget sync_corrections(const SampleStampingInput& input, const RecordedChannel& sync_dau) {
+  Budget budget;
+  add_dau_adc_rows(budget, input, sync_dau);
+  return budget;
+}
+
+std::optional<ClockLink> clock_link_of(const SampleStampingInput& input,
+                                       const RecordedChannel& sync_acs,
+                                       const RecordedChannel& sync_dau) {
+  if (!input.u_utc_s) {
+    return std::nullopt;
+  }
+  Budget sync = noise_of_sync(input, sync_acs, sync_dau);
+  sync.append(sync_corrections(input, sync_dau));
+  return link_of_clocks(sync_acs, sync_dau, input.adc.phase_lag_rad, sync, *input.u_utc_s);
 }
 
 // Noise of the channels that all channels of the sensor share.
 Budget common_noise(const SampleStampingInput& input, const ChannelsOfOneClock& acs,
-                    const RecordedChannel& sync_dau) {
+                    const RecordedChannel& sync_dau, const std::optional<ClockLink>& clocks) {
   Budget budget;
   add_signal_rows(budget, "the reference", acs.others.front(), 0.0, CountsIn::magnitude_and_phase);
-  add_signal_rows(budget, "the ACS sync", acs.pilot, 0.0, CountsIn::phase);
-  add_signal_rows(budget, "the DAU sync", sync_dau,
-                  std::hypot(input.systematic.sync_adc_jitter_s, common_jitter_s(input.systematic)),
-                  CountsIn::phase);
+  budget.append(as_far_as_sync_counts(noise_of_sync(input, acs.pilot, sync_dau), clocks));
   return budget;
 }
 
 // Rows of the corrections, the same for every channel of the sensor.
 Budget systematic_rows(const SampleStampingInput& input, const ChannelsOfOneClock& acs,
-                       const RecordedChannel& sync_dau, const StampBeat& dau_beat) {
+                       const RecordedChannel& sync_dau, const StampBeat& dau_beat,
+                       const std::optional<ClockLink>& clocks) {
   const SystematicUncertainty& systematic = input.systematic;
   const double w = input.frequency.angular();
-  Budget budget;
-  budget.add({.kind = ContributionKind::sync_jitter,
-              .u_phase_rad = std::sqrt(1.5 / static_cast<double>(sync_dau.result.fit.samples)) * w *
-                             systematic.sync_adc_jitter_s});
-  budget.add({.kind = ContributionKind::adc_phase, .u_phase_rad = input.adc.u_phase_lag_rad});
+  Budget budget = as_far_as_sync_counts(sync_corrections(input, sync_dau), clocks);
+  if (clocks) {
+    budget.add(
+        {.kind = ContributionKind::clock_offset, .u_phase_rad = w * clocks->u_by_stamps_s()});
+  }
   budget.add({.kind = ContributionKind::channel_delay,
               .subject = "the ACS channels",
               .u_phase_rad = w * systematic.acs_delay_s});
@@ -56,32 +79,6 @@ Budget systematic_rows(const SampleStampingInput& input, const ChannelsOfOneCloc
                   {.in_step_magnitude = 0.0, .in_step_phase = 1.0, .on_average = 1.0});
   }
   return budget;
-}
-
-// Stamp noise common to sync and the sensor: the phase of the ratio sees it only as far as the two
-// sines differ in phase.
-void add_stamp_noise(Budget& budget, const SampleStampingInput& input, const RecordedChannel& dut,
-                     const RecordedChannel& sync_dau, const StampBeat& beat) {
-  const double tick_s = input.systematic.dau_tick_s / std::sqrt(12.0);
-  const double rest_s = std::sqrt(std::max(
-      0.0, input.systematic.dau_jitter_s * input.systematic.dau_jitter_s - tick_s * tick_s));
-  const double n = static_cast<double>(dut.result.fit.samples);
-  const double across =
-      std::abs(std::sin(dut.result.fit.phase_rad() - sync_dau.result.fit.phase_rad()));
-  const auto add = [&](ContributionKind kind, Distribution distribution, double jitter_s) {
-    const double angle = input.frequency.angular() * jitter_s;
-    const double shortening = 0.5 * angle * angle;
-    budget.add({.kind = kind,
-                .subject = "the DAU stamps",
-                .distribution = distribution,
-                .u_magnitude_rel = std::hypot(std::sqrt(0.5 / n) * angle, shortening),
-                .u_phase_rad = std::sqrt(2.0 / n) * across * angle,
-                .u_lasting_magnitude_rel = shortening});
-  };
-  add(ContributionKind::stamp_jitter, Distribution::normal, rest_s);
-  add(ContributionKind::stamp_tick, Distribution::rectangular, tick_s);
-  add_beat_rows(budget, "the DAU", input.frequency.angular(), beat,
-                {.in_step_magnitude = 1.0, .in_step_phase = 2.0 * across, .on_average = 0.0});
 }
 
 // The records of the two clocks begin where the search found their step, in frames of a grid of
@@ -121,7 +118,7 @@ TransferPoint evaluate_channel(const SampleStampingInput& input, const RecordedC
                                StepFindings& findings) {
   Budget budget;
   add_sensor_rows(budget, dut, common_jitter_s(input.systematic));
-  add_stamp_noise(budget, input, dut, sync_dau, with.stamp_beat);
+  add_dau_stamp_noise(budget, input, dut, sync_dau, with.stamp_beat);
   budget.append(with.noise);
   BlockAlignment alignment = with.alignment;
   alignment.seen = seen_offset(dut, with.reference);
@@ -135,12 +132,15 @@ TransferPoint evaluate_channel(const SampleStampingInput& input, const RecordedC
 // Eq. (4): H = P_dos / P_ref * U(P_sync_acs) / U(P_sync_dau,true), P_sync_dau,true = P_sync_dau /
 // G; all of it but P_dos.
 std::complex<double> link_of(const SampleStampingInput& input, const ChannelsOfOneClock& acs,
-                             const RecordedChannel& sync_dau) {
+                             const RecordedChannel& sync_dau,
+                             const std::optional<ClockLink>& clocks) {
   const std::complex<double> adc = std::polar(1.0, -input.adc.phase_lag_rad);
   const std::complex<double> late =
       std::polar(1.0, input.frequency.angular() * input.reference_delay_s);
-  return unit_phasor(acs.pilot.phasor()) / (unit_phasor(sync_dau.phasor()) / adc) /
-         (acs.others.front().excitation() * late / input.reference_response.phasor());
+  const std::complex<double> by_sync =
+      unit_phasor(acs.pilot.phasor()) / (unit_phasor(sync_dau.phasor()) / adc) /
+      (acs.others.front().excitation() * late / input.reference_response.phasor());
+  return clocks ? by_sync * clocks->factor(input.frequency.angular()) : by_sync;
 }
 
 // Of a sensor with a clock of its own.
@@ -188,11 +188,12 @@ Expected<SampleStampingResult> evaluate_sample_stamping(const SampleStampingInpu
   const BlocksOfClock acs_blocks = learn_from_blocks(acs);
   const BlocksOfClock dau_blocks = learn_from_blocks(dau);
 
-  const std::complex<double> link = link_of(input, acs, dau.pilot);
-  const Budget noise = common_noise(input, acs, dau.pilot);
+  const std::optional<ClockLink> clocks = clock_link_of(input, acs.pilot, dau.pilot);
+  const std::complex<double> link = link_of(input, acs, dau.pilot, clocks);
+  const Budget noise = common_noise(input, acs, dau.pilot, clocks);
   const StampBeat dau_beat =
       stamp_beat(input.frequency, input.dau_stamps_ns, input.systematic.dau_tick_s);
-  const Budget systematic = systematic_rows(input, acs, dau.pilot, dau_beat);
+  const Budget systematic = systematic_rows(input, acs, dau.pilot, dau_beat, clocks);
   const Comparison with{.link = link,
                         .noise = noise,
                         .systematic = systematic,
@@ -202,6 +203,7 @@ Expected<SampleStampingResult> evaluate_sample_stamping(const SampleStampingInpu
                         .noise_unknown = reference.noise_unknown,
                         .stamp_beat = dau_beat};
   SampleStampingResult result{reference.result, acs.pilot.result, dau.pilot.result, {}, {}};
+  result.findings.clock_link = clocks;
   add_knock(reference, result.findings);
   for (std::size_t i = 0; i < dau.others.size(); ++i) {
     result.points.push_back(evaluate_channel(input, dau.others[i], dau.pilot,

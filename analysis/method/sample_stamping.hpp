@@ -22,6 +22,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -64,6 +65,9 @@ struct SampleStampingInput {
   double reference_delay_s = 0.0; // tau_ref
   ReferenceResponse reference_response{};
   SystematicUncertainty systematic{};
+  // Where both clocks have UTC: standard uncertainty between them. Then their stamps link them
+  // beside sync (clock_link.hpp).
+  std::optional<double> u_utc_s{};
 };
 
 struct SampleStampingResult {

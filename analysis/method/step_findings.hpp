@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/method/clock_link.hpp"
 #include "analysis/step/short_disturbance.hpp"
 #include "analysis/uncertainty/ratio_change.hpp"
 
@@ -24,6 +25,7 @@ struct KnockedChannel {
 struct StepFindings {
   std::vector<PointFindings> points; // in the order of the points
   std::vector<KnockedChannel> knocks;
+  std::optional<ClockLink> clock_link{}; // where both clocks have UTC
 };
 
 } // namespace dyncal::analysis

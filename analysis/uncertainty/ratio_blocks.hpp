@@ -15,7 +15,8 @@
 //    square of the phase's advance in one; else it is 0, so that clean records keep their value.
 // 3. Where d_k show more than white noise, by how much their mean may be off
 //    (narrow_band_noise.hpp); and by how much, where the ratio may have changed once: where chance
-//    gives the best split of d_k into two levels once in 10^2, U holds either level.
+//    gives the best split of d_k into two levels once in 10^2, U holds either level; the longer
+//    alone where the other has less than a quarter of the record and is no change by 4.
 // 4. The best split of d_k into two levels is a change where chance gives it once in 10^4, against
 //    noise as white as stated or as large as what the split leaves, for every likely offset. It
 //    stands beside 2: a step shows in fewer blocks than the scatter of all of them.

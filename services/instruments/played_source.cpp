@@ -8,6 +8,7 @@
 #include "drivers/acs/socket_acs.hpp"
 #include "drivers/alsa/capture_source.hpp"
 #include "drivers/files/file_source.hpp"
+#include "drivers/pps/pulse_stamped_source.hpp"
 
 #ifdef DYNCAL_HAVE_ALSA
 #include "drivers/alsa/alsa_device.hpp"
@@ -64,7 +65,9 @@ Expected<std::unique_ptr<drivers::SampleSource>> make_capture(const SourceSettin
 
 } // namespace
 
-Expected<std::unique_ptr<drivers::SampleSource>> make_driver(const SourceSettings& settings) {
+namespace {
+
+Expected<std::unique_ptr<drivers::SampleSource>> make_device(const SourceSettings& settings) {
   if (const auto* socket = settings.as<SocketSourceSettings>()) {
     return std::make_unique<drivers::acs::SocketAcs>(drivers::acs::SocketSettings{
         .address = socket->address, .channels = settings.channels, .units = settings.units});
@@ -96,6 +99,17 @@ Expected<std::unique_ptr<drivers::SampleSource>> make_driver(const SourceSetting
     }
   }
   return std::make_unique<drivers::files::FileSource>(std::move(file));
+}
+
+} // namespace
+
+Expected<std::unique_ptr<drivers::SampleSource>> make_driver(const SourceSettings& settings) {
+  DYNCAL_TRY(auto device, make_device(settings));
+  if (settings.pulses) {
+    device =
+        std::make_unique<drivers::pps::PulseStampedSource>(std::move(device), *settings.pulses);
+  }
+  return device;
 }
 
 SourceKind kind_of(const MethodSettings& method, const std::string& source) {

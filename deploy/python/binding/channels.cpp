@@ -28,7 +28,7 @@ void bind_channel(nb::module_& module) {
                       "values: float64 (n,), contiguous, kept without a copy: do not change it\n"
                       "before it was evaluated. resolution: one quantisation step, 0: not stated.\n"
                       "minimum, maximum: range, in the unit of the values. mains_hz: lines that\n"
-                      "are looked for beside the sine.")
+                      "are looked for beside the sine. Source: analysis/method/transfer_point.hpp")
       .def(
           "__init__",
           [](Channel* self, const std::string& name, const Array<double>& values, double resolution,
@@ -69,19 +69,25 @@ void bind_integrity(nb::module_& module) {
 void bind_findings(nb::module_& module) {
   using analysis::KnockedChannel;
   using analysis::RatioChange;
-  nb::class_<RatioChange>(module, "RatioChange", "The ratio is another one from at_s on.")
+  nb::class_<RatioChange>(
+      module, "RatioChange",
+      "The ratio is another one from at_s on. Source: analysis/uncertainty/ratio_change.hpp")
       .def_ro("at_s", &RatioChange::at_s)
       .def_ro("magnitude_rel", &RatioChange::magnitude_rel)
       .def_ro("phase_rad", &RatioChange::phase_rad);
-  nb::class_<PointFindings>(module, "PointFindings")
+  nb::class_<PointFindings>(
+      module, "PointFindings",
+      "What was found along one point of a step. Source: analysis/method/step_findings.hpp")
       .def_ro("change", &PointFindings::change, "of the ratio within the step; None: none")
       .def_ro("too_short_for_noise", &PointFindings::too_short_for_noise);
-  nb::class_<KnockedChannel>(module, "KnockedChannel", "A knock, to be cut out.")
+  nb::class_<KnockedChannel>(module, "KnockedChannel",
+                             "A knock, to be cut out. Source: analysis/method/step_findings.hpp")
       .def_ro("channel", &KnockedChannel::channel)
       .def_prop_ro("first_ns", [](const KnockedChannel& one) { return one.knock.first_ns; })
       .def_prop_ro("last_ns", [](const KnockedChannel& one) { return one.knock.last_ns; });
   nb::class_<StepFindings>(module, "StepFindings",
-                           "What was found along the record; say it with the values.")
+                           "What was found along the record; say it with the values.\n"
+                           "Source: analysis/method/step_findings.hpp")
       .def_ro("points", &StepFindings::points, "in the order of the points")
       .def_ro("knocks", &StepFindings::knocks);
 }
@@ -92,7 +98,9 @@ void bind_channels(nb::module_& module) {
   bind_channel(module);
   bind_integrity(module);
   bind_findings(module);
-  nb::class_<ChannelFit>(module, "ChannelFit", "The sine fitted to one recorded channel.")
+  nb::class_<ChannelFit>(
+      module, "ChannelFit",
+      "The sine fitted to one recorded channel. Source: analysis/method/transfer_point.hpp")
       .def_ro("channel", &ChannelFit::channel)
       .def_ro("frequency", &ChannelFit::frequency, "in the clock of its stamps")
       .def_ro("u_frequency_hz", &ChannelFit::u_frequency_hz, "Hz")
@@ -101,7 +109,8 @@ void bind_channels(nb::module_& module) {
       .def_ro("integrity", &ChannelFit::integrity, "None: without excitation");
   nb::class_<TransferPoint>(module, "TransferPoint",
                             "One value of the complex transfer function, H = |H| e^(i psi): psi\n"
-                            "is lead in rad, a delay is negative. u: standard uncertainties.")
+                            "is lead in rad, a delay is negative. u: standard uncertainties.\n"
+                            "Source: analysis/method/transfer_point.hpp")
       .def_ro("channel", &TransferPoint::channel)
       .def_ro("h", &TransferPoint::h, "complex, unit of the sensor over that of the reference")
       .def_ro("magnitude", &TransferPoint::magnitude, "|H|")

@@ -37,29 +37,39 @@ void push(SampleClock& clock, std::uint64_t first_sample, Array<std::int64_t>& s
 }
 
 void bind_parts(nb::module_& module) {
-  nb::class_<IntervalHistogramBin>(module, "IntervalHistogramBin")
+  nb::class_<IntervalHistogramBin>(
+      module, "IntervalHistogramBin",
+      "How often an interval occurred, in ns. Source: analysis/clock/interval_histogram.hpp")
       .def_ro("ticks", &IntervalHistogramBin::ticks, "or bins, where the tick is not known")
       .def_ro("interval_ns", &IntervalHistogramBin::interval_ns)
       .def_ro("count", &IntervalHistogramBin::count);
-  nb::class_<IntervalEvent>(module, "IntervalEvent")
+  nb::class_<IntervalEvent>(
+      module, "IntervalEvent",
+      "An interval that is not a plain one. Source: analysis/clock/interval_events.hpp")
       .def_ro("kind", &IntervalEvent::kind, "'backward', 'duplicate', 'gap', 'pair', 'step'")
       .def_ro("sample", &IntervalEvent::sample, "number of the sample that begins the interval")
       .def_ro("time_s", &IntervalEvent::time_s, "since the first sample")
       .def_ro("size_ns", &IntervalEvent::size_ns, "deviation from the median")
       .def_ro("missing", &IntervalEvent::missing, "samples");
-  nb::class_<TemperatureBin>(module, "TemperatureBin")
+  nb::class_<TemperatureBin>(module, "TemperatureBin",
+                             "Intervals at a temperature, in ns and degC.\n"
+                             "Source: analysis/clock/temperature_relation.hpp")
       .def_ro("temperature_degc", &TemperatureBin::temperature_degc, "centre")
       .def_ro("mean_interval_ns", &TemperatureBin::mean_interval_ns)
       .def_ro("sd_interval_ns", &TemperatureBin::sd_interval_ns)
       .def_ro("count", &TemperatureBin::count);
-  nb::class_<AllanPoint>(module, "AllanPoint", "Source: NIST SP 1065, 5.2.4")
+  nb::class_<AllanPoint>(module, "AllanPoint",
+                         "Allan deviation of the intervals, relative, at an averaging time in s.\n"
+                         "Source: NIST SP 1065, 5.2.4; analysis/clock/allan_deviation.hpp")
       .def_ro("tau_s", &AllanPoint::tau_s)
       .def_ro("deviation", &AllanPoint::deviation, "relative");
 }
 
 void bind_statistics(nb::module_& module) {
   using S = SampleClockStatistics;
-  nb::class_<S>(module, "SampleClockStatistics", "Of intervals between neighbouring samples.")
+  nb::class_<S>(module, "SampleClockStatistics",
+                "Of intervals between neighbouring samples.\n"
+                "Source: analysis/clock/sample_clock.hpp")
       .def_ro("intervals", &S::intervals)
       .def_ro("mean_interval_s", &S::mean_interval_s)
       .def_ro("u_mean_interval_s", &S::u_mean_interval_s, "NaN: nothing is known of it")

@@ -30,7 +30,8 @@ constexpr double infinite = analysis::infinite_degrees_of_freedom;
 
 void bind_adc(nb::module_& module) {
   nb::class_<AdcResponse>(module, "AdcResponse",
-                          "Of the DAU's sync ADC at one frequency; a lag is positive.")
+                          "Of the DAU's sync ADC at one frequency; a lag is positive.\n"
+                          "Source: analysis/instrument/adc_calibration.hpp")
       .def(
           "__init__",
           [](AdcResponse* self, double gain, double phase_lag_rad, double u_gain,
@@ -42,7 +43,10 @@ void bind_adc(nb::module_& module) {
       .def_ro("phase_lag_rad", &AdcResponse::phase_lag_rad)
       .def_ro("u_gain", &AdcResponse::u_gain)
       .def_ro("u_phase_lag_rad", &AdcResponse::u_phase_lag_rad);
-  nb::class_<AdcCalibrationPoint>(module, "AdcCalibrationPoint")
+  nb::class_<AdcCalibrationPoint>(
+      module, "AdcCalibrationPoint",
+      "A calibrated point of a DAU's sync ADC: gain, lag in rad (positive).\n"
+      "Source: analysis/instrument/adc_calibration.hpp")
       .def(
           "__init__",
           [](AdcCalibrationPoint* self, double frequency_hz, double test_amplitude_vpp, double gain,
@@ -70,7 +74,8 @@ void bind_adc(nb::module_& module) {
 
 void bind_reference(nb::module_& module) {
   nb::class_<ReferenceContribution>(module, "ReferenceContribution",
-                                    "An uncertainty of the reference, by name.")
+                                    "An uncertainty of the reference, by name.\n"
+                                    "Source: analysis/instrument/reference_calibration.hpp")
       .def(
           "__init__",
           [](ReferenceContribution* self, const std::string& name, double u_magnitude_rel,
@@ -84,7 +89,8 @@ void bind_reference(nb::module_& module) {
       .def_ro("u_magnitude_rel", &ReferenceContribution::u_magnitude_rel)
       .def_ro("u_phase_rad", &ReferenceContribution::u_phase_rad);
   nb::class_<ReferenceCalibrationPoint>(module, "ReferenceCalibrationPoint",
-                                        "A point of the reference's certificate.")
+                                        "A point of the reference's certificate.\n"
+                                        "Source: analysis/instrument/reference_calibration.hpp")
       .def(
           "__init__",
           [](ReferenceCalibrationPoint* self, double frequency_hz, double level_m_s2,
@@ -100,7 +106,8 @@ void bind_reference(nb::module_& module) {
       .def_ro("magnitude", &ReferenceCalibrationPoint::magnitude)
       .def_ro("phase_rad", &ReferenceCalibrationPoint::phase_rad);
   nb::class_<ReferenceResponse>(module, "ReferenceResponse",
-                                "What the reference's channel reads over what is; phase is lead.")
+                                "What the reference's channel reads over what is; phase is lead.\n"
+                                "Source: analysis/instrument/reference_calibration.hpp")
       .def(
           "__init__",
           [](ReferenceResponse* self, double magnitude, double phase_rad,

@@ -16,18 +16,19 @@
 #include "analysis/interferometer/reference_motion.hpp"
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "frequency_argument.hpp"
 
 namespace dyncal::python {
 namespace {
 
 using namespace nb::literals;
-using analysis::DecimatedMotion;
 using analysis::DecimationFilter;
 using analysis::Ellipse;
 using analysis::EllipseFit;
+using analysis::MotionQuantity;
 using analysis::PhaseStatistics;
 using analysis::QuadraturePhase;
-using analysis::ReferenceMotion;
+using analysis::StepMotion;
 
 // Calls work(u1, u2) with spans of the numbers that both arrays have: int16, float32 or float64.
 template <class Work>
@@ -70,7 +71,8 @@ NewArray<double> push(QuadraturePhase& phase, const nb::object& u1, const nb::ob
 void bind_ellipse(nb::module_& module) {
   nb::class_<Ellipse>(module, "Ellipse",
                       "u1 = p + R cos(phi), u2 = q + (R / r) sin(phi - alpha).\n"
-                      "Source: Heydemann, Appl. Opt. 20 (1981) 3382")
+                      "Source: Heydemann, Appl. Opt. 20 (1981) 3382;\n"
+                      "analysis/interferometer/ellipse_fit.hpp")
       .def(
           "__init__",
           [](Ellipse* self, double p, double q, double r, double alpha_rad, double radius) {
@@ -82,7 +84,9 @@ void bind_ellipse(nb::module_& module) {
       .def_ro("r", &Ellipse::r, "amplitude of u1 over that of u2")
       .def_ro("alpha_rad", &Ellipse::alpha_rad, "by how much u2 lags behind quadrature")
       .def_ro("radius", &Ellipse::radius, "R, amplitude of u1");
-  nb::class_<EllipseFit>(module, "EllipseFit")
+  nb::class_<EllipseFit>(module, "EllipseFit",
+                         "An ellipse and how well it is known; sizes in the unit of the signals.\n"
+                         "Source: analysis/interferometer/ellipse_fit.hpp")
       .def_ro("ellipse", &EllipseFit::ellipse)
       .def_prop_ro(
           "method",
@@ -103,7 +107,9 @@ void bind_ellipse(nb::module_& module) {
 }
 
 void bind_phase(nb::module_& module) {
-  nb::class_<PhaseStatistics>(module, "PhaseStatistics")
+  nb::class_<PhaseStatistics>(module, "PhaseStatistics",
+                              "Of all that was pushed; in turns of phase.\n"
+                              "Source: analysis/interferometer/quadrature_phase.hpp")
       .def_ro("samples", &PhaseStatistics::samples)
       .def_ro("doubtful", &PhaseStatistics::doubtful,
               "samples more than a quarter of a turn from the one expected")
@@ -123,7 +129,9 @@ void bind_phase(nb::module_& module) {
            "Raises Error (not_finite, invalid_argument).")
       .def_prop_ro("statistics", [](const QuadraturePhase& phase) { return phase.statistics(); });
   module.def("displacement_per_turn_m", &analysis::displacement_per_turn_m, "wavelength_m"_a,
-             "passes"_a = 1, "lambda / (2 N), m: lambda in air, N passes (1: Michelson).");
+             "passes"_a = 1,
+             "lambda / (2 N), m: lambda in air, N passes (1: Michelson).\n"
+             "Source: ISO 16063-11; analysis/interferometer/quadrature_phase.hpp");
   module.def(
       "wavelength_in_air",
       [](double vacuum_wavelength_m, double u_rel, double temperature_c, double pressure_pa,
@@ -140,7 +148,8 @@ void bind_phase(nb::module_& module) {
       "pressure_pa"_a = 101325.0, "relative_humidity"_a = 0.5,
       "Wavelength in m and its relative standard uncertainty, where nothing measures the air.\n"
       "\n"
-      "Raises Error (invalid_argument). Source: Boensch and Potulski, Metrologia 35 (1998) 133");
+      "Raises Error (invalid_argument). Source: Boensch and Potulski, Metrologia 35 (1998) 133;\n"
+      "analysis/interferometer/air_wavelength.hpp");
 }
 
 void bind_decimation(nb::module_& module) {
@@ -171,44 +180,49 @@ void bind_decimation(nb::module_& module) {
            "at a frequency in cycles per sample of the input");
 }
 
+MotionQuantity quantity_named(const std::string& word) {
+  for (const MotionQuantity quantity : {MotionQuantity::velocity, MotionQuantity::displacement}) {
+    if (word == to_string(quantity)) {
+      return quantity;
+    }
+  }
+  refuse("quantity is '" + word + "', but must be 'velocity' or 'displacement'");
+}
+
+StepMotion motion_of_step(const FrequencyArgument& frequency, Array<std::int64_t> stamps_ns,
+                          Array<double> values, const std::string& quantity) {
+  const MotionQuantity named = quantity_named(quantity);
+  const analysis::Frequency of_step = frequency.frequency();
+  const auto stamps = stamps_ns.span("stamps_ns");
+  const auto samples = values.span("values");
+  const nb::gil_scoped_release released;
+  return value_of(analysis::motion_of_step(named, of_step, stamps, samples));
+}
+
 void bind_motion(nb::module_& module) {
-  nb::class_<DecimatedMotion>(module, "DecimatedMotion")
-      .def_ro("interval_s", &DecimatedMotion::interval_s)
-      .def_ro("first_s", &DecimatedMotion::first_s, "after the first sample of the record")
-      .def_ro("noise_factor", &DecimatedMotion::noise_factor, "for u of a sine fit")
+  nb::class_<StepMotion>(
+      module, "StepMotion",
+      "The motion of a step at a lower rate, for a sine fit, in the unit of the samples.\n"
+      "Source: analysis/interferometer/reference_motion.hpp")
       .def_prop_ro(
-          "acceleration_m_s2",
-          [](const DecimatedMotion& motion) { return to_numpy(motion.acceleration_m_s2); },
-          nb::rv_policy::move)
+          "stamps_ns", [](const StepMotion& motion) { return to_numpy(motion.stamps_ns); },
+          nb::rv_policy::move, "int64 (n,)")
       .def_prop_ro(
-          "sync", [](const DecimatedMotion& motion) { return to_numpy(motion.sync); },
-          nb::rv_policy::move);
-  nb::class_<ReferenceMotion>(module, "ReferenceMotion",
-                              "Acceleration at the frequency of a step from turns of phase.\n"
-                              "Source: analysis/interferometer/reference_motion.hpp")
-      .def(
-          "__init__",
-          [](ReferenceMotion* self, double frequency_hz, double sample_rate_hz,
-             double displacement_per_turn_m) {
-            new (self) ReferenceMotion(value_of(
-                ReferenceMotion::of_step({frequency_hz, sample_rate_hz, displacement_per_turn_m})));
-          },
-          nb::kw_only(), "frequency_hz"_a, "sample_rate_hz"_a, "displacement_per_turn_m"_a,
-          "The sign of displacement_per_turn_m is the direction. Raises Error\n"
-          "(frequency_out_of_range).")
-      .def(
-          "push_turns",
-          [](ReferenceMotion& motion, Array<double> turns) {
-            motion.push_turns(turns.span("turns"));
-          },
-          "turns"_a)
-      .def(
-          "push_sync",
-          [](ReferenceMotion& motion, Array<double> sync) { motion.push_sync(sync.span("sync")); },
-          "sync"_a)
-      .def(
-          "decimated", [](const ReferenceMotion& motion) { return value_of(motion.decimated()); },
-          "Of what has come so far. Raises Error (too_few_samples).");
+          "values", [](const StepMotion& motion) { return to_numpy(motion.values); },
+          nb::rv_policy::move, "float64 (n,)")
+      .def_ro("noise_factor", &StepMotion::noise_factor, "for u of a sine fit")
+      .def_ro("rate_hz", &StepMotion::rate_hz);
+  module.def(
+      "motion_of_step", &motion_of_step, "frequency"_a, "stamps_ns"_a, "values"_a,
+      "quantity"_a = "displacement",
+      "Displacement or velocity of a step without the slow motion of the table, right at the\n"
+      "frequency of the step only; its acceleration is -w^2 times the displacement, i w\n"
+      "times the velocity.\n"
+      "\n"
+      "stamps_ns: int64 (n,), values: float64 (n,) in any unit; quantity: 'displacement' or\n"
+      "'velocity'. Raises Error (frequency_out_of_range: fewer than 4 samples a period;\n"
+      "too_few_samples, invalid_argument). The GIL is released.\n"
+      "Source: analysis/interferometer/reference_motion.hpp");
 }
 
 } // namespace

@@ -127,13 +127,19 @@ void bind_systematic(nb::module_& module) {
 }
 
 void bind_results(nb::module_& module) {
-  nb::class_<SampleStampingResult>(module, "SampleStampingResult")
+  nb::class_<SampleStampingResult>(
+      module, "SampleStampingResult",
+      "The sines of the reference and of both syncs, and the values of the DUT's channels.\n"
+      "Source: analysis/method/sample_stamping.hpp")
       .def_ro("reference", &SampleStampingResult::reference)
       .def_ro("sync_acs", &SampleStampingResult::sync_acs)
       .def_ro("sync_dau", &SampleStampingResult::sync_dau)
       .def_ro("points", &SampleStampingResult::points, "a TransferPoint each of `dut`")
       .def_ro("findings", &SampleStampingResult::findings);
-  nb::class_<ComparisonResult>(module, "ComparisonResult")
+  nb::class_<ComparisonResult>(
+      module, "ComparisonResult",
+      "The sines of reference and sync, and the values of the DUT's channels.\n"
+      "Source: analysis/method/analogue_comparison.hpp")
       .def_ro("reference", &ComparisonResult::reference)
       .def_ro("sync", &ComparisonResult::sync, "None: there was none")
       .def_ro("points", &ComparisonResult::points, "a TransferPoint each of `dut`")

@@ -40,7 +40,7 @@ std::vector<RepetitionMean> means(const std::vector<RepeatedFrequency>& frequenc
 void bind_repetitions(nb::module_& module) {
   nb::class_<Repetition>(module, "Repetition",
                          "One measurement of a frequency, its budget divided into what is drawn\n"
-                         "anew and what repeats.")
+                         "anew and what repeats. Source: analysis/method/repetitions.hpp")
       .def_rw("sweep", &Repetition::sweep, "which sweep over the frequencies it is of; 0: unknown")
       .def_ro("h", &Repetition::h)
       .def_ro("u_random_magnitude_rel", &Repetition::u_random_magnitude_rel)
@@ -61,7 +61,7 @@ void bind_repetitions(nb::module_& module) {
   nb::class_<RepetitionMean>(module, "RepetitionMean",
                              "u_magnitude and u_phase_rad are U / 2, so that the factor 2 covers\n"
                              "95.45 % although repetitions are few; magnitude_rel and phase have\n"
-                             "u (k = 1), nu_eff and k.")
+                             "u (k = 1), nu_eff and k. Source: analysis/method/repetitions.hpp")
       .def_ro("h", &RepetitionMean::h)
       .def_ro("magnitude", &RepetitionMean::magnitude)
       .def_ro("u_magnitude", &RepetitionMean::u_magnitude, "U / 2")
@@ -76,7 +76,9 @@ void bind_repetitions(nb::module_& module) {
       .def_ro("magnitude_rel", &RepetitionMean::magnitude_rel)
       .def_ro("phase", &RepetitionMean::phase)
       .def_ro("independent_phase", &RepetitionMean::independent_phase);
-  nb::class_<RepeatedFrequency>(module, "RepeatedFrequency")
+  nb::class_<RepeatedFrequency>(
+      module, "RepeatedFrequency",
+      "All repetitions of one frequency, in Hz. Source: analysis/method/repetitions.hpp")
       .def(
           "__init__",
           [](RepeatedFrequency* self, double frequency_hz,

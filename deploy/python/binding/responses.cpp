@@ -42,7 +42,8 @@ DecisionRule rule_named(const std::string& word) {
 void bind_group_delay(nb::module_& module) {
   nb::class_<PhasePoint>(module, "PhasePoint",
                          "A phase, lead in rad modulo 2 pi; u_phase_rad: U / 2, independent from\n"
-                         "point to point, with its k and degrees of freedom.")
+                         "point to point, with its k and degrees of freedom.\n"
+                         "Source: analysis/response/group_delay.hpp")
       .def(
           "__init__",
           [](PhasePoint* self, double frequency_hz, double phase_rad, double u_phase_rad, double k,
@@ -54,8 +55,9 @@ void bind_group_delay(nb::module_& module) {
       .def_ro("frequency_hz", &PhasePoint::frequency_hz)
       .def_ro("phase_rad", &PhasePoint::phase_rad)
       .def_ro("u_phase_rad", &PhasePoint::u_phase_rad);
-  nb::class_<CommonPhaseUncertainty>(module, "CommonPhaseUncertainty",
-                                     "U / 2 of what all points share.")
+  nb::class_<CommonPhaseUncertainty>(
+      module, "CommonPhaseUncertainty",
+      "U / 2 of what all points share. Source: analysis/response/group_delay.hpp")
       .def(
           "__init__",
           [](CommonPhaseUncertainty* self, double delay_s, double phase_rad, double k_delay,
@@ -65,7 +67,8 @@ void bind_group_delay(nb::module_& module) {
           },
           "delay_s"_a = 0.0, "phase_rad"_a = 0.0, "k_delay"_a = 2.0,
           "degrees_of_freedom_delay"_a = infinite);
-  nb::class_<GroupDelay>(module, "GroupDelay", "psi(f) = psi_0 - 2 pi f tau")
+  nb::class_<GroupDelay>(module, "GroupDelay",
+                         "psi(f) = psi_0 - 2 pi f tau. Source: analysis/response/group_delay.hpp")
       .def_ro("delay_s", &GroupDelay::delay_s, "tau = -d psi / d w, s")
       .def_ro("of_delay", &GroupDelay::of_delay)
       .def_ro("intercept_rad", &GroupDelay::intercept_rad, "psi_0")
@@ -90,7 +93,8 @@ void bind_group_delay(nb::module_& module) {
 }
 
 void bind_agreement(nb::module_& module) {
-  nb::class_<Difference>(module, "Difference")
+  nb::class_<Difference>(module, "Difference",
+                         "x - y with its uncertainty. Source: analysis/response/comparison.hpp")
       .def_ro("value", &Difference::value, "x - y")
       .def_ro("of_value", &Difference::of_value)
       .def_prop_ro("normalised_error", &Difference::normalised_error, "E_n; |E_n| <= 1: agree");
@@ -105,7 +109,9 @@ void bind_agreement(nb::module_& module) {
       "\n"
       "Raises Error (invalid_argument). Source: ISO/IEC 17043, ISO 13528;\n"
       "analysis/response/comparison.hpp");
-  nb::class_<Conformity>(module, "Conformity")
+  nb::class_<Conformity>(module, "Conformity",
+                         "What the rule says of a value and its tolerance.\n"
+                         "Source: analysis/response/conformity.hpp")
       .def_prop_ro(
           "statement",
           [](const Conformity& self) { return std::string(analysis::to_string(self.statement)); })

@@ -83,7 +83,7 @@ series_stamping(const FrequencyArgument& frequency, Array<std::int64_t>& acs_sta
 void bind_shot(nb::module_& module) {
   nb::class_<Shot>(module, "SeriesShot",
                    "One shot: the oscilloscope's trace of sync, and the series that the sensor\n"
-                   "recorded after the trigger.")
+                   "recorded after the trigger. Source: analysis/method/series_stamping.hpp")
       .def(
           "__init__",
           [](Shot* self, double dso_first_s, double dso_interval_s, const Array<double>& dso_sync,
@@ -99,7 +99,8 @@ void bind_shot(nb::module_& module) {
           "dso_first_s: of the trace's first sample, 0 at the trigger point; dso_sync: float64\n"
           "(m,); series: float64 (n,) each, one a channel of the sensor.");
   nb::class_<SeriesUncertainty>(module, "SeriesUncertainty",
-                                "Standard uncertainties that no residual shows.")
+                                "Standard uncertainties that no residual shows.\n"
+                                "Source: analysis/method/series_stamping.hpp")
       .def(
           "__init__",
           [](SeriesUncertainty* self, double dso_delay_s, double dso_rate_rel,
@@ -123,19 +124,25 @@ void bind_shot(nb::module_& module) {
 void bind_series(nb::module_& module) {
   bind_shot(module);
   nb::class_<NominalFrequency>(module, "NominalFrequency",
-                               "The real sample rate from the apparent frequency, paper (6), (9).")
+                               "The real sample rate from the apparent frequency, paper (6), (9).\n"
+                               "Source: analysis/method/nominal_frequency.hpp")
       .def_ro("apparent_hz", &NominalFrequency::apparent_hz)
       .def_ro("u_apparent_hz", &NominalFrequency::u_apparent_hz)
       .def_ro("lambda_", &NominalFrequency::lambda)
       .def_ro("real_rate_hz", &NominalFrequency::real_rate_hz)
       .def_ro("u_real_rate_hz", &NominalFrequency::u_real_rate_hz);
   // Repetition and RepetitionMean are repetitions.cpp's.
-  nb::class_<SeriesChannelResult>(module, "SeriesChannelResult")
+  nb::class_<SeriesChannelResult>(module, "SeriesChannelResult",
+                                  "A channel of a series sensor: its shots and their mean.\n"
+                                  "Source: analysis/method/series_stamping.hpp")
       .def_ro("channel", &SeriesChannelResult::channel)
       .def_ro("shots", &SeriesChannelResult::shots, "a Repetition each")
       .def_ro("mean", &SeriesChannelResult::mean)
       .def_ro("common_budget", &SeriesChannelResult::common_budget, "what all shots share");
-  nb::class_<SeriesStampingResult>(module, "SeriesStampingResult")
+  nb::class_<SeriesStampingResult>(
+      module, "SeriesStampingResult",
+      "What the shots of one frequency say together. Phases in rad, lead.\n"
+      "Source: analysis/method/series_stamping.hpp")
       .def_ro("reference", &SeriesStampingResult::reference)
       .def_ro("sync_acs", &SeriesStampingResult::sync_acs)
       .def_ro("trigger_phase_rad", &SeriesStampingResult::trigger_phase_rad, "beta of each shot")

@@ -183,7 +183,8 @@ void bind_sine_fit(nb::module_& module) {
                ", offset=" + std::to_string(fit.offset) + ")";
       });
   nb::class_<FrequencyFit>(module, "FrequencyFit",
-                           "A sine whose frequency was fitted, too, shared by all channels.")
+                           "A sine whose frequency was fitted, too, shared by all channels.\n"
+                           "Source: analysis/sine/sine_fit.hpp")
       .def_ro("frequency", &FrequencyFit::frequency, "refined, with all its digits")
       .def_ro("u_frequency_hz", &FrequencyFit::u_frequency_hz, "Hz, for white noise")
       .def_ro("channels", &FrequencyFit::channels, "at that frequency, in the order given")
@@ -194,7 +195,9 @@ void bind_further_fits(nb::module_& module) {
   using analysis::ExtendedFit;
   using analysis::FurtherPhasor;
   using analysis::RecordFit;
-  nb::class_<FurtherPhasor>(module, "FurtherPhasor", "A harmonic or a line beside the sine.")
+  nb::class_<FurtherPhasor>(
+      module, "FurtherPhasor",
+      "A harmonic or a line beside the sine. Source: analysis/sine/extended_sine_fit.hpp")
       .def_ro("frequency_hz", &FurtherPhasor::frequency_hz, "Hz")
       .def_ro("sine", &FurtherPhasor::sine)
       .def_ro("cosine", &FurtherPhasor::cosine)
@@ -211,7 +214,9 @@ void bind_further_fits(nb::module_& module) {
       .def_ro("phasor_drift", &ExtendedFit::phasor_drift, "A', B' per half record")
       .def_ro("outliers", &ExtendedFit::outliers, "samples with less than half the weight")
       .def_ro("iterations", &ExtendedFit::iterations, "of the weights");
-  nb::class_<RecordFit>(module, "RecordFit", "What `dyncal fit` states of a record.")
+  nb::class_<RecordFit>(
+      module, "RecordFit",
+      "What `dyncal fit` states of a record. Source: analysis/method/record_fit.hpp")
       .def_ro("frequency", &RecordFit::frequency)
       .def_ro("u_frequency_hz", &RecordFit::u_frequency_hz, "Hz; None: the frequency was given")
       .def_ro("phase_origin_ns", &RecordFit::phase_origin_ns, "t_0 of the phases, ns")
@@ -278,7 +283,7 @@ void bind_sines(nb::module_& module) {
       "reference_ns"_a = nb::none(),
       "Four-parameter sine fit: the frequency too, shared by all channels.\n"
       "\n"
-      "start: Hz, right to `search_rel` (relative). Shapes, units and the rest as fit_sine; also\n"
+      "start: Hz, right to `search_rel` (relative). Shapes, units and errors as fit_sine; also\n"
       "raises Error (not_converged). Source: IEEE 1057; analysis/sine/sine_fit.hpp");
   module.def(
       "estimate_frequency",
@@ -301,7 +306,7 @@ void bind_sines(nb::module_& module) {
              "Sine fit beside a drift (highest power), harmonics (highest), and further lines\n"
              "(Hz): hum, or the other sines of a record with several.\n"
              "\n"
-             "weighting: 'none', 'huber' or 'tukey' (robust). Shapes, units and the rest as\n"
+             "weighting: 'none', 'huber' or 'tukey' (robust). Shapes, units and errors as\n"
              "fit_sine. Source: analysis/sine/extended_sine_fit.hpp");
   module.def("fit_record", &fit_record, "stamps_ns"_a, "channels"_a, "frequency"_a = nb::none(),
              nb::kw_only(), "drift"_a = 0, "harmonics"_a = 1,

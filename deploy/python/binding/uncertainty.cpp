@@ -83,7 +83,8 @@ propagate_distributions(const std::vector<InputQuantity>& inputs, const nb::call
 
 void bind_coverage(nb::module_& module) {
   nb::class_<UncertaintyPart>(module, "UncertaintyPart",
-                              "A standard uncertainty and how well it is known.")
+                              "A standard uncertainty and how well it is known.\n"
+                              "Source: analysis/uncertainty/coverage.hpp")
       .def(
           "__init__",
           [](UncertaintyPart* self, double u, double degrees_of_freedom) {
@@ -93,7 +94,8 @@ void bind_coverage(nb::module_& module) {
       .def_ro("u", &UncertaintyPart::u)
       .def_ro("degrees_of_freedom", &UncertaintyPart::degrees_of_freedom);
   nb::class_<CombinedUncertainty>(module, "CombinedUncertainty",
-                                  "Combined standard uncertainty u, nu_eff, and k at 95.45 %.")
+                                  "Combined standard uncertainty u, nu_eff, and k at 95.45 %.\n"
+                                  "Source: analysis/uncertainty/coverage.hpp")
       .def(
           "__init__",
           [](CombinedUncertainty* self, double u, double degrees_of_freedom, double k) {
@@ -185,7 +187,9 @@ void bind_contribution(nb::module_& module) {
 }
 
 void bind_propagation(nb::module_& module) {
-  nb::class_<InputQuantity>(module, "InputQuantity", "An input of a measurement model.")
+  nb::class_<InputQuantity>(
+      module, "InputQuantity",
+      "An input of a measurement model. Source: analysis/uncertainty/law_of_propagation.hpp")
       .def(
           "__init__",
           [](InputQuantity* self, const std::string& name, double value, double u,
@@ -201,7 +205,9 @@ void bind_propagation(nb::module_& module) {
       .def_ro("u", &InputQuantity::u)
       .def_ro("sensitivity", &InputQuantity::sensitivity)
       .def_ro("degrees_of_freedom", &InputQuantity::degrees_of_freedom);
-  nb::class_<PropagatedUncertainty>(module, "PropagatedUncertainty")
+  nb::class_<PropagatedUncertainty>(module, "PropagatedUncertainty",
+                                    "Of the output of a model, by the law of propagation.\n"
+                                    "Source: analysis/uncertainty/law_of_propagation.hpp")
       .def_ro("u", &PropagatedUncertainty::u)
       .def_ro("degrees_of_freedom", &PropagatedUncertainty::degrees_of_freedom, "nu_eff")
       .def_ro("k", &PropagatedUncertainty::k, "at 95.45 %")
@@ -218,7 +224,8 @@ void bind_propagation(nb::module_& module) {
       "\n"
       "Raises Error (invalid_argument). Source: GUM 5.2.2, G.4;\n"
       "analysis/uncertainty/law_of_propagation.hpp");
-  nb::class_<MonteCarloResult>(module, "MonteCarloResult", "Of one output.")
+  nb::class_<MonteCarloResult>(module, "MonteCarloResult",
+                               "Of one output. Source: analysis/uncertainty/monte_carlo.hpp")
       .def_ro("mean", &MonteCarloResult::mean)
       .def_ro("u", &MonteCarloResult::u, "standard deviation of the trials")
       .def_ro("low", &MonteCarloResult::low, "of the coverage interval")

@@ -52,6 +52,7 @@ class Channel:
     scale: float | None = None
 
     def description(self) -> dict[str, Any]:
+        """As the stream announces it: what is known alone."""
         return {key: value for key, value in dataclasses.asdict(self).items() if value is not None}
 
 

@@ -29,12 +29,15 @@ SEQUENCE = re.compile(r"sequence<(.+)>")
 
 
 class Reading:
+    """A payload, and how far it has been read."""
+
     def __init__(self, payload: bytes) -> None:
         self.data = memoryview(payload)[HEADER_BYTES:]
         self.order = "<" if payload[1] & 1 else ">"
         self.place = 0
 
     def numbers(self, kind: str, count: int) -> Any:
+        """As many of an IDL type, (count,), without a copy. Raises ValueError at the end."""
         form = numpy.dtype(self.order + NUMBERS[kind])
         if not count:
             return numpy.empty(0, form)
@@ -44,9 +47,11 @@ class Reading:
         return taken
 
     def number(self, kind: str) -> Any:
+        """One of an IDL type."""
         return self.numbers(kind, 1)[0].item()
 
     def text(self) -> str:
+        """A string of IDL. Raises ValueError where it is cut."""
         length = self.number("unsigned long")
         raw = bytes(self.data[self.place : self.place + length])
         if len(raw) != length or not raw.endswith(b"\0"):
@@ -55,6 +60,7 @@ class Reading:
         return raw[:-1].decode()
 
     def value(self, kind: str) -> Any:
+        """Of any type of the contract: number, text, enum as its word, list, dict."""
         if kind in NUMBERS:
             return self.number(kind)
         if kind.startswith("string"):

@@ -12,6 +12,7 @@
 
 #include "drivers/alsa/device_settings.hpp"
 #include "drivers/can/stream_settings.hpp"
+#include "drivers/pps/pulse_settings.hpp"
 #include "drivers/sample_block.hpp"
 #include "services/bench/file/reference_file.hpp"
 #include "services/contract/bench_file_origin.hpp"
@@ -83,6 +84,7 @@ struct SourceSettings {
   std::map<std::string, std::string> channels;          // device's name -> ours
   std::map<std::string, std::string> units;             // our name -> D-SI
   std::map<std::string, ReferenceFile> sensitivities{}; // by our name
+  std::optional<drivers::pps::PulseSettings> pulses{};  // that an instrument records
   drivers::TimeBase time_base = drivers::TimeBase::utc;
   std::optional<double> nominal_rate_hz{}; // of an instrument, as it is set: for checks beforehand
   std::string where;                       // "bench.toml:21", for messages

@@ -11,6 +11,7 @@
 
 #include "services/bench/file/bench_name.hpp"
 #include "services/bench/file/driver_tables.hpp"
+#include "services/bench/file/pulses_table.hpp"
 #include "services/bench/file/sensitivity_keys.hpp"
 #include "services/contract/channel_unit.hpp"
 
@@ -162,10 +163,17 @@ SourceSettings read_source(TomlTable table, const std::string& name, NamedFiles&
     read_sensitivities(table, files, source);
   }
   read_ranges(table, source);
-  const std::string usual = driver == "smartup" || driver == "can" ? "utc" : "local";
+  if (driver == "socket" || driver == "alsa") {
+    source.pulses = read_pulses(table);
+  }
+  const bool is_usually_utc = driver == "smartup" || driver == "can" || source.pulses;
+  const std::string usual = is_usually_utc ? "utc" : "local";
   source.time_base = table.one_of("time_base", {"utc", "local"}, usual) == "utc"
                          ? drivers::TimeBase::utc
                          : drivers::TimeBase::local;
+  if (source.pulses && source.time_base == drivers::TimeBase::local) {
+    table.refuse("time_base", "is \"local\", but the pulses give the samples UTC: leave it out");
+  }
   // What changes no sample is left out: how fast a file is played, and a rate to check against.
   source.origin.settings = table.lines_without(
       source.is<CanSourceSettings>() ? std::set<std::string>{"play"}

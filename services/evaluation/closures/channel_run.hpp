@@ -1,8 +1,9 @@
 // What closures look at: the results of one channel in the order in which they were excited, and
 // what was made of them; and how far chance may take a comparison.
 //
-// Every kind of closure may be open by chance in one run of 130 000, so that all of them together
-// are in at most one of 10 000; kinds share that among their comparisons. Plain data and functions;
+// Every kind of closure may be open by chance in one run of 130 000 (clock_links in one of 16 000),
+// so that all of them together are in at most one of 10 000, of 6000 where both clocks have UTC;
+// kinds share that among their comparisons. Plain data and functions;
 // any thread.
 #pragma once
 

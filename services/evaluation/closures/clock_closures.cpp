@@ -143,6 +143,38 @@ Closure own_oscillator(const ChannelRun& run) {
                                    "the sensor was set to"));
 }
 
+// Sync against the stamps of both clocks. What is uncertain of either link is mostly the same in
+// all steps, so that their mean is not known better than the best of them.
+Closure links_of(const ChannelRun& run) {
+  const StepResult* best = nullptr;
+  for (const StepResult* result : run.results) {
+    if (result->clock_link &&
+        (best == nullptr || result->clock_link->u_offset_s() < best->clock_link->u_offset_s())) {
+      best = result;
+    }
+  }
+  if (best == nullptr) {
+    return not_possible(ClosureKind::clock_links, "",
+                        "not both clocks have UTC with a stated uncertainty beside sync");
+  }
+  constexpr double largest_en = 2.0;
+  const analysis::ClockLink& link = *best->clock_link;
+  const RoleNames& roles = run.recipe.roles;
+  const std::string clocks = roles.sync_acs.source + " and " + roles.sync_sensor.source;
+  const double u = link.u_offset_s();
+  const double limit = largest_en * 2.0 * u;
+  const bool agree = std::abs(link.offset_s) <= limit;
+  return judged(ClosureKind::clock_links, clocks, {link.offset_s, u, limit, "s"},
+                fmt::format("{}: by sync at {} the clocks are {:.3g} us apart, of which their UTC "
+                            "knows nothing{}",
+                            clocks, run.place_of(*best), 1e6 * link.offset_s,
+                            agree ? ""
+                                  : fmt::format("; their uncertainties leave it {:.3g} us: the "
+                                                "response of the sync ADC, a delay or a clock is "
+                                                "not as stated",
+                                                1e6 * limit)));
+}
+
 } // namespace
 
 std::vector<Closure> clock_closures(const ChannelRun& run) {
@@ -169,6 +201,7 @@ std::vector<Closure> clock_closures(const ChannelRun& run) {
   }
   all.push_back(searched ? asked_frequency(run)
                          : not_possible(ClosureKind::excitation_frequency, "", known));
+  all.push_back(links_of(run));
   return all;
 }
 

@@ -7,6 +7,8 @@
 //   f_i,ACS / f_i,asked - 1
 //   lambda_k / lambda_l - 1           of two channels of a series, each by its own samples, in the
 //                                     step in which they differ most
+//   x_i                           of sync against UTC (clock_link.hpp), in the step where it is
+//                                 known best; open where |E_n| = |x| / (2 u) is above 2
 //
 // Tolerances: crystals of instruments are right to the recipe's clock_tolerance_rel (200 ppm), an
 // oscillator within a sensor to 5 %; while they warm up, they wander by 1 ppm. Steps with a hundred

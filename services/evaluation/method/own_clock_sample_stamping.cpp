@@ -43,6 +43,7 @@ analysis::Expected<EvaluatedStep> evaluate_channels(const StepTask& task,
                                       .systematic = recipe.systematic};
   input.systematic.dau_tick_s = channels.sync.record().description().tick_s;
   input.systematic.dut_tick_s = channels.dut.record().description().tick_s;
+  input.u_utc_s = u_utc_s(channels.acs, channels.sync);
   input.systematic.clock_offset_s = u_clock_offset_s(channels.sync, channels.dut);
   return analysis::evaluate_sample_stamping(input).map(
       [](const analysis::SampleStampingResult& result) {

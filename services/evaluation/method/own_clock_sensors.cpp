@@ -44,6 +44,14 @@ double u_clock_offset_s(const SelectedChannels& a, const SelectedChannels& b) {
                     b.record().stamp_uncertainty_s(b.interval()));
 }
 
+std::optional<double> u_utc_s(const SelectedChannels& acs, const SelectedChannels& dau) {
+  const auto has_utc = [](const SelectedChannels& channels) {
+    return channels.record().description().time_base == drivers::TimeBase::utc &&
+           channels.record().stamp_uncertainty_s(channels.interval()) > 0.0;
+  };
+  return has_utc(acs) && has_utc(dau) ? std::optional(u_clock_offset_s(acs, dau)) : std::nullopt;
+}
+
 void flag_unknown_clock(const SelectedChannels& channels, std::vector<Flag>& flags) {
   if (channels.record().stamp_uncertainty_s(channels.interval()) <= 0.0) {
     flags.push_back(

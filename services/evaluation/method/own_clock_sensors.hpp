@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,10 @@ sensor_intervals(const Recipe& recipe, const RunRecords& records, const TimeInte
 
 // Standard uncertainty of one clock against the other.
 [[nodiscard]] double u_clock_offset_s(const SelectedChannels& a, const SelectedChannels& b);
+// That of reference and sync against sensor and sync, where both have UTC and say how well; then
+// their stamps link them beside sync.
+[[nodiscard]] std::optional<double> u_utc_s(const SelectedChannels& acs,
+                                            const SelectedChannels& dau);
 void flag_unknown_clock(const SelectedChannels& channels, std::vector<Flag>& flags);
 
 // Fails when nothing of the sensor is in the step.

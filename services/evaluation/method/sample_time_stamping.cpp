@@ -1,6 +1,7 @@
 #include "analysis/method/sample_stamping.hpp"
 #include "services/evaluation/method/disturbance_cut.hpp"
 #include "services/evaluation/method/method_kinds.hpp"
+#include "services/evaluation/method/own_clock_sensors.hpp"
 #include "services/evaluation/method/step_results.hpp"
 #include "services/evaluation/method/step_settling.hpp"
 #include "services/evaluation/method/step_task.hpp"
@@ -55,6 +56,7 @@ evaluate_channels(const StepTask& task, const SelectedChannels& acs, const Selec
                                       .reference_response = reference,
                                       .systematic = recipe.systematic};
   input.systematic.dau_tick_s = dau.record().description().tick_s;
+  input.u_utc_s = u_utc_s(acs, dau);
   return analysis::evaluate_sample_stamping(input).map(
       [](const analysis::SampleStampingResult& result) {
         return EvaluatedStep{

@@ -190,6 +190,7 @@ std::vector<StepResult> make_results(const StepTask& task, const StepInput& inpu
     result.unit = input.units[i];
     add_input(task, input, result);
     add_clock_check(stepped, result);
+    result.clock_link = step->findings.clock_link;
     if (i < step->findings.points.size()) {
       add_findings(step->findings.points[i], result);
     }

@@ -27,6 +27,7 @@ constexpr std::array names{
     Names{"phase_at_zero", "phase towards 0 Hz"},
     Names{"channel_delays", "delays of channels of one kind"},
     Names{"channel_clocks", "clocks of channels of one sensor"},
+    Names{"clock_links", "sync against UTC"},
 };
 
 } // namespace

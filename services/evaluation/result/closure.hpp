@@ -27,10 +27,11 @@ enum class ClosureKind {
   delay_alternatives,   // other delays that the frequencies leave open
   phase_at_zero,        // towards 0 Hz, against 0 or pi
   channel_delays,       // of channels of one kind, against each other
-  channel_clocks        // of channels of one sensor, each by its own samples
+  channel_clocks,       // of channels of one sensor, each by its own samples
+  clock_links           // sync, against stamps of both clocks in UTC
 };
 
-inline constexpr auto last_closure_kind = ClosureKind::channel_clocks;
+inline constexpr auto last_closure_kind = ClosureKind::clock_links;
 
 enum class Verdict { closes, open, not_possible };
 

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/method/clock_link.hpp"
 #include "analysis/method/nominal_frequency.hpp"
 #include "analysis/method/start_latency.hpp"
 #include "analysis/method/step_findings.hpp"
@@ -82,6 +83,7 @@ struct StepResult {
   std::vector<ChannelLines> lines;
   std::optional<analysis::RatioChange> change; // that flag changed_within_step tells of
   std::optional<analysis::BentPeaks> peaks;    // found or not
+  std::optional<analysis::ClockLink> clock_link;
 };
 
 } // namespace dyncal::inline evaluation

@@ -154,6 +154,7 @@ class Writer:
         )
 
     def write(self, message: Any) -> None:
+        """A message of the topic's type; waits for readers that are behind, as its QoS says."""
         self.entity.write(message)
 
     def wait_for_readers(self, count: int = 1, timeout_s: float = 10.0) -> bool:

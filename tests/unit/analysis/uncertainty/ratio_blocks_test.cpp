@@ -148,27 +148,32 @@ INSTANTIATE_TEST_SUITE_P(RatioBlocks, ChangeWithinTheStep,
                          testing::Values(Change{0.02, 0.0}, Change{-0.3, 0.0}, Change{0.0, 0.05},
                                          Change{0.0, 1.5}, Change{0.01, -0.02}));
 
-// A change of `sizes` standard deviations of the mean, drawn `draws` times: how often it is a
-// change, and how often either that or both levels lie within U.
+// A change of `sizes` standard deviations of the mean, `at_s` of 3 s, drawn `draws` times: how
+// often it is a change, how often either that or the first level lies within U, or both levels do;
+// and by how much U is larger than of noise alone, at most.
 struct SmallChange {
-  int found = 0, found_or_held = 0;
+  int found = 0, found_or_held = 0, found_or_first_held = 0;
+  double largest_u = 1.0;
 };
 
-SmallChange small_change_of(double sizes, int draws) {
+SmallChange small_change_of(double sizes, int draws, double at_s = 1.3) {
   constexpr double noise = 2e-3, u_mean = noise * std::numbers::sqrt2 / 38.7; // sqrt(3000 / 2)
   const double lag_rad = sizes * u_mean;
   SmallChange result;
   for (int seed = 1; seed <= draws; ++seed) {
-    const Envelope lag = [=](double t) { return t > 1.3 ? lag_rad : 0.0; };
+    const Envelope lag = [=](double t) { return t > at_s ? lag_rad : 0.0; };
     const Record a = record_of(0.0, noise, static_cast<unsigned>(seed), steady, lag);
     const Record b = record_of(0.0, noise, static_cast<unsigned>(seed + draws), steady);
     const auto ratio = compare_in_blocks(series_of(a), series_of(b), {});
     const double phase =
         std::atan2(a.fit.cosine, a.fit.sine) - std::atan2(b.fit.cosine, b.fit.sine);
     const double expanded = 2.0 * std::max(u_mean, ratio->u_phase_rad);
-    const bool held = std::max(std::abs(phase), std::abs(phase + lag_rad)) <= expanded;
+    const bool first_held = std::abs(phase) <= expanded;
+    const bool held = first_held && std::abs(phase + lag_rad) <= expanded;
     result.found += ratio->change ? 1 : 0;
     result.found_or_held += ratio->change || held ? 1 : 0;
+    result.found_or_first_held += ratio->change || first_held ? 1 : 0;
+    result.largest_u = std::max(result.largest_u, ratio->u_phase_rad / u_mean);
   }
   return result;
 }
@@ -178,6 +183,19 @@ TEST(RatioBlocks, AChangeOfFewStandardDeviationsIsFoundOrHeld) {
   EXPECT_GE(small_change_of(14.0, 100).found, 99);
   EXPECT_GE(small_change_of(11.0, 100).found_or_held, 90);
   EXPECT_EQ(small_change_of(0.0, 100).found, 0);
+}
+
+TEST(RatioBlocks, OfAShortLevelTheLongerOneIsHeld) {
+  EXPECT_GE(small_change_of(16.0, 100, 2.7).found_or_first_held, 85);
+  EXPECT_GE(small_change_of(30.0, 20, 2.7).found, 20);
+}
+
+// One clean step of a hundred is doubted; its u stays of the size that noise has.
+TEST(RatioBlocks, ChanceDoesNotMakeUManyTimesLarger) {
+  const SmallChange nothing = small_change_of(0.0, 1500);
+  EXPECT_EQ(nothing.found, 0);
+  EXPECT_GT(nothing.largest_u, 1.5);
+  EXPECT_LT(nothing.largest_u, 5.0);
 }
 
 // Blocks of different phase add to a shorter phasor; their mean is not shorter.

@@ -84,6 +84,9 @@ StepResult result_of(const RecipeStep& step, const std::string& channel) {
 // What the method does not have, and what it has in its place.
 void by_method(EvaluationMethod method, double rate, double noise, StepResult& result) {
   if (method == EvaluationMethod::sample_timestamping) {
+    constexpr double u_s = 1e-7;
+    result.clock_link =
+        analysis::ClockLink{.offset_s = u_s * noise, .u_sync_s = u_s, .u_stamps_s = u_s};
     return;
   }
   // Of reference, syncs and the channel.
