@@ -212,6 +212,12 @@ class Rows(unittest.TestCase):
             self.assertGreater(len(expected), 0)
             self.assertEqual(found, expected)
 
+    def test_a_rate_that_is_not_stated_is_that_of_the_stamps(self):
+        samples = samples_of(self.block(0, np.zeros((1, 31))), is_utc=True)  # every 3.3 ms
+        decimation = Decimation(0.0, 100.0)
+        rows = list(decimation.rows("b", "s", {0: ("c", "V")}, samples))
+        self.assertEqual((decimation.step, len(rows[0].numbers)), (3, 10))
+
     def test_stamps_of_a_regular_clock_are_exact(self):
         first = 3 * 10**11 + 1
         samples = samples_of(self.block(first, np.zeros((2, 5))), is_utc=True)
@@ -315,4 +321,4 @@ class View(unittest.TestCase):
 if __name__ == "__main__":
     FOLDER = pathlib.Path(sys.argv[1]).resolve()
     FOLDER.mkdir(parents=True, exist_ok=True)
-    unittest.main(argv=sys.argv[:1])
+    unittest.main(argv=[sys.argv[0], *sys.argv[2:]])

@@ -52,6 +52,13 @@ class Typing(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stdout)
         self.assertTrue(importlib.resources.files("dyncal").joinpath("py.typed").is_file())
 
+    def test_the_bridge_is_clean(self):
+        folder = pathlib.Path(__file__).resolve().parents[2] / "deploy/python/bridge"
+        done = self.check(
+            "--config-file", folder / "pyproject.toml", folder / "dyncal_bridge"
+        )
+        self.assertEqual(done.returncode, 0, done.stdout)
+
     def test_a_program_is_checked(self):
         (FOLDER / "program.py").write_text(PROGRAM)
         done = self.check("program.py")

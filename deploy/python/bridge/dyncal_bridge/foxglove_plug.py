@@ -10,7 +10,7 @@ Topics, JSON with a schema each:
 
 "/" and "%" within a name are written as %2F and %25. Who subscribes gets what there is of the
 newest run again, and so do the others who look at the same topic. A client that does not read
-loses the oldest of 1024 messages, in the server; the bridge does not wait for it.
+loses the oldest of 8192 messages, in the server; the bridge does not wait for it.
 """
 
 from __future__ import annotations
@@ -19,16 +19,17 @@ import collections
 import json
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import foxglove
 from foxglove.websocket import ChannelView, Client, WebSocketServer
 
-from dyncal_bridge.document import BridgeError, ChannelSamples, Document, Item, NewRun
+from dyncal_bridge.document import BridgeError, ChannelSamples, Document, Item, Members, NewRun
 from dyncal_bridge.plug import Plug, path_of
 from dyncal_bridge.schemas import schema_of
 from dyncal_bridge.settings import FoxgloveSettings
 
-BACKLOG = 1024  # messages a client
+BACKLOG = 8192  # messages a client
 MAX_TOPICS = 4096
 
 
@@ -161,6 +162,7 @@ class FoxglovePlug(Plug):
             rows.minima.tolist(),
             rows.maxima.tolist(),
         ):
-            known = [value if math.isfinite(value) else None for value in values]
-            members = dict(zip(("number", "value", "minimum", "maximum"), [number, *known]))
+            known: list[Any] = [value if math.isfinite(value) else None for value in values]
+            members: Members = {"number": number, "step": rows.step}
+            members |= dict(zip(("value", "minimum", "maximum"), known))
             channel.log(json.dumps(members, allow_nan=False), log_time=time_ns)

@@ -151,9 +151,6 @@ class MqttPlug(Plug):
             if self._client:
                 self._client.unsubscribe(self._trees())
 
-    def counts(self) -> dict[str, int]:
-        return super().counts() | {"on_the_way": len(self._on_the_way)}
-
     def _topic(self, *levels: str) -> str:
         return "/".join((self._settings.topic, *levels))
 

@@ -3,7 +3,8 @@
 A row stands for `step` samples in turn, those of the numbers k * step to (k + 1) * step - 1: it has
 the first of them and their minimum and maximum, so that what lies between the rows is not hidden:
 the first values alone would show a sine above half of their rate as a slower one. A row of which a
-sample is missing is left out. step = ceil(rate / max_rate_hz). One thread.
+sample is missing is left out. step = ceil(rate / max_rate_hz), where the rate is the nominal one,
+or that of the stamps of the first block where there is none. One thread.
 """
 
 from __future__ import annotations
@@ -88,15 +89,25 @@ def samples_of(block: Any, is_utc: bool) -> Samples | None:
 class Decimation:
     """Of one source for one plug."""
 
-    def __init__(self, rate_hz: float, max_rate_hz: float) -> None:
-        known = math.isfinite(rate_hz) and rate_hz > max_rate_hz
-        self.step = min(math.ceil(rate_hz / max_rate_hz), MAX_STEP) if known else 1
+    def __init__(self, nominal_rate_hz: float, max_rate_hz: float) -> None:
+        self._max_rate_hz = max_rate_hz
+        self.step = self._step_at(nominal_rate_hz)
         self._rest: Samples | None = None
+
+    def _step_at(self, rate_hz: float) -> int:
+        """0: of a rate that is not known."""
+        is_known = math.isfinite(rate_hz) and rate_hz > 0.0
+        return min(math.ceil(rate_hz / self._max_rate_hz), MAX_STEP) if is_known else 0
 
     def rows(
         self, bench: str, source: str, channels: dict[int, tuple[str, str]], samples: Samples
     ) -> Iterator[ChannelSamples]:
         """Whole rows of the channels: {column: (name, unit)}."""
+        if not self.step:
+            span_ns = int(samples.stamps_ns[-1]) - int(samples.stamps_ns[0])
+            self.step = self._step_at((len(samples) - 1) * 1e9 / span_ns if span_ns else 0.0)
+            if not self.step:
+                return
         joined = self._rest.followed_by(samples) if self._rest else None
         if joined is None:
             joined = samples.between(-samples.first % self.step, len(samples))

@@ -83,7 +83,7 @@ def schema_of(kind: str) -> Schema:
         more = dict.fromkeys(analysis, TEXT) | {"level_m_s2": NUMBER}
         return described("dyncal.BenchState", names | texts | wholes | more)
     values = {name: NUMBER | {"description": what} for name, what in SAMPLE_MEMBERS.items()}
-    return described("dyncal.Sample", {"number": WHOLE} | values)
+    return described("dyncal.Sample", {"number": WHOLE, "step": WHOLE} | values)
 
 
 SAMPLE_MEMBERS = {
