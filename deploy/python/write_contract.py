@@ -98,7 +98,7 @@ class Contract:
             listed.append((found["name"], found["type"]))
         self.structs[name] = tuple(listed)
         self.types += (
-            "\n\n@dataclasses.dataclass\n@annotations.final\n@annotations.cdrv0\n"
+            "\n\n@dataclasses.dataclass\n@annotations.final\n"
             f'class {name}(idl.IdlStruct, typename="dyncal::wire::{name}"):\n{lines}'
         )
         self.stub += f"@dataclasses.dataclass\nclass {name}(idl.IdlStruct):\n{stub}\n"

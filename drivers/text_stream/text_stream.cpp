@@ -79,7 +79,14 @@ Expected<std::vector<double>> TextStream::read_sample() {
 }
 
 Expected<SourceDescription> TextStream::describe() {
-  DYNCAL_TRY(connect());
+  const auto deadline = std::chrono::steady_clock::now() + connect_limit;
+  auto connected = connect();
+  // One that is just being switched on refuses.
+  while (!connected && connected.error().code == ErrorCode::refused &&
+         std::chrono::steady_clock::now() < deadline && !stop_.wait_for(retry_interval)) {
+    connected = connect();
+  }
+  DYNCAL_TRY(connected);
   DYNCAL_TRY(first_sample_, read_sample());
   description_.driver = driver().name;
   description_.nominal_rate_hz = settings_.rate.hz();

@@ -21,7 +21,7 @@ MODULES = [dyncal, dyncal.acs, dyncal.cdr, dyncal.dds, dyncal.errors, dyncal.mod
 MODULES += [dyncal.recording, dyncal.result]
 COMPILED = ("dyncal._dyncal", "dyncal.models")
 CANNOT_FAIL = {"contribution_identifier", "displacement_per_turn_m", "make_repetition"}
-AS_ANOTHER = re.compile(r"Shapes, units and\s+errors as (\w+)")
+AS_ANOTHER = re.compile(r"Shapes, units and\s+errors\s+as\s+(\w+)")
 SOURCE = re.compile(r"Source: .*(analysis/\S+\.hpp|GUM|JCGM|IEEE|paper)", re.S)
 ARRAY = re.compile(r"NDArray\[numpy\.(\w+)\]")
 

@@ -7,7 +7,7 @@
 `dyncal.dds.types` has the messages as dataclasses; idl/README.md explains every member with its
 unit and time base. Here are topics, their types and QoS profiles as that page states them. One
 participant a domain serves the whole process. A domain is that of the laboratory: DYNCAL_DOMAIN
-where it is set, else 0. Needs the package: pip install dyncal[dds].
+where it is set, else 0. Needs the package, version 0.10 or 11: pip install dyncal[dds].
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from typing import Any
 
 from cyclonedds.core import (
     InstanceState,
+    Listener,
     Policy,
     Qos,
     ReadCondition,
@@ -97,6 +98,20 @@ def qos(topic: str, writes: bool = False, late: bool = True) -> Qos:
     return Qos(*policies)
 
 
+class _Matched(Listener):
+    """How many of the other side there are; the one way that 0.10 and 11 have both."""
+
+    count = 0
+
+    def on_publication_matched(self, writer: Any, status: Any) -> None:
+        """Of a writer: its readers."""
+        self.count = status.current_count
+
+    def on_subscription_matched(self, reader: Any, status: Any) -> None:
+        """Of a reader: its writers."""
+        self.count = status.current_count
+
+
 class Reader:
     """Reads a topic of one bench, or of all ("*").
 
@@ -111,15 +126,17 @@ class Reader:
             raise ValueError(f"there is no topic '{topic}'; there are {', '.join(TOPICS)}")
         own = self._participant = participant(domain)
         partition = Qos(Policy.Partition([bench]))
+        self._matched = _Matched()
         self.entity: DataReader[Any] = DataReader(
             Subscriber(own, qos=partition),
             Topic(own, topic, TOPICS[topic][0]),
             qos=qos(topic, late=late),
+            listener=self._matched,
         )
 
     def wait_for_writers(self, count: int = 1, timeout_s: float = 10.0) -> bool:
         """Whether as many writers have matched in that time."""
-        return _wait_for(lambda: len(self.entity.get_matched_publications()) >= count, timeout_s)
+        return _wait_for(lambda: self._matched.count >= count, timeout_s)
 
     def messages(self, timeout_s: float | None = None) -> Iterator[Any]:
         """Every message as it comes; ends when none has come for timeout_s (None: never).
@@ -147,10 +164,12 @@ class Writer:
             raise ValueError(f"there is no topic '{topic}'; there are {', '.join(TOPICS)}")
         own = participant(domain)
         partition = Qos(Policy.Partition([bench]))
+        self._matched = _Matched()
         self.entity: DataWriter[Any] = DataWriter(
             Publisher(own, qos=partition),
             Topic(own, topic, TOPICS[topic][0]),
             qos=qos(topic, writes=True),
+            listener=self._matched,
         )
 
     def write(self, message: Any) -> None:
@@ -159,7 +178,7 @@ class Writer:
 
     def wait_for_readers(self, count: int = 1, timeout_s: float = 10.0) -> bool:
         """Whether as many readers have matched in that time."""
-        return _wait_for(lambda: len(self.entity.get_matched_subscriptions()) >= count, timeout_s)
+        return _wait_for(lambda: self._matched.count >= count, timeout_s)
 
 
 def _wait_for(is_true: Callable[[], bool], timeout_s: float) -> bool:
