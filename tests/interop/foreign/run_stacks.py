@@ -91,12 +91,15 @@ class Trial:
             *("recorder", lab.own, [self.options.programs / "dyncal-recorder", *words]),
             ready="recorder ready",
         )
-        writers = {}
+        listing = ["list", "--domain", DOMAIN, "--interface", "lab"]
+        writers, listed = {}, ""
         for stack in self.stacks():
             writers[stack.name] = self.start(lab, stack, "write", stack.name, WRITTEN_S)
             if not self.options.quick:
+                listed += lab.dyncal(*listing)[1]
                 self.wait(lab, writers[stack.name], WRITING_S)
-        listed = lab.dyncal("list", "--domain", DOMAIN, "--interface", "lab")[1]
+        if self.options.quick:
+            listed = lab.dyncal(*listing)[1]
         for process in writers.values():
             self.wait(lab, process, WRITING_S)
         lab.end(recorder)
@@ -107,7 +110,7 @@ class Trial:
                 continue
             dyncal = self.options.programs / "dyncal"
             verdict, why = verdicts.judge_writing(found[0], dyncal, WRITTEN_S)
-            if self.options.quick and verdict == "PASS" and stack.name not in listed:
+            if verdict == "PASS" and stack.name not in listed:
                 verdict, why = "PRODUCT_FAIL", f"dyncal list does not have it: {listed[-300:]}"
             self.say(stack, "write", verdict, why)
 

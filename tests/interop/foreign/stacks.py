@@ -1,7 +1,6 @@
 """The stacks that are tried: how each is made from the IDL, and what it cannot do."""
 
 import dataclasses
-import importlib.metadata
 import os
 import pathlib
 import shutil
@@ -17,6 +16,7 @@ PROFILES = HERE.parents[2] / "idl/profiles"
 SETTINGS = {
     "CYCLONEDDS_URI": f"file://{PROFILES / 'cyclone_dds.xml'}",
     "FASTRTPS_DEFAULT_PROFILES_FILE": str(PROFILES / "fast_dds.xml"),
+    "FASTDDS_DEFAULT_PROFILES_FILE": str(PROFILES / "fast_dds.xml"),
 }
 PATIENCE_S = 3000
 
@@ -79,14 +79,11 @@ def python_cyclone(version):
     return make
 
 
-def installed_python_cyclone(_folder):
-    """Of the Python that this runs in."""
-    try:
-        version = importlib.metadata.version("cyclonedds")
-    except importlib.metadata.PackageNotFoundError as error:
-        raise CannotBeSetUp("this Python has no package cyclonedds") from error
-    _folder.mkdir(parents=True, exist_ok=True)
-    return [sys.executable, "-B", HERE / "cyclone_python.py", python_types(_folder)], version
+def installed_python_cyclone(folder):
+    """Of the first python3 on the path."""
+    version = "import importlib.metadata as packages; print(packages.version('cyclonedds'))"
+    version = call("python3", "-c", version).strip()
+    return ["python3", "-B", HERE / "cyclone_python.py", python_types(folder)], version
 
 
 def c_by_idlc(folder):
@@ -108,12 +105,34 @@ def cpp_by_fastddsgen(folder):
     return [program], debian_version("libfastrtps-dev")
 
 
+def cpp_of_wheel(version):
+    """The wheel has the library of C++ and its headers, and no module of Python."""
+
+    def make(folder):
+        python = folder / "bin/python3"
+        if not python.exists():
+            call(sys.executable, "-m", "venv", folder)
+        call(python, "-m", "pip", "install", "-q", "--timeout", "20", f"ros-fastdds=={version}")
+        program, source = folder / "fast3_dynamic", HERE / "fast3_dynamic.cpp"
+        if not is_newer(program, source):
+            packages = call(python, "-c", "import sysconfig; print(sysconfig.get_path('purelib'))")
+            places = f"{folder / 'lib'}:{packages.strip()}/ros_fastdds.libs"
+            words = ["-std=c++20", "-isystem", folder / "include", source, f"-L{folder / 'lib'}"]
+            words += ["-lfastdds", "-lfastcdr", "-Wl,--allow-shlib-undefined"]
+            words += [f"-Wl,--disable-new-dtags,-rpath,{places}"]
+            call("g++", *words, "-o", program)
+        call(sys.executable, HERE / "types_of_idl.py", IDL, "table", folder / "table")
+        return [program, folder / "table"], version
+
+    return make
+
+
 def rust(crate, types):
     def make(folder):
         if not shutil.which("cargo"):
             raise CannotBeSetUp("there is no cargo")
         room = HERE / f"{crate}_rust"
-        call(sys.executable, HERE / "rust_types.py", IDL, crate, folder / "types.rs")
+        call(sys.executable, HERE / "types_of_idl.py", IDL, crate, folder / "types.rs")
         settings = {"DYNCAL_TYPES": str(folder / "types.rs"), "CARGO_TARGET_DIR": str(folder)}
         cargo = ["cargo", "build", "-q", "-j1", "--release"]
         call(*cargo, cwd=room, env={**os.environ, **settings})
@@ -147,6 +166,7 @@ STACKS = [
     Stack("cyclone-python", "", installed_python_cyclone, quick=True),
     Stack("cyclone-c", "C, types by `idlc`", c_by_idlc, quick=True),
     Stack("fast-cpp", "C++, types by `fastddsgen`", cpp_by_fastddsgen, quick=True),
+    Stack("fast3-cpp", "C++, Fast DDS 3 of the wheel `ros-fastdds`", cpp_of_wheel("3.2.3")),
     Stack("dust-rust", "Rust, `dust_dds`", rust("dust", "dust_dds")),
     Stack(
         *("rustdds", "Rust, `rustdds`", rust("rustdds", "rustdds")),

@@ -1,4 +1,4 @@
-//! Rust and dust_dds, with types that rust_types.py makes from dyncal.idl.
+//! Rust and dust_dds, with types that types_of_idl.py makes from dyncal.idl.
 //!
 //!     dust_rust read DOMAIN PARTITION BENCH RESULTS FUNCTIONS
 //!     dust_rust write DOMAIN PARTITION BENCH SECONDS

@@ -1,4 +1,4 @@
-//! Rust and rustdds, with types that rust_types.py makes from dyncal.idl. It has no partitions: it
+//! Rust and rustdds, with types that types_of_idl.py makes from dyncal.idl. It has no partitions: it
 //! reads and writes in the default one.
 //!
 //!     rustdds_rust read DOMAIN PARTITION BENCH RESULTS FUNCTIONS
