@@ -102,10 +102,10 @@ public:
   base::Expected<std::unique_ptr<UntypedWriter>>
   writer(const TypeSupport& type, const std::string& topic, Profile profile,
          const std::vector<std::string>& partitions) override {
-    return std::make_unique<MemoryWriter>(
-        exchange_, type,
-        endpoint(type, topic, qos_of_writer(profile),
-                 partitions_of_writer(profile, false, partitions), std::make_shared<WakeUp>()));
+    return std::make_unique<MemoryWriter>(exchange_, type,
+                                          endpoint(type, topic, qos_of_writer(profile),
+                                                   partitions_of_writer(profile, false, partitions),
+                                                   std::make_shared<WakeUp>()));
   }
 
   base::Expected<std::unique_ptr<UntypedReader>> reader(const TypeSupport& type,

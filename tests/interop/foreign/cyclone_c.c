@@ -37,8 +37,7 @@ static dds_qos_t* make_qos(int kept, const char* partition) {
 
 static dds_entity_t open_endpoint(dds_entity_t participant, const dds_topic_descriptor_t* type,
                                   const char* name, const char* partition, int kept, bool writes) {
-  const dds_entity_t topic =
-      checked(dds_create_topic(participant, type, name, NULL, NULL), name);
+  const dds_entity_t topic = checked(dds_create_topic(participant, type, name, NULL, NULL), name);
   dds_qos_t* qos = make_qos(kept, partition);
   const dds_entity_t endpoint = checked(writes ? dds_create_writer(participant, topic, qos, NULL)
                                                : dds_create_reader(participant, topic, qos, NULL),
@@ -130,8 +129,8 @@ static void write_blocks(dds_entity_t participant, const char* partition, const 
                          double seconds) {
   const dds_entity_t descriptions = open_endpoint(participant, &dyncal_wire_SourceDescription_desc,
                                                   "SourceDescription", partition, 1, true);
-  const dds_entity_t writer = open_endpoint(participant, &dyncal_wire_SampleBlock_desc,
-                                            "AcsSamples", partition, 250, true);
+  const dds_entity_t writer =
+      open_endpoint(participant, &dyncal_wire_SampleBlock_desc, "AcsSamples", partition, 250, true);
   const dds_time_t begin = dds_time();
   describe(descriptions, bench, (uint64_t)begin);
   double values[2 * samples_a_block];

@@ -88,8 +88,8 @@ private:
   }
   Type type(const std::string& idl) {
     static const std::map<std::string, TypeKind> numbers{
-        {"boolean", TK_BOOLEAN},      {"octet", TK_BYTE},        {"long", TK_INT32},
-        {"unsigned_long", TK_UINT32}, {"long_long", TK_INT64},   {"unsigned_long_long", TK_UINT64},
+        {"boolean", TK_BOOLEAN},      {"octet", TK_BYTE},      {"long", TK_INT32},
+        {"unsigned_long", TK_UINT32}, {"long_long", TK_INT64}, {"unsigned_long_long", TK_UINT64},
         {"double", TK_FLOAT64}};
     constexpr auto unlimited = static_cast<std::uint32_t>(LENGTH_UNLIMITED);
     if (const auto number = numbers.find(idl); number != numbers.end()) {

@@ -66,11 +66,11 @@ Topic* make_topic(DomainParticipant* participant, const char* name) {
 }
 
 void print(const wire::CalibrationResult& one) {
-  std::printf("CalibrationResult\t%s\t%s\t%s\t%u\t%u\t%s\t%.17g\t%.17g\t%.17g\t%.17g\t%s\t%zu\t%s\n",
-              one.bench().c_str(), one.run().c_str(), one.channel().c_str(), one.step(),
-              one.repetition(), one.frequency_text_hz().c_str(), one.magnitude(),
-              one.u_magnitude(), one.phase_rad(), one.u_phase_rad(), one.unit().c_str(),
-              one.budget().size(), one.software().c_str());
+  std::printf(
+      "CalibrationResult\t%s\t%s\t%s\t%u\t%u\t%s\t%.17g\t%.17g\t%.17g\t%.17g\t%s\t%zu\t%s\n",
+      one.bench().c_str(), one.run().c_str(), one.channel().c_str(), one.step(), one.repetition(),
+      one.frequency_text_hz().c_str(), one.magnitude(), one.u_magnitude(), one.phase_rad(),
+      one.u_phase_rad(), one.unit().c_str(), one.budget().size(), one.software().c_str());
 }
 
 void print(const wire::TransferFunction& one) {
@@ -78,8 +78,7 @@ void print(const wire::TransferFunction& one) {
               one.run().c_str(), one.channel().c_str(), one.unit().c_str(), one.group_delay_s(),
               one.points().size());
   for (const wire::TransferPoint& point : one.points()) {
-    std::printf("\t%.17g\t%.17g\t%.17g", point.magnitude(), point.phase_rad(),
-                point.u_phase_rad());
+    std::printf("\t%.17g\t%.17g\t%.17g", point.magnitude(), point.phase_rad(), point.u_phase_rad());
   }
   std::printf("\n");
 }
@@ -161,8 +160,8 @@ void write(DomainParticipant* participant, const char* partition, const std::str
   qos.partition().push_back(partition);
   Publisher* publisher = checked(participant->create_publisher(qos), "publisher");
   DataWriter* descriptions = make_writer(
-      publisher,
-      make_topic<wire::SourceDescriptionPubSubType>(participant, "SourceDescription"), 1);
+      publisher, make_topic<wire::SourceDescriptionPubSubType>(participant, "SourceDescription"),
+      1);
   DataWriter* writer = make_writer(
       publisher, make_topic<wire::SampleBlockPubSubType>(participant, "AcsSamples"), 250);
   const auto begin = std::chrono::steady_clock::now();

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Programs of other stacks, made from idl/dyncal.idl alone, against dyncal's: each reads the results
-of a run, while it runs and afterwards, and publishes a source that dyncal records.
+"""Programs of other stacks, made from idl/dyncal.idl alone, against dyncal's: each reads the
+results of a run, while it runs and afterwards, and publishes a source that dyncal records.
 
     run_stacks.py PROGRAMS FOLDER [--stacks NAME,...] [--loss PERCENT,...] [--quick] [--write PAGE]
 
@@ -98,8 +98,8 @@ class Trial:
             if not self.options.quick:
                 listed += lab.dyncal(*listing)[1]
                 self.wait(lab, writers[stack.name], WRITING_S)
-        if self.options.quick:
-            listed = lab.dyncal(*listing)[1]
+        while self.options.quick and any(one.poll() is None for one in writers.values()):
+            listed += lab.dyncal(*listing)[1]
         for process in writers.values():
             self.wait(lab, process, WRITING_S)
         lab.end(recorder)
@@ -173,9 +173,8 @@ def main():
     tried = [
         stack
         for stack in STACKS
-        if (stack.name in options.stacks if options.stacks else options.quick == stack.quick
-            or (not options.quick and stack.label))
-    ]  # fmt: skip
+        if (stack.name in options.stacks if options.stacks else options.quick in stack.forms)
+    ]
     made, versions, reasons = {}, {}, {}
     for stack in tried:
         folder = options.folder / stack.name

@@ -68,7 +68,8 @@ def python_cyclone(version):
             home = folder / "cyclonedds"
             home.mkdir(exist_ok=True)
             multiarch = call("gcc", "-print-multiarch").strip()
-            for name, place in (("include", "include"), ("lib", f"lib/{multiarch}"), ("bin", "bin")):
+            places = {"include": "include", "lib": f"lib/{multiarch}", "bin": "bin"}
+            for name, place in places.items():
                 if not (home / name).exists():
                     (home / name).symlink_to(f"/usr/{place}")
             settings["CYCLONEDDS_HOME"] = str(home)
@@ -143,6 +144,20 @@ def rust(crate, types):
     return make
 
 
+def python_dust(version):
+    def make(folder):
+        python = folder / "bin/python3"
+        if not python.exists():
+            call(sys.executable, "-m", "venv", folder)
+        call(python, "-m", "pip", "install", "-q", "--timeout", "20", f"dust-dds=={version}")
+        return [python, "-B", HERE / "dust_python.py"], version
+
+    return make
+
+
+NO_LISTS = "its Python module has no lists but of bytes"
+
+
 def made_elsewhere(why):
     def make(_folder):
         raise CannotBeSetUp(why)
@@ -157,15 +172,15 @@ class Stack:
     make: Callable[[pathlib.Path], tuple[list, str]]
     cannot: dict[str, str] = dataclasses.field(default_factory=dict)  # read, write: why
     partitions: bool = True
-    quick: bool = False  # in the test command
+    forms: tuple[bool, ...] = (False,)  # whether it is in the long form, the short one, or both
 
 
 STACKS = [
     Stack("cyclone-python-0.10", "Python, `cyclonedds` 0.10", python_cyclone("0.10.5")),
     Stack("cyclone-python-11", "Python, `cyclonedds` 11", python_cyclone("11.0.1")),
-    Stack("cyclone-python", "", installed_python_cyclone, quick=True),
-    Stack("cyclone-c", "C, types by `idlc`", c_by_idlc, quick=True),
-    Stack("fast-cpp", "C++, types by `fastddsgen`", cpp_by_fastddsgen, quick=True),
+    Stack("cyclone-python", "Python", installed_python_cyclone, forms=(True,)),
+    Stack("cyclone-c", "C, types by `idlc`", c_by_idlc, forms=(False, True)),
+    Stack("fast-cpp", "C++, types by `fastddsgen`", cpp_by_fastddsgen, forms=(False, True)),
     Stack("fast3-cpp", "C++, Fast DDS 3 of the wheel `ros-fastdds`", cpp_of_wheel("3.2.3")),
     Stack("dust-rust", "Rust, `dust_dds`", rust("dust", "dust_dds")),
     Stack(
@@ -173,7 +188,16 @@ STACKS = [
         partitions=False,
     ),
     Stack(
-        *("fast-python", "Python, Fast DDS"),
-        made_elsewhere("PyPI has no Python module of Fast DDS (`ros-fastdds` is its C++ library)"),
+        *("dust-python", "Python, `dust-dds`", python_dust("0.16.0")),
+        cannot={"read": NO_LISTS, "write": NO_LISTS},
     ),
+    Stack(
+        *("fast-python", "Python, Fast DDS"),
+        made_elsewhere("PyPI has no Python module of it: `ros-fastdds` is the library of C++"),
+    ),
+    Stack(
+        *("ros2-topic", "ROS 2, `ros2 topic`"),
+        made_elsewhere("PyPI has `ros-rclpy`, but neither `ros2cli` nor `ros2topic`"),
+    ),
+    Stack("java", "Java, `rtpstalk`", made_elsewhere("Maven Central does not serve it here")),
 ]

@@ -32,10 +32,9 @@ TEST_P(DefaultPartition, HasResultsAndStateOnceForEveryReader) {
     auto writer = this->writer<wire::SourceStatus>(topics::source_status, profile);
     std::vector<Reader<wire::SourceStatus>> readers;
     for (const std::string& partition : {std::string(), bench_, std::string("*")}) {
-      readers.push_back(reading_
-                            .reader<wire::SourceStatus>(topics::source_status, profile, partition,
-                                                        bell_)
-                            .value());
+      readers.push_back(
+          reading_.reader<wire::SourceStatus>(topics::source_status, profile, partition, bell_)
+              .value());
     }
     write_all(writer);
     std::vector<int> taken(readers.size());
@@ -44,7 +43,8 @@ TEST_P(DefaultPartition, HasResultsAndStateOnceForEveryReader) {
         taken[i] += take(readers[i]);
       }
       return std::ranges::all_of(taken, [](int count) { return count >= messages; });
-    })) << taken[0] << ", " << taken[1] << ", " << taken[2];
+    })) << taken[0]
+        << ", " << taken[1] << ", " << taken[2];
     EXPECT_TRUE(writer.wait_for_acknowledgments(tests::patience));
     for (std::size_t i = 0; i < readers.size(); ++i) {
       EXPECT_EQ(taken[i] + take(readers[i]), messages) << "reader " << i;
@@ -53,27 +53,27 @@ TEST_P(DefaultPartition, HasResultsAndStateOnceForEveryReader) {
 }
 
 TEST_P(DefaultPartition, HasSamplesOnceTheyAreAskedFor) {
+  publish_samples_in_default_partition(false);
   const auto nameless =
       reading_.reader<wire::SampleBlock>(topics::dau_samples, Profile::live_samples, "", bell_)
           .value();
   const auto of_bench = this->reader<wire::SampleBlock>(topics::dau_samples, Profile::live_samples);
   {
-    const auto writer =
-        this->writer<wire::SampleBlock>(topics::dau_samples, Profile::live_samples);
+    const auto writer = this->writer<wire::SampleBlock>(topics::dau_samples, Profile::live_samples);
     ASSERT_TRUE(wait_for([&] { return of_bench.matched_writers() == 1; }));
     EXPECT_EQ(nameless.matched_writers(), 0);
   }
-  publish_samples_in_default_partition();
+  publish_samples_in_default_partition(true);
   const auto writer = this->writer<wire::SampleBlock>(topics::dau_samples, Profile::live_samples);
   EXPECT_TRUE(wait_for([&] { return nameless.matched_writers() == 1; }));
 }
 
 TEST(DefaultPartitionOf, HasNothingOfASecuredLaboratoryAndNoCommands) {
-  publish_samples_in_default_partition();
+  publish_samples_in_default_partition(true);
   const std::vector<std::string> bench{"bench"};
-  for (const Profile profile : {Profile::results, Profile::state, Profile::samples,
-                                Profile::live_samples, Profile::live_records,
-                                Profile::paced_samples}) {
+  for (const Profile profile :
+       {Profile::results, Profile::state, Profile::samples, Profile::live_samples,
+        Profile::live_records, Profile::paced_samples}) {
     EXPECT_EQ(partitions_of_writer(profile, true, bench), bench);
     EXPECT_EQ(partitions_of_writer(profile, false, bench), (std::vector<std::string>{"bench", ""}));
   }
