@@ -36,8 +36,8 @@ std::vector<std::string> partitions_of_writer(Profile profile, bool secured,
   return partitions;
 }
 
-void publish_samples_in_default_partition() {
-  samples_are_there = true;
+void publish_samples_in_default_partition(bool wanted) {
+  samples_are_there = wanted;
 }
 
 } // namespace dyncal::bus

@@ -19,8 +19,8 @@ namespace dyncal::bus {
 [[nodiscard]] std::vector<std::string> partitions_of_writer(Profile profile, bool secured,
                                                             std::vector<std::string> partitions);
 
-// Every writer of live samples or records that this process makes from now on is there, too. Any
-// thread.
-void publish_samples_in_default_partition();
+// Whether every writer of samples or records that this process makes from now on is there, too
+// (not unless this is called). Any thread.
+void publish_samples_in_default_partition(bool wanted);
 
 } // namespace dyncal::bus

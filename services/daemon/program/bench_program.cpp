@@ -29,9 +29,7 @@ Expected<void> open_default_partition(bool wanted, const Daemon& daemon) {
                 "--default-partition: a secured laboratory publishes nothing there; leave the "
                 "option out, or --security");
   }
-  if (wanted) {
-    bus::publish_samples_in_default_partition();
-  }
+  bus::publish_samples_in_default_partition(wanted);
   return {};
 }
 

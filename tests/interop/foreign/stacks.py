@@ -1,7 +1,6 @@
 """The stacks that are tried: how each is made from the IDL, and what it cannot do."""
 
 import dataclasses
-import importlib.metadata
 import os
 import pathlib
 import shutil
@@ -17,6 +16,7 @@ PROFILES = HERE.parents[2] / "idl/profiles"
 SETTINGS = {
     "CYCLONEDDS_URI": f"file://{PROFILES / 'cyclone_dds.xml'}",
     "FASTRTPS_DEFAULT_PROFILES_FILE": str(PROFILES / "fast_dds.xml"),
+    "FASTDDS_DEFAULT_PROFILES_FILE": str(PROFILES / "fast_dds.xml"),
 }
 PATIENCE_S = 3000
 
@@ -68,7 +68,8 @@ def python_cyclone(version):
             home = folder / "cyclonedds"
             home.mkdir(exist_ok=True)
             multiarch = call("gcc", "-print-multiarch").strip()
-            for name, place in (("include", "include"), ("lib", f"lib/{multiarch}"), ("bin", "bin")):
+            places = {"include": "include", "lib": f"lib/{multiarch}", "bin": "bin"}
+            for name, place in places.items():
                 if not (home / name).exists():
                     (home / name).symlink_to(f"/usr/{place}")
             settings["CYCLONEDDS_HOME"] = str(home)
@@ -79,14 +80,11 @@ def python_cyclone(version):
     return make
 
 
-def installed_python_cyclone(_folder):
-    """Of the Python that this runs in."""
-    try:
-        version = importlib.metadata.version("cyclonedds")
-    except importlib.metadata.PackageNotFoundError as error:
-        raise CannotBeSetUp("this Python has no package cyclonedds") from error
-    _folder.mkdir(parents=True, exist_ok=True)
-    return [sys.executable, "-B", HERE / "cyclone_python.py", python_types(_folder)], version
+def installed_python_cyclone(folder):
+    """Of the first python3 on the path."""
+    version = "import importlib.metadata as packages; print(packages.version('cyclonedds'))"
+    version = call("python3", "-c", version).strip()
+    return ["python3", "-B", HERE / "cyclone_python.py", python_types(folder)], version
 
 
 def c_by_idlc(folder):
@@ -108,12 +106,34 @@ def cpp_by_fastddsgen(folder):
     return [program], debian_version("libfastrtps-dev")
 
 
+def cpp_of_wheel(version):
+    """The wheel has the library of C++ and its headers, and no module of Python."""
+
+    def make(folder):
+        python = folder / "bin/python3"
+        if not python.exists():
+            call(sys.executable, "-m", "venv", folder)
+        call(python, "-m", "pip", "install", "-q", "--timeout", "20", f"ros-fastdds=={version}")
+        program, source = folder / "fast3_dynamic", HERE / "fast3_dynamic.cpp"
+        if not is_newer(program, source):
+            packages = call(python, "-c", "import sysconfig; print(sysconfig.get_path('purelib'))")
+            places = f"{folder / 'lib'}:{packages.strip()}/ros_fastdds.libs"
+            words = ["-std=c++20", "-isystem", folder / "include", source, f"-L{folder / 'lib'}"]
+            words += ["-lfastdds", "-lfastcdr", "-Wl,--allow-shlib-undefined"]
+            words += [f"-Wl,--disable-new-dtags,-rpath,{places}"]
+            call("g++", *words, "-o", program)
+        call(sys.executable, HERE / "types_of_idl.py", IDL, "table", folder / "table")
+        return [program, folder / "table"], version
+
+    return make
+
+
 def rust(crate, types):
     def make(folder):
         if not shutil.which("cargo"):
             raise CannotBeSetUp("there is no cargo")
         room = HERE / f"{crate}_rust"
-        call(sys.executable, HERE / "rust_types.py", IDL, crate, folder / "types.rs")
+        call(sys.executable, HERE / "types_of_idl.py", IDL, crate, folder / "types.rs")
         settings = {"DYNCAL_TYPES": str(folder / "types.rs"), "CARGO_TARGET_DIR": str(folder)}
         cargo = ["cargo", "build", "-q", "-j1", "--release"]
         call(*cargo, cwd=room, env={**os.environ, **settings})
@@ -122,6 +142,20 @@ def rust(crate, types):
         return [folder / f"release/{crate}_rust"], version
 
     return make
+
+
+def python_dust(version):
+    def make(folder):
+        python = folder / "bin/python3"
+        if not python.exists():
+            call(sys.executable, "-m", "venv", folder)
+        call(python, "-m", "pip", "install", "-q", "--timeout", "20", f"dust-dds=={version}")
+        return [python, "-B", HERE / "dust_python.py"], version
+
+    return make
+
+
+NO_LISTS = "its Python module has no lists but of bytes"
 
 
 def made_elsewhere(why):
@@ -138,22 +172,32 @@ class Stack:
     make: Callable[[pathlib.Path], tuple[list, str]]
     cannot: dict[str, str] = dataclasses.field(default_factory=dict)  # read, write: why
     partitions: bool = True
-    quick: bool = False  # in the test command
+    forms: tuple[bool, ...] = (False,)  # whether it is in the long form, the short one, or both
 
 
 STACKS = [
     Stack("cyclone-python-0.10", "Python, `cyclonedds` 0.10", python_cyclone("0.10.5")),
     Stack("cyclone-python-11", "Python, `cyclonedds` 11", python_cyclone("11.0.1")),
-    Stack("cyclone-python", "", installed_python_cyclone, quick=True),
-    Stack("cyclone-c", "C, types by `idlc`", c_by_idlc, quick=True),
-    Stack("fast-cpp", "C++, types by `fastddsgen`", cpp_by_fastddsgen, quick=True),
+    Stack("cyclone-python", "Python", installed_python_cyclone, forms=(True,)),
+    Stack("cyclone-c", "C, types by `idlc`", c_by_idlc, forms=(False, True)),
+    Stack("fast-cpp", "C++, types by `fastddsgen`", cpp_by_fastddsgen, forms=(False, True)),
+    Stack("fast3-cpp", "C++, Fast DDS 3 of the wheel `ros-fastdds`", cpp_of_wheel("3.2.3")),
     Stack("dust-rust", "Rust, `dust_dds`", rust("dust", "dust_dds")),
     Stack(
         *("rustdds", "Rust, `rustdds`", rust("rustdds", "rustdds")),
         partitions=False,
     ),
     Stack(
-        *("fast-python", "Python, Fast DDS"),
-        made_elsewhere("PyPI has no Python module of Fast DDS (`ros-fastdds` is its C++ library)"),
+        *("dust-python", "Python, `dust-dds`", python_dust("0.16.0")),
+        cannot={"read": NO_LISTS, "write": NO_LISTS},
     ),
+    Stack(
+        *("fast-python", "Python, Fast DDS"),
+        made_elsewhere("PyPI has no Python module of it: `ros-fastdds` is the library of C++"),
+    ),
+    Stack(
+        *("ros2-topic", "ROS 2, `ros2 topic`"),
+        made_elsewhere("PyPI has `ros-rclpy`, but neither `ros2cli` nor `ros2topic`"),
+    ),
+    Stack("java", "Java, `rtpstalk`", made_elsewhere("Maven Central does not serve it here")),
 ]

@@ -76,7 +76,9 @@ def judge_writing(recording, dyncal, seconds):
     with open(tables / "acs.csv", encoding="utf-8") as lines:
         rows = list(csv.DictReader(lines))
     numbers = [int(row["sample_number"]) for row in rows]
-    columns = [next(name for name in rows[0] if name.startswith(word)) for word in CHANNELS]
+    columns = [name for name in (rows or [{}])[0] if name.startswith(CHANNELS)]
+    if len(columns) != len(CHANNELS):
+        return "PRODUCT_FAIL", f"the recording has the columns {list((rows or [{}])[0])}"
     wrong = sum(
         [float(row[column]) for column in columns] != [number * 0.25, number * -0.5]
         for number, row in zip(numbers, rows, strict=True)

@@ -53,6 +53,7 @@ TEST_P(DefaultPartition, HasResultsAndStateOnceForEveryReader) {
 }
 
 TEST_P(DefaultPartition, HasSamplesOnceTheyAreAskedFor) {
+  publish_samples_in_default_partition(false);
   const auto nameless =
       reading_.reader<wire::SampleBlock>(topics::dau_samples, Profile::live_samples, "", bell_)
           .value();
@@ -62,13 +63,13 @@ TEST_P(DefaultPartition, HasSamplesOnceTheyAreAskedFor) {
     ASSERT_TRUE(wait_for([&] { return of_bench.matched_writers() == 1; }));
     EXPECT_EQ(nameless.matched_writers(), 0);
   }
-  publish_samples_in_default_partition();
+  publish_samples_in_default_partition(true);
   const auto writer = this->writer<wire::SampleBlock>(topics::dau_samples, Profile::live_samples);
   EXPECT_TRUE(wait_for([&] { return nameless.matched_writers() == 1; }));
 }
 
 TEST(DefaultPartitionOf, HasNothingOfASecuredLaboratoryAndNoCommands) {
-  publish_samples_in_default_partition();
+  publish_samples_in_default_partition(true);
   const std::vector<std::string> bench{"bench"};
   for (const Profile profile :
        {Profile::results, Profile::state, Profile::samples, Profile::live_samples,

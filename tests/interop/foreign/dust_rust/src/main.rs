@@ -1,11 +1,14 @@
-//! Rust and dust_dds, with types that rust_types.py makes from dyncal.idl.
+//! Rust and dust_dds, with types that types_of_idl.py makes from dyncal.idl.
 //!
 //!     dust_rust read DOMAIN PARTITION BENCH RESULTS FUNCTIONS
 //!     dust_rust write DOMAIN PARTITION BENCH SECONDS
 //!
 //! What is printed and written is in README.md.
 use dust_dds::{
-    domain::{domain_participant::DomainParticipant, domain_participant_factory::DomainParticipantFactory},
+    domain::{
+        domain_participant::DomainParticipant,
+        domain_participant_factory::DomainParticipantFactory,
+    },
     infrastructure::{
         listener::NO_LISTENER,
         qos::{DataReaderQos, DataWriterQos, PublisherQos, QosKind, SubscriberQos},
@@ -219,7 +222,8 @@ fn write(participant: &DomainParticipant, publisher: &Publisher, bench: &str, se
             ..Default::default()
         };
         blocks.write(block, None).unwrap();
-        std::thread::sleep((begin + BLOCK * number as u32).saturating_duration_since(Instant::now()));
+        let due = begin + BLOCK * number as u32;
+        std::thread::sleep(due.saturating_duration_since(Instant::now()));
     }
     println!("written\t{}", count * SAMPLES_A_BLOCK);
     std::thread::sleep(std::time::Duration::from_secs(3)); // repairs of the last blocks

@@ -1,4 +1,4 @@
-//! Rust and rustdds, with types that rust_types.py makes from dyncal.idl. It has no partitions: it
+//! Rust and rustdds, with types that types_of_idl.py makes from dyncal.idl. It has no partitions: it
 //! reads and writes in the default one.
 //!
 //!     rustdds_rust read DOMAIN PARTITION BENCH RESULTS FUNCTIONS
@@ -168,7 +168,8 @@ fn write(participant: &DomainParticipant, bench: &str, seconds: f64) {
             ..Default::default()
         };
         blocks.write(block, None).unwrap();
-        std::thread::sleep((begin + BLOCK * number as u32).saturating_duration_since(Instant::now()));
+        let due = begin + BLOCK * number as u32;
+        std::thread::sleep(due.saturating_duration_since(Instant::now()));
     }
     println!("written\t{}", count * SAMPLES_A_BLOCK);
     std::thread::sleep(Duration::from_secs(3)); // repairs of the last blocks

@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
-"""Writes the contract in Rust, from the IDL file: rust_types.py dyncal.idl dust|rustdds FILE
+"""Writes the contract from the IDL file: types_of_idl.py dyncal.idl dust|rustdds|table FILE
 
-An enum is its number (i32 on the wire, and a value that is not known yet breaks nothing).
+In Rust, for either crate; or as a table for programs that make types while they run: a line
+"struct NAME", then a line for each member: its name, its type and, of a key, "key". An enum is its
+number (32 bits on the wire, and a value that is not known yet breaks nothing).
 """
 
 import pathlib
@@ -58,17 +60,31 @@ def struct_of(name, members, enums, crate):
     return text
 
 
+def rows_of(name, members, enums):
+    text = f"struct {name}\n"
+    for member in filter(None, (part.strip() for part in members.split(";"))):
+        found = MEMBER.fullmatch(member)
+        idl = "long" if found["type"] in enums else found["type"]
+        key = " key" if member.startswith("@key ") else ""
+        text += f"{found['name']} {idl.replace(' ', '_')}{key}\n"
+    return text
+
+
 def main():
     source, crate, output = sys.argv[1:]
     text, enums = "", set()
     for statement in statements_of(pathlib.Path(source).read_text()):
         found = STATEMENT.fullmatch(statement)
         if found["constant"]:
-            text += f"pub const {found['constant']}: u32 = {found['value']};\n"
+            constant = f"pub const {found['constant']}: u32 = {found['value']};\n"
+            text += "" if crate == "table" else constant
         elif found["enum"]:
             enums.add(found["enum"])
             words = [word.strip() for word in found["words"].split(",")]
-            text += "".join(f"pub const {word}: i32 = {i};\n" for i, word in enumerate(words))
+            numbers = "".join(f"pub const {word}: i32 = {i};\n" for i, word in enumerate(words))
+            text += "" if crate == "table" else numbers
+        elif crate == "table":
+            text += rows_of(found["struct"], found["members"], enums)
         else:
             text += struct_of(found["struct"], found["members"], enums, crate)
     pathlib.Path(output).write_text(text)
