@@ -13,5 +13,7 @@ namespace dyncal::inline evaluation {
 make_own_clock_sample_stamping(std::shared_ptr<const Recipe> recipe);
 [[nodiscard]] std::unique_ptr<Method>
 make_sample_time_stamping(std::shared_ptr<const Recipe> recipe);
+[[nodiscard]] std::unique_ptr<Method>
+make_table_sample_stamping(std::shared_ptr<const Recipe> recipe);
 
 } // namespace dyncal::inline evaluation

@@ -1,4 +1,5 @@
 #include "analysis/method/sample_stamping.hpp"
+#include "services/evaluation/method/calibrated_channels.hpp"
 #include "services/evaluation/method/disturbance_cut.hpp"
 #include "services/evaluation/method/method_kinds.hpp"
 #include "services/evaluation/method/step_results.hpp"
@@ -7,24 +8,6 @@
 
 namespace dyncal::inline evaluation {
 namespace {
-
-// The recipe's, or all of the DAU but sync, temperature and analogue inputs.
-std::vector<ChannelName> channels_under_calibration(const Recipe& recipe, const SourceRecord& dau) {
-  const RoleNames& roles = recipe.roles;
-  if (!roles.dut.empty() || !dau.described()) {
-    return roles.dut;
-  }
-  std::vector<ChannelName> names;
-  for (const drivers::ChannelDescription& channel : dau.description().channels) {
-    const ChannelName name{dau.source(), channel.name};
-    const bool thermometer = channel.unit == R"(\degreecelsius)" || channel.unit == R"(\kelvin)";
-    const bool analogue_input = channel.unit == R"(\volt)";
-    if (name != roles.sync_sensor && name != roles.temperature && !thermometer && !analogue_input) {
-      names.push_back(name);
-    }
-  }
-  return names;
-}
 
 void leave_settling_out(StepTask& task, SelectedChannels& acs, SelectedChannels& dau) {
   const StepSettling settling = find_settling_of_step(
@@ -65,7 +48,7 @@ evaluate_channels(const StepTask& task, const SelectedChannels& acs, const Selec
 std::vector<StepResult> evaluate(StepTask task, SourceInterval acs_source,
                                  SourceInterval dau_source) {
   const RoleNames& roles = task.recipe->roles;
-  const std::vector<ChannelName> dut = channels_under_calibration(*task.recipe, *dau_source.record);
+  const std::vector<ChannelName> dut = calibrated_channels(*task.recipe, *dau_source.record);
   std::vector<ChannelName> of_dau{roles.sync_sensor};
   of_dau.insert(of_dau.end(), dut.begin(), dut.end());
   SelectedChannels acs(std::move(acs_source), {roles.reference, roles.sync_acs},
@@ -105,7 +88,7 @@ public:
     const auto of_acs = records.interval(0, step);
     const auto of_dau = records.interval(1, step);
     if (!of_acs || !of_dau) {
-      const auto dut = channels_under_calibration(*recipe_, records.of(roles_.sync_sensor.source));
+      const auto dut = calibrated_channels(*recipe_, records.of(roles_.sync_sensor.source));
       const ChannelName& sync = of_acs ? roles_.sync_sensor : roles_.sync_acs;
       return not_found(step, records, sync, dut);
     }
