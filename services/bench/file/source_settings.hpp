@@ -13,6 +13,7 @@
 #include "drivers/alsa/device_settings.hpp"
 #include "drivers/can/stream_settings.hpp"
 #include "drivers/sample_block.hpp"
+#include "drivers/tables/table_settings.hpp"
 #include "services/bench/file/reference_file.hpp"
 #include "services/contract/bench_file_origin.hpp"
 #include "services/contract/device_identity.hpp"
@@ -72,9 +73,12 @@ struct SeriesSourceSettings { // driver = "series"
   std::filesystem::path path; // absolute; folder the series are written into
 };
 
-using DriverSettings = std::variant<SmartupSourceSettings, SocketSourceSettings, AlsaSourceSettings,
-                                    FileSourceSettings, CanSourceSettings,
-                                    OscilloscopeSourceSettings, SeriesSourceSettings>;
+struct TableSourceSettings : drivers::tables::TableSettings {}; // driver = "table"
+
+using DriverSettings =
+    std::variant<SmartupSourceSettings, SocketSourceSettings, AlsaSourceSettings,
+                 FileSourceSettings, CanSourceSettings, OscilloscopeSourceSettings,
+                 SeriesSourceSettings, TableSourceSettings>;
 
 struct SourceSettings {
   std::string name;

@@ -76,6 +76,9 @@ DriverSettings read_driver(TomlTable& table, const std::string& driver, NamedFil
   if (driver == "series") {
     return read_series_source(table, files);
   }
+  if (driver == "table") {
+    return read_table_source(table, files);
+  }
   return driver == "file" ? read_file_source(table, files) : FileSourceSettings{};
 }
 
@@ -142,7 +145,8 @@ SourceSettings read_source(TomlTable table, const std::string& name, NamedFiles&
   source.name = name;
   source.where = table.where("driver");
   const std::string driver = table.one_of(
-      "driver", {"smartup", "socket", "alsa", "file", "can", "oscilloscope", "series"}, "");
+      "driver", {"smartup", "socket", "alsa", "file", "can", "oscilloscope", "series", "table"},
+      "");
   source.driver = read_driver(table, driver, files);
   source.identity = {.device = table.text("device"),
                      .serial = table.text("serial"),
