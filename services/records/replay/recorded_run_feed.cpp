@@ -85,6 +85,8 @@ void RecordedRunFeed::take(const recording::MessageInFile& message) {
     take_of_source<wire::SampleBlock>(message);
   } else if (topic == topics::dso_record || topic == topics::tss_record) {
     take_of_source<wire::TriggeredRecord>(message);
+  } else if (topic == topics::acs_step) {
+    take_reference_step(message);
   } else {
     return;
   }
@@ -125,6 +127,13 @@ void RecordedRunFeed::take_state(const recording::MessageInFile& message) {
       (measurement->state() == wire::MEASUREMENT_DONE ||
        measurement->state() == wire::MEASUREMENT_ABORTED)) {
     announcements_.add(here(), measurement->state());
+  }
+}
+
+void RecordedRunFeed::take_reference_step(const recording::MessageInFile& message) {
+  const auto step = recording::decode<wire::AcsStep>(message.message.data);
+  if (step && step->bench() == bench_ && step->run() == run_) {
+    evaluator_.add(step->source().to_string(), from_message(*step));
   }
 }
 
