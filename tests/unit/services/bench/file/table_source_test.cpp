@@ -17,7 +17,7 @@ std::string bench_text(const std::string& keys_of_table, const std::string& meth
          "[sources.dau]\ndriver = \"smartup\"\nsensor = \"0xbccb0100\"\n[method]\nkind = "
          "\"sample-timestamping\"\n" +
          method +
-         "sync_dau = \"dau/adc_1\"\n[excitation]\nfrequencies_hz = [80]\nlevel_m_s2 = 10\n"
+         "sync_dau = \"dau/adc_1\"\n[excitation]\nfrequencies_hz = [\"80\"]\nlevel = 10.0\n"
          "duration_s = 5\n";
 }
 
