@@ -37,7 +37,6 @@ struct TableSettings {
   std::optional<std::int64_t> first_loop{}; // number of the loop that is repetition 1; empty: 0
   std::size_t skip_first_rows = 0;          // of every loop
   std::size_t skip_last_rows = 0;
-  double row_deadline_s = 30.0; // how long rows are waited for when a run has ended
   bool operator==(const TableSettings&) const = default;
 };
 

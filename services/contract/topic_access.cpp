@@ -39,6 +39,7 @@ std::vector<TopicAccess> make_topic_access() {
       {topics::can_samples, bench, instruments, lookers},
       {topics::dso_record, bench, instruments, lookers},
       {topics::tss_record, bench, instruments, lookers},
+      {topics::acs_step, bench, instruments, lookers},
       {topics::measurement, bench, {conductor}, lookers + Roles{source, guard}},
       {topics::excitation, bench, {conductor}, lookers + Roles{source, guard}},
       {topics::calibration_result, bench, {analysis}, lookers},

@@ -162,6 +162,13 @@ void RunEvaluator::add(const std::string& source, TriggeredRecord record) {
   }
 }
 
+void RunEvaluator::add(const std::string& source, ReferenceStep step) {
+  if (!is_ending() && source == recipe_->reference_table && !source.empty()) {
+    ahead_.reset();
+    method_->add(std::move(step));
+  }
+}
+
 void RunEvaluator::announce(const StepAnnouncement& announcement,
                             std::optional<std::int64_t> heard_ns) {
   if (!is_ending()) {
@@ -183,7 +190,7 @@ void RunEvaluator::finish_now() {
 
 std::optional<std::string> RunEvaluator::excess_of_level() {
   const auto step = records_.excitation().excited_step();
-  return step && !is_ending()
+  return step && !is_ending() && recipe_->reference_table.empty()
              ? level_watch_.look(records_.of(recipe_->reference().source), records_.planned(*step))
              : std::nullopt;
 }
@@ -330,12 +337,18 @@ std::vector<StepResult> RunEvaluator::settled_results() {
   return settled;
 }
 
+std::string RunEvaluator::reference_unit() const {
+  if (!recipe_->reference_table.empty()) {
+    return reference_step_unit;
+  }
+  const SourceRecord& acs = records_.of(recipe_->reference().source);
+  return excitation_unit(acs.description(), recipe_->reference().channel);
+}
+
 // A result that was settled is handed over once, with its last flag.
 void RunEvaluator::close(EvaluationOutput& output) const {
-  const SourceRecord& acs = records_.of(recipe_->reference().source);
   const DescribedRun run{.recipe = *recipe_,
-                         .reference_unit =
-                             excitation_unit(acs.description(), recipe_->reference().channel),
+                         .reference_unit = reference_unit(),
                          .nominal_rate_hz = [&](const std::string& source) {
                            return records_.of(source).description().nominal_rate_hz;
                          }};

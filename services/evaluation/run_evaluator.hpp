@@ -116,6 +116,8 @@ public:
   [[nodiscard]] bool is_ready_for(const std::string& source, std::uint64_t session);
   // Of an instrument that records after a trigger, by its source.
   void add(const std::string& source, TriggeredRecord record);
+  // Of a system that evaluates itself; passes over steps of any other source.
+  void add(const std::string& source, ReferenceStep step);
   // `heard_ns`: by the clock of the times of blocks.
   void announce(const StepAnnouncement& announcement, std::optional<std::int64_t> heard_ns = {});
   // Steps are announced in this run, although what was announced may come later.
@@ -180,6 +182,7 @@ private:
   void follow_clock(const SourceRecord& record, const SourceBlock& block);
   void finish(EvaluationOutput& output);
   void close(EvaluationOutput& output) const;
+  [[nodiscard]] std::string reference_unit() const;
 
   std::shared_ptr<const Recipe> recipe_;
   std::stop_source given_up_;

@@ -88,6 +88,10 @@ Expected<Recipe> plan_recipe(const BenchFile& file, const std::string& run,
   for (const SourceSettings& source : file.sources) {
     recipe.source_settings.emplace(source.name, source.origin.settings);
   }
+  if (const SourceSettings* source = file.source(file.method.reference.source);
+      source != nullptr && source->is<TableSourceSettings>()) {
+    recipe.reference_table = source->name;
+  }
   DYNCAL_TRY(check_recipe(recipe));
   return recipe;
 }

@@ -20,7 +20,8 @@ namespace dyncal::inline bench {
 // [method]: how the bench is evaluated, and which channel has which role.
 //
 //   kind = "analogue"              reference, dut: channels of one system
-//   kind = "sample-timestamping"   reference, sync_acs, sync_dau, dut
+//   kind = "sample-timestamping"   reference, sync_acs, sync_dau, dut; in place of the first two
+//                                  reference_table: a source with driver = "table"
 //   kind = "series-timestamping"   reference, sync_acs, sync_dso, dut, shots = 5 (a step),
 //                                  trigger_phase_correction = true
 //   kind = "absolute-time"         reference, dut: stamped in UTC

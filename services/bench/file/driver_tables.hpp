@@ -75,4 +75,17 @@ namespace dyncal::inline bench {
 //   path = "series"         instead: the folder it writes them into
 [[nodiscard]] SeriesSourceSettings read_series_source(TomlTable& table, NamedFiles& files);
 
+// driver = "table": the steps of an analogue calibration system that evaluates itself
+// (drivers/tables/README.md).
+//
+//   path = "results.csv"             the file with all loops; a list: a file a loop; or their
+//   folder phase = "sync-minus-reference"   or "reference-minus-sync": what the table's phase is;
+//   required format = "ptb-csv"               spektra-csv | spektra-prp; left out: by the content
+//   amplitude = "peak"               or "rms"
+//   coverage = 2.0                   standard uncertainties in a deviation of the table
+//   u_amplitude_rel, u_phase_deg     in place of the table's deviations
+//   phase_offset_deg = 180.0         added to sync - reference
+//   first_loop, skip_first_rows, skip_last_rows
+[[nodiscard]] TableSourceSettings read_table_source(TomlTable& table, NamedFiles& files);
+
 } // namespace dyncal::inline bench

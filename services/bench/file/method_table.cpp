@@ -16,6 +16,11 @@ using Sources = std::vector<SourceSettings>;
 
 constexpr int max_shots = 1000;
 
+bool is_table(const Sources& sources, const std::string& name) {
+  const auto source = std::ranges::find(sources, name, &SourceSettings::name);
+  return source != sources.end() && source->is<TableSourceSettings>();
+}
+
 // `entry` of a list; the key itself without it.
 ChannelName parse_role(TomlTable& table, const std::string& key, const Sources& sources,
                        const std::string& text, std::optional<std::size_t> entry = std::nullopt) {
@@ -38,6 +43,12 @@ ChannelName parse_role(TomlTable& table, const std::string& key, const Sources& 
     refuse(fmt::format("names source '{}', which [sources] does not have (it has: {})",
                        name->source, fmt::join(names, ", ")));
     return {}; // what other roles have in common with it cannot be judged
+  }
+  if (is_table(sources, name->source)) {
+    refuse(fmt::format("names source '{}', whose driver is \"table\": it has no samples, and is "
+                       "named by reference_table",
+                       name->source));
+    return {};
   }
   return *name;
 }
@@ -94,7 +105,35 @@ void read_series_timestamping(TomlTable& table, const Sources& sources, MethodSe
   }
 }
 
+// A source that hands out evaluated steps: reference and sync_acs are names in their messages.
+void read_reference_table(TomlTable& table, const Sources& sources, MethodSettings& method) {
+  const std::string name = table.required_text("reference_table");
+  if (!is_table(sources, name)) {
+    table.refuse(
+        "reference_table",
+        fmt::format("is \"{}\" but must be a source of [sources] with driver = \"table\"", name));
+    return;
+  }
+  if (method.kind != EvaluationMethod::sample_timestamping) {
+    table.refuse("reference_table", "needs kind = \"sample-timestamping\"");
+  }
+  for (const char* role : {"reference", "sync_acs"}) {
+    if (table.has(role)) {
+      static_cast<void>(table.text(role));
+      table.refuse(role, "must be left out: reference_table takes its place");
+    }
+  }
+  method.reference = {name, "reference"};
+  method.sync_acs = {name, "sync"};
+  method.sync_dau = read_role(table, "sync_dau", sources);
+  read_dut(table, sources, method);
+}
+
 void read_roles(TomlTable& table, const Sources& sources, MethodSettings& method) {
+  if (table.has("reference_table")) {
+    read_reference_table(table, sources, method);
+    return;
+  }
   method.reference = read_role(table, "reference", sources);
   switch (method.kind) {
   case EvaluationMethod::analogue:

@@ -15,6 +15,7 @@
 #include "drivers/interferometer/interferometer_settings.hpp"
 #include "drivers/pps/pulse_settings.hpp"
 #include "drivers/sample_block.hpp"
+#include "drivers/tables/table_settings.hpp"
 #include "services/bench/file/reference_file.hpp"
 #include "services/contract/bench_file_origin.hpp"
 #include "services/contract/device_identity.hpp"
@@ -80,10 +81,12 @@ struct SeriesSourceSettings { // driver = "series"
   std::filesystem::path path; // absolute; folder the series are written into
 };
 
+struct TableSourceSettings : drivers::tables::TableSettings {}; // driver = "table"
+
 using DriverSettings =
     std::variant<SmartupSourceSettings, SocketSourceSettings, AlsaSourceSettings,
                  FileSourceSettings, CanSourceSettings, OscilloscopeSourceSettings,
-                 SeriesSourceSettings, AcsSourceSettings>;
+                 SeriesSourceSettings, AcsSourceSettings, TableSourceSettings>;
 
 struct SourceSettings {
   std::string name;

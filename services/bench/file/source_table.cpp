@@ -79,6 +79,9 @@ DriverSettings read_driver(TomlTable& table, const std::string& driver, NamedFil
   if (driver == "series") {
     return read_series_source(table, files);
   }
+  if (driver == "table") {
+    return read_table_source(table, files);
+  }
   if (const auto* registered = acs_driver_named(driver)) {
     return read_acs_source(table, *registered);
   }
@@ -148,7 +151,7 @@ SourceSettings read_source(TomlTable table, const std::string& name, NamedFiles&
   source.name = name;
   source.where = table.where("driver");
   std::vector<std::string> words{"smartup", "socket",       "alsa",  "file",
-                                 "can",     "oscilloscope", "series"};
+                                 "can",     "oscilloscope", "series", "table"};
   for (const drivers::AcsDriver* registered : acs_drivers()) {
     words.emplace_back(registered->name);
   }

@@ -20,15 +20,29 @@ using bus::EndpointKind;
 
 bool is_of_the_contract(const std::string& topic) {
   namespace topics = bus::topics;
-  static const std::set<std::string> names{
-      topics::source_description, topics::source_status,     topics::dau_samples,
-      topics::acs_samples,        topics::can_samples,       topics::dso_record,
-      topics::tss_record,         topics::measurement,       topics::excitation,
-      topics::calibration_result, topics::transfer_function, topics::sample_clock_report,
-      topics::service_status,     topics::recorder_status,   topics::command,
-      topics::catch_up_request,   topics::catch_up_samples,  topics::catch_up_records,
-      topics::clock_request,      topics::clock_answer,      topics::link_probe,
-      topics::link_echo};
+  static const std::set<std::string> names{topics::source_description,
+                                           topics::source_status,
+                                           topics::dau_samples,
+                                           topics::acs_samples,
+                                           topics::can_samples,
+                                           topics::dso_record,
+                                           topics::tss_record,
+                                           topics::acs_step,
+                                           topics::measurement,
+                                           topics::excitation,
+                                           topics::calibration_result,
+                                           topics::transfer_function,
+                                           topics::sample_clock_report,
+                                           topics::service_status,
+                                           topics::recorder_status,
+                                           topics::command,
+                                           topics::catch_up_request,
+                                           topics::catch_up_samples,
+                                           topics::catch_up_records,
+                                           topics::clock_request,
+                                           topics::clock_answer,
+                                           topics::link_probe,
+                                           topics::link_echo};
   return names.contains(topic);
 }
 

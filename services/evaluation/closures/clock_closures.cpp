@@ -102,12 +102,12 @@ Closure in_each_step(const ChannelRun& run, const std::string& clocks,
   return *worst;
 }
 
-// Worst step; of the clock that records the reference.
+// Worst step; of the clock that records the reference, or, where none does, the sensor.
 Closure asked_frequency(const ChannelRun& run) {
   std::optional<Closure> worst;
   for (const StepResult* result : run.results) {
-    const analysis::ChannelFit& fit =
-        result->fits[std::min<std::size_t>(1, result->fits.size() - 1)];
+    const std::size_t sync = run.recipe.reference_table.empty() ? 1 : 2;
+    const analysis::ChannelFit& fit = result->fits[std::min(sync, result->fits.size() - 1)];
     const double off = fit.frequency.hz() / result->frequency_hz - 1.0;
     const double u = fit.u_frequency_hz / result->frequency_hz;
     const double limit =
@@ -185,14 +185,17 @@ std::vector<Closure> clock_closures(const ChannelRun& run) {
                             "clocks know it exactly";
   if (method == EvaluationMethod::series_timestamping) {
     all.push_back(own_oscillator(run));
-  } else if (const auto ratios = ratios_of(run);
-             method == EvaluationMethod::sample_timestamping && searched && !ratios.empty()) {
+  } else if (const auto ratios = ratios_of(run); run.recipe.reference_table.empty() &&
+                                                 method == EvaluationMethod::sample_timestamping &&
+                                                 searched && !ratios.empty()) {
     const RoleNames& roles = run.recipe.roles;
     const std::string clocks = roles.sync_acs.source + " and " + roles.sync_sensor.source;
     all.push_back(rate(clocks, ratios, run.recipe.clock_tolerance_rel));
     all.push_back(in_each_step(run, clocks, ratios));
   } else {
-    const std::string why = method == EvaluationMethod::analogue
+    const std::string why = !run.recipe.reference_table.empty()
+                                ? "the reference is a table, and no clock of it is known"
+                            : method == EvaluationMethod::analogue
                                 ? "sensor and reference have one clock"
                             : method == EvaluationMethod::absolute_time ? "both clocks follow UTC"
                                                                         : known;

@@ -14,6 +14,8 @@ Expected<void> Method::check_time_scales(const RunRecords& /*records*/) const {
 
 void Method::add(const std::string& /*source*/, TriggeredRecord /*record*/) {}
 
+void Method::add(ReferenceStep /*step*/) {}
+
 bool Method::settle(std::span<StepResult> results) const {
   return add_flag_of_most(ResultFlag::changed_within_step, results);
 }
@@ -42,6 +44,9 @@ std::unique_ptr<Method> make_method(std::shared_ptr<const Recipe> recipe) {
   }
   if (recipe->is_multisine()) {
     return make_multisine_time_stamping(std::move(recipe));
+  }
+  if (!recipe->reference_table.empty()) {
+    return make_table_sample_stamping(std::move(recipe));
   }
   if (has_own_clocks(recipe->dut(), recipe->roles.sync_sensor)) {
     return make_own_clock_sample_stamping(std::move(recipe));

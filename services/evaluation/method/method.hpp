@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "services/base/error.hpp"
+#include "services/contract/reference_step.hpp"
 #include "services/contract/triggered_record.hpp"
 #include "services/evaluation/recipe/recipe.hpp"
 #include "services/evaluation/record/run_records.hpp"
@@ -48,6 +49,9 @@ public:
 
   // A record of `source` that belongs to a step which is not evaluated yet.
   virtual void add(const std::string& source, TriggeredRecord record);
+
+  // A step that the reference's system has evaluated itself.
+  virtual void add(ReferenceStep step);
 
   // All that the evaluation of the step needs is there, or cannot come any more. REQUIRES: the step
   // was searched.

@@ -15,5 +15,7 @@ make_multisine_time_stamping(std::shared_ptr<const Recipe> recipe);
 make_own_clock_sample_stamping(std::shared_ptr<const Recipe> recipe);
 [[nodiscard]] std::unique_ptr<Method>
 make_sample_time_stamping(std::shared_ptr<const Recipe> recipe);
+[[nodiscard]] std::unique_ptr<Method>
+make_table_sample_stamping(std::shared_ptr<const Recipe> recipe);
 
 } // namespace dyncal::inline evaluation

@@ -100,6 +100,9 @@ std::vector<ChannelLines> lines_of_common(const StepTask& task, const StepInput&
       {"the reference"}, {"the ACS sync", false}, {"the DAU sync", false}};
   std::vector<ChannelLines> lines;
   for (std::size_t i = 0; i < input.common.size(); ++i) {
+    if (input.common[i].selected == nullptr) {
+      continue;
+    }
     lines.push_back(
         lines_of(task, input, subjects[std::min<std::size_t>(i, 2)], fits[i], input.common[i], i));
   }
@@ -110,7 +113,9 @@ std::vector<ChannelLines> lines_of_common(const StepTask& task, const StepInput&
 std::vector<SteppedClock> stepped_clocks(const StepTask& task, const StepInput& input) {
   std::vector<const SelectedChannels*> sources;
   for (const SelectedChannel& channel : input.common) {
-    sources.push_back(channel.selected);
+    if (channel.selected != nullptr) {
+      sources.push_back(channel.selected);
+    }
   }
   sources.push_back(input.first_dut.selected);
   std::vector<SteppedClock> stepped;

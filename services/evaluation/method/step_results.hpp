@@ -24,7 +24,7 @@ struct EvaluatedStep {
   analysis::StepFindings findings{};
 };
 
-// A channel among those that were selected, which outlives it.
+// A channel among those that were selected, which outlives it; of a fit without samples: none.
 struct SelectedChannel {
   const SelectedChannels* selected = nullptr;
   std::size_t index = 0;

@@ -23,10 +23,13 @@ bool is_stated(const Recipe& recipe, double analysis::SystematicUncertainty::*be
 
 std::vector<Flag> flags_of_unstated(const Recipe& recipe) {
   std::vector<Flag> flags;
-  if (!is_stated(recipe, &analysis::SystematicUncertainty::reference_magnitude_rel,
-                 &analysis::ReferenceContribution::u_magnitude_rel) ||
-      !is_stated(recipe, &analysis::SystematicUncertainty::reference_phase_rad,
-                 &analysis::ReferenceContribution::u_phase_rad)) {
+  const bool has_table = !recipe.reference_table.empty(); // no step of it is without u
+  if (has_table) {
+    // Delays between its channels are in the u of its phase.
+  } else if (!is_stated(recipe, &analysis::SystematicUncertainty::reference_magnitude_rel,
+                        &analysis::ReferenceContribution::u_magnitude_rel) ||
+             !is_stated(recipe, &analysis::SystematicUncertainty::reference_phase_rad,
+                        &analysis::ReferenceContribution::u_phase_rad)) {
     flags.push_back(make_flag(ResultFlag::reference_uncertainty_not_stated));
   }
   if (recipe.method() == EvaluationMethod::sample_timestamping && recipe.adc_calibration.empty() &&
@@ -38,7 +41,7 @@ std::vector<Flag> flags_of_unstated(const Recipe& recipe) {
     flags.push_back(make_flag(ResultFlag::trigger_delay_not_stated));
   }
   // Absolute time has a flag of its own, for there the key holds the clock as well.
-  if (recipe.method() != EvaluationMethod::absolute_time &&
+  if (!has_table && recipe.method() != EvaluationMethod::absolute_time &&
       !(recipe.systematic.acs_delay_s > 0.0)) {
     flags.push_back(make_flag(ResultFlag::acs_delay_not_stated));
   }

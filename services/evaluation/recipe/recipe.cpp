@@ -65,6 +65,32 @@ Expected<void> check_multisine(const Recipe& recipe, bool own_clocks) {
   return {};
 }
 
+// A reference without samples.
+Expected<void> check_reference_table(const Recipe& recipe) {
+  if (recipe.reference_table.empty()) {
+    return {};
+  }
+  if (recipe.is_multisine() || recipe.method() != EvaluationMethod::sample_timestamping ||
+      has_own_clocks(recipe.dut(), recipe.roles.sync_sensor)) {
+    return refuse("a reference that is a table (reference_table) needs method kind = "
+                  "\"sample-timestamping\", one frequency after the other, and a sensor that the DAU "
+                  "of sync_dau stamps");
+  }
+  if (recipe.reference().source != recipe.reference_table ||
+      recipe.excitation().source != recipe.reference_table) {
+    return refuse(fmt::format("the recipe's reference_table is source '{}', but its reference is "
+                              "{}, and its sync_acs {}; they must be of that source",
+                              recipe.reference_table, recipe.reference().text(),
+                              recipe.excitation().text()));
+  }
+  if (recipe.settling_from_data || recipe.whole_record) {
+    return refuse("a reference that is a table (reference_table) has no samples to see the "
+                  "settling of, and belongs to steps: leave settling = \"from-data\" and "
+                  "whole_record out of the bench file");
+  }
+  return {};
+}
+
 Expected<void> check_responses(const Recipe& recipe) {
   for (const RecipeStep& step : recipe.steps) {
     if (const auto reference = reference_response(recipe, step); !reference) {
@@ -95,7 +121,10 @@ std::size_t Recipe::lines_at_once() const {
 }
 
 std::vector<ChannelName> Recipe::channels() const {
-  std::vector<ChannelName> all{reference(), excitation()};
+  std::vector<ChannelName> all;
+  if (reference_table.empty()) {
+    all = {reference(), excitation()};
+  }
   if (!roles.sync_sensor.source.empty()) {
     all.push_back(roles.sync_sensor);
   }
@@ -136,6 +165,7 @@ Expected<void> check_recipe(const Recipe& recipe) {
                       step.step, step.frequency_text_hz, step.settling_s, step.duration_s));
     }
   }
+  DYNCAL_TRY(check_reference_table(recipe));
   DYNCAL_TRY(check_responses(recipe));
   if (recipe.whole_record && recipe.steps.size() != 1) {
     return refuse(

@@ -84,6 +84,9 @@ struct Recipe {
   std::string sha256;
   // What the bench file says of each source, by its name; without one it is not known.
   std::map<std::string, std::string> source_settings;
+  // The source that hands out evaluated steps in place of samples (contract/reference_step.hpp), of
+  // which reference and sync_acs are then names alone; empty: none does.
+  std::string reference_table{};
 
   [[nodiscard]] EvaluationMethod method() const { return roles.method; }
   [[nodiscard]] bool is_multisine() const { return multisine_period_s > 0.0; }
@@ -96,7 +99,7 @@ struct Recipe {
   [[nodiscard]] const ChannelName& excitation() const {
     return roles.sync_acs.source.empty() ? roles.reference : roles.sync_acs;
   }
-  // All with a role, the reference first.
+  // All with a role that have samples, the reference first.
   [[nodiscard]] std::vector<ChannelName> channels() const;
   // The sources of the channels under calibration, each once.
   [[nodiscard]] std::vector<std::string> dut_sources() const;

@@ -32,6 +32,9 @@ Expected<void> check_channels(const Recipe& recipe, const SourceRecord& source) 
 Expected<void> check_quantities(const Recipe& recipe, const RunRecords& records) {
   const auto described =
       [&](const ChannelName& name) -> std::optional<drivers::ChannelDescription> {
+    if (name.source == recipe.reference_table) {
+      return std::nullopt; // it has no samples
+    }
     const SourceRecord& record = records.of(name.source);
     const auto channel = record.described() ? record.channel(name.channel) : std::nullopt;
     return channel ? std::optional(record.description().channels[*channel]) : std::nullopt;

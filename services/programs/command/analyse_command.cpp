@@ -20,6 +20,7 @@
 #include "services/evaluation/run_evaluator.hpp"
 #include "services/evaluation/step_survey.hpp"
 #include "services/instruments/played_source.hpp"
+#include "services/instruments/reference_steps.hpp"
 #include "services/programs/command/command.hpp"
 #include "services/programs/command/figure_options.hpp"
 #include "services/programs/command/keep_options.hpp"
@@ -87,8 +88,28 @@ Expected<void> take_shots(const BenchFile& bench, const std::string& source,
   return {};
 }
 
+// The reference of a system that has evaluated itself.
+Expected<void> take_table(const BenchFile& bench, RunEvaluator& evaluator, RunOutcome& outcome) {
+  const std::string& name = evaluator.recipe().reference_table;
+  if (name.empty()) {
+    return {};
+  }
+  std::vector<PlannedTableStep> plan;
+  for (const RecipeStep& step : evaluator.recipe().steps) {
+    plan.push_back({step.step, step.repetition, step.frequency_text_hz, step.frequency.hz()});
+  }
+  const SourceSettings& source = *bench.source(name);
+  DYNCAL_TRY(auto steps, read_reference_steps(source, plan));
+  add_source(bench, name, describe_table(source), outcome);
+  for (ReferenceStep& step : steps) {
+    evaluator.add(name, std::move(step));
+  }
+  return {};
+}
+
 Expected<Inputs> open_inputs(const BenchFile& bench, RunEvaluator& evaluator, RunOutcome& outcome) {
   Inputs inputs;
+  DYNCAL_TRY(take_table(bench, evaluator, outcome));
   for (const std::string& name : evaluator.recipe().sources()) {
     const SourceSettings& source = *bench.source(name);
     if (source.is<OscilloscopeSourceSettings>() || source.is<SeriesSourceSettings>()) {

@@ -32,6 +32,7 @@ void for_each_recorded_topic(Visit visit) {
   visit(topics::can_samples);
   visit(topics::dso_record);
   visit(topics::tss_record);
+  visit(topics::acs_step);
   visit(topics::measurement);
   visit(topics::excitation);
   visit(topics::calibration_result);

@@ -87,6 +87,8 @@ void RecordedRunFeed::take(const recording::MessageInFile& message) {
     take_of_source<wire::SampleBlock>(message);
   } else if (topic == topics::dso_record || topic == topics::tss_record) {
     take_of_source<wire::TriggeredRecord>(message);
+  } else if (topic == topics::acs_step) {
+    take_reference_step(message);
   } else {
     return;
   }
@@ -144,6 +146,13 @@ void RecordedRunFeed::take_description(const recording::MessageInFile& message) 
   signals = from_message(*description).quadrature_signals;
   if (source.described == description->session() && !source.is_unfit) {
     evaluator_.describe_signals(found->first, signals);
+  }
+}
+
+void RecordedRunFeed::take_reference_step(const recording::MessageInFile& message) {
+  const auto step = recording::decode<wire::AcsStep>(message.message.data);
+  if (step && step->bench() == bench_ && step->run() == run_) {
+    evaluator_.add(step->source().to_string(), from_message(*step));
   }
 }
 

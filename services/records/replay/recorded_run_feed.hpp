@@ -61,6 +61,7 @@ private:
   void take_excitation(const recording::MessageInFile& message);
   void take_state(const recording::MessageInFile& message);
   void take_description(const recording::MessageInFile& message);
+  void take_reference_step(const recording::MessageInFile& message);
   template <class T>
   void take_of_source(const recording::MessageInFile& message);
   void add(const std::string& name, Source& source, const wire::SampleBlock& block,
