@@ -150,7 +150,7 @@ SourceSettings read_source(TomlTable table, const std::string& name, NamedFiles&
   SourceSettings source;
   source.name = name;
   source.where = table.where("driver");
-  std::vector<std::string> words{"smartup", "socket",       "alsa",  "file",
+  std::vector<std::string> words{"smartup", "socket",       "alsa",   "file",
                                  "can",     "oscilloscope", "series", "table"};
   for (const drivers::AcsDriver* registered : acs_drivers()) {
     words.emplace_back(registered->name);

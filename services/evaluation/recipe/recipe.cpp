@@ -72,9 +72,10 @@ Expected<void> check_reference_table(const Recipe& recipe) {
   }
   if (recipe.is_multisine() || recipe.method() != EvaluationMethod::sample_timestamping ||
       has_own_clocks(recipe.dut(), recipe.roles.sync_sensor)) {
-    return refuse("a reference that is a table (reference_table) needs method kind = "
-                  "\"sample-timestamping\", one frequency after the other, and a sensor that the DAU "
-                  "of sync_dau stamps");
+    return refuse(
+        "a reference that is a table (reference_table) needs method kind = "
+        "\"sample-timestamping\", one frequency after the other, and a sensor that the DAU "
+        "of sync_dau stamps");
   }
   if (recipe.reference().source != recipe.reference_table ||
       recipe.excitation().source != recipe.reference_table) {
