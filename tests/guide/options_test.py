@@ -20,7 +20,10 @@ import command_help  # noqa: E402
 
 OPTIONAL = {"dyncal-web"}  # not built where a library is missing
 # Programs that pip installs, by module: options.md has those of the build.
-OF_PIP = {"dyncal-convert": (pages.TOP / "deploy/python/convert", "dyncal_convert.command")}
+OF_PIP = {
+    "dyncal-bridge": (pages.TOP / "deploy/python/bridge", "dyncal_bridge.options"),
+    "dyncal-convert": (pages.TOP / "deploy/python/convert", "dyncal_convert.command"),
+}
 PAGE = pages.GUIDE / "options.md"
 # A program or command, then its words up to what ends a command line.
 CALL = re.compile(r"\b(dyncal(?:-[a-z-]+)?)((?: +[^\s|;&<>`]+)*)")

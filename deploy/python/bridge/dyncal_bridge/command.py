@@ -6,7 +6,6 @@ import argparse
 import importlib
 import logging
 import os
-import pathlib
 import signal
 import sys
 import threading
@@ -15,6 +14,7 @@ from collections.abc import Sequence
 
 from dyncal_bridge.document import BridgeError
 from dyncal_bridge.laboratory import Laboratory
+from dyncal_bridge.options import arguments
 from dyncal_bridge.participant import NetworkOptions, join, refuse_security
 from dyncal_bridge.plug import Plug
 from dyncal_bridge.service_manager import notify
@@ -31,44 +31,6 @@ PLUGS = {
     "opcua": ("opcua_plug", "OpcuaPlug", "asyncua"),
 }
 log = logging.getLogger("dyncal-bridge")
-
-
-def domain_number(text: str) -> int:
-    if not text.isdigit() or int(text) > 232:
-        raise argparse.ArgumentTypeError(f"'{text}' is no DDS domain from 0 to 232")
-    return int(text)
-
-
-def arguments() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog="dyncal-bridge",
-        description="hands live samples, results and states of benches on to Foxglove, MQTT and "
-        "OPC UA; reads only",
-    )
-    parser.add_argument("settings", type=pathlib.Path, help="settings file (TOML)")
-    parser.add_argument("--check", action="store_true", help="look at the settings and end")
-    parser.add_argument(
-        "--domain",
-        type=domain_number,
-        default=os.environ.get("DYNCAL_DOMAIN", "0"),
-        help="DDS domain: one per laboratory (or DYNCAL_DOMAIN; default: 0)",
-    )
-    parser.add_argument("--interface", default="", help="network interface (name or address)")
-    parser.add_argument("--peer", action="append", default=[], help="address of another host")
-    parser.add_argument("--no-multicast", action="store_true", help="find others by --peer alone")
-    parser.add_argument(
-        "--dds",
-        choices=["cyclonedds", "fastdds"],
-        default="cyclonedds",
-        help="accepted as of every program of dyncal; the bridge is always over Cyclone DDS, "
-        "which understands both",
-    )
-    parser.add_argument(
-        "--security",
-        default=os.environ.get("DYNCAL_SECURITY", ""),
-        help="refused: the public cyclonedds package cannot be secured",
-    )
-    return parser
 
 
 def plugs_of(settings: Settings) -> list[Plug]:

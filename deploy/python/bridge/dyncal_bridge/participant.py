@@ -18,8 +18,6 @@ from dyncal import dds
 
 from dyncal_bridge.document import BridgeError
 
-MAX_DOMAIN = 232
-
 
 @dataclasses.dataclass
 class NetworkOptions:
