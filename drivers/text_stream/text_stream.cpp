@@ -165,15 +165,14 @@ Expected<void> TextStream::read_session(SampleSink& sink) {
   };
   for (;;) {
     auto sample = read_sample();
-    if (sample) {
+    const bool is_last = !sample;
+    if (!is_last) {
       samples.push_back(*std::move(sample));
     }
-    if (!samples.empty() && (!sample || samples.size() >= room)) {
+    if (!samples.empty() && (is_last || samples.size() >= room)) {
       hand_over();
     }
-    if (!sample) {
-      return fail(sample.error());
-    }
+    DYNCAL_TRY(sample);
   }
 }
 
