@@ -101,7 +101,9 @@ def qos(topic: str, writes: bool = False, late: bool = True) -> Qos:
 class _Matched(Listener):
     """How many of the other side there are; the one way that 0.10 and 11 have both."""
 
-    count = 0
+    def __init__(self) -> None:
+        super().__init__()  # type: ignore[no-untyped-call]
+        self.count = 0
 
     def on_publication_matched(self, writer: Any, status: Any) -> None:
         """Of a writer: its readers."""
