@@ -48,6 +48,18 @@ def is_newer(made, *sources):
     return made.exists() and all(made.stat().st_mtime > one.stat().st_mtime for one in sources)
 
 
+def install(folder, package, version, **settings):
+    """The Python of an environment in the folder that has this package of PyPI."""
+    python = folder / "bin/python3"
+    if not python.exists():
+        call(sys.executable, "-m", "venv", folder)
+    name = f"{package.replace('-', '_')}-{version}.dist-info"
+    if not any(folder.glob(f"lib/python3*/site-packages/{name}")):
+        pip = [python, "-m", "pip", "install", "-q", "--timeout", "20", f"{package}=={version}"]
+        call(*pip, **settings)
+    return python
+
+
 def python_types(folder):
     """As for the wheel, but for XCDR1 by the QoS alone: the package 0.10 takes no other."""
     types = folder / "contract.py"
@@ -60,9 +72,6 @@ def python_types(folder):
 
 def python_cyclone(version):
     def make(folder):
-        python = folder / "bin/python3"
-        if not python.exists():
-            call(sys.executable, "-m", "venv", folder)
         settings = dict(os.environ)
         if version.startswith("0."):  # from its source, against Debian's library
             home = folder / "cyclonedds"
@@ -73,8 +82,7 @@ def python_cyclone(version):
                 if not (home / name).exists():
                     (home / name).symlink_to(f"/usr/{place}")
             settings["CYCLONEDDS_HOME"] = str(home)
-        pip = [python, "-m", "pip", "install", "-q", "--timeout", "20", f"cyclonedds=={version}"]
-        call(*pip, env=settings)
+        python = install(folder, "cyclonedds", version, env=settings)
         return [python, "-B", HERE / "cyclone_python.py", python_types(folder)], version
 
     return make
@@ -110,10 +118,7 @@ def cpp_of_wheel(version):
     """The wheel has the library of C++ and its headers, and no module of Python."""
 
     def make(folder):
-        python = folder / "bin/python3"
-        if not python.exists():
-            call(sys.executable, "-m", "venv", folder)
-        call(python, "-m", "pip", "install", "-q", "--timeout", "20", f"ros-fastdds=={version}")
+        python = install(folder, "ros-fastdds", version)
         program, source = folder / "fast3_dynamic", HERE / "fast3_dynamic.cpp"
         if not is_newer(program, source):
             packages = call(python, "-c", "import sysconfig; print(sysconfig.get_path('purelib'))")
@@ -146,10 +151,7 @@ def rust(crate, types):
 
 def python_dust(version):
     def make(folder):
-        python = folder / "bin/python3"
-        if not python.exists():
-            call(sys.executable, "-m", "venv", folder)
-        call(python, "-m", "pip", "install", "-q", "--timeout", "20", f"dust-dds=={version}")
+        python = install(folder, "dust-dds", version)
         return [python, "-B", HERE / "dust_python.py"], version
 
     return make
