@@ -84,7 +84,7 @@ read_reference_steps(const SourceSettings& source, const std::vector<PlannedTabl
     const std::size_t count = std::min(match->extra.size(), max_extra_named);
     return fail(
         ErrorCode::bad_file,
-        fmt::format("source '{}': {} rows of the table are of no step of the plan: {}{}; "
+        fmt::format("source '{}': {} of the table's rows are of no step of the plan: {}{}; "
                     "take test tones out with skip_first_rows and skip_last_rows, or put "
                     "the steps into the plan",
                     source.name, match->extra.size(),
