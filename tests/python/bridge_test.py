@@ -78,10 +78,10 @@ class Seen(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        cls.started = []
         folder = FOLDER / "seen"
         shutil.rmtree(folder, ignore_errors=True)
         cls.laboratory = PlayedLaboratory(PROGRAMS, folder / "laboratory", "cyclonedds", speed=1.0)
+        cls.addClassCleanup(cls.laboratory.close)
         cls.broker = cls.keep(Broker(folder / "broker"))
         cls.leave_results_of_another_run()
         cls.bridge = cls.keep(
@@ -105,14 +105,8 @@ class Seen(unittest.TestCase):
 
     @classmethod
     def keep(cls, process):
-        cls.started.append(process)
+        cls.addClassCleanup(process.end)
         return process
-
-    @classmethod
-    def tearDownClass(cls):
-        for process in reversed(cls.started):
-            process.end()
-        cls.laboratory.close()
 
     @classmethod
     def leave_results_of_another_run(cls):
