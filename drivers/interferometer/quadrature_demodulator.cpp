@@ -221,8 +221,7 @@ void QuadratureDemodulator::take(const FoundEllipse& found) {
   radius_known_ = false;
   describe_ellipse(ellipse_, described_);
   described_.turns_covered = found.turns_covered;
-  described_.ellipse_from =
-      "the running signals, " + std::string(to_string(found.method)) + " least squares";
+  described_.ellipse_from = "the running signals, " + std::string(to_string(found.method));
   described_.u_ellipse_rad.assign(found.errors_rad.begin(), found.errors_rad.end());
   if (found.radius) {
     described_.periodic_error_rad = relative(*found.radius);
