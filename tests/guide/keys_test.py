@@ -36,6 +36,8 @@ TABLES = {
 # A value and its uncertainty go together.
 COMPANIONS = {
     "play of can": ("log", "drive.log"),
+    "wavelength_nm": ("u_wavelength_rel", 1e-6),
+    "wavelength_vacuum_nm": ("u_wavelength_rel", 1e-6),
     "temperature_degc": ("U_temperature_k", 1.0),
     "humidity_percent": ("U_humidity_percent", 1.0),
     "pressure_hpa": ("U_pressure_hpa", 1.0),
@@ -251,7 +253,7 @@ class Keys(unittest.TestCase):
             table = examples.first_table(of)
         table[path[-1]] = value
         companions = FOUND if "kind" in table else COMPANIONS
-        if path[-1] in companions:
+        if path[-1] in companions and path[-2:-1] != ["air"]:
             table.setdefault(*companions[path[-1]])
         if path[-1] == "play" and table["driver"] == "can":
             table.setdefault(*COMPANIONS["play of can"])

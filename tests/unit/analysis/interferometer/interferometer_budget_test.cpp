@@ -99,6 +99,17 @@ TEST(InterferometerBudget, ManyFringesSeeHalfTheSkew) {
               2.0 * std::numbers::pi * 160.0 * 1e-8 / 2.0, 1e-12);
 }
 
+TEST(InterferometerBudget, TellsTwoEllipsesApart) {
+  const Ellipse one{0.02, -0.01, 1.05, 0.08, 0.6};
+  Ellipse other = one;
+  EXPECT_EQ(ellipse_difference(one, other), (EllipseErrors{0.0, 0.0}));
+  other.p += 0.006;
+  EXPECT_NEAR(ellipse_difference(one, other)[0], 0.01, 1e-12);
+  other = one;
+  other.alpha_rad += 0.02;
+  EXPECT_NEAR(ellipse_difference(one, other)[1], 0.01, 1e-12);
+}
+
 TEST(InterferometerBudget, RefusesAnEllipseThatDoesNotShowThePeriodicError) {
   RecordEllipse ellipse = ellipse_with_fourth_harmonic();
   ellipse.radius.reset();

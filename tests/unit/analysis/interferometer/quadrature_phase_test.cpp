@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -107,6 +108,57 @@ TEST(QuadraturePhase, SlowDetectorsLoseRadiusWhereFringesAreFast) {
     signals.u2[i] = static_cast<std::int16_t>(std::lround(low_passed[1]));
   }
   EXPECT_LT(ratio(), smallest_radius_ratio);
+}
+
+// Offsets of another ellipse change the phase by parts of a turn; where it is adopted there is no
+// step, whatever the velocity.
+TEST(QuadraturePhase, GoesOnWhereItAdoptsAnotherEllipse) {
+  for (const double rate_hz : {1e6, 6e4}) {
+    Motion motion;
+    motion.acceleration_m_s2 = 100.0;
+    motion.sample_rate_hz = rate_hz;
+    const auto signals = simulate(motion, Detectors{.noise_rel = 0.0}, 1);
+    Ellipse rough = Detectors{}.ellipse;
+    rough.p += 600.0;
+    rough.alpha_rad = 0.0;
+    QuadraturePhase phase(rough);
+    const std::size_t half = signals.u1.size() / 2;
+    std::vector<double> turns(signals.u1.size());
+    const auto push = [&](std::size_t begin, std::size_t end) {
+      ASSERT_TRUE(phase.push(std::span(signals.u1).subspan(begin, end - begin),
+                             std::span(signals.u2).subspan(begin, end - begin),
+                             std::span(turns).subspan(begin, end - begin)));
+    };
+    push(0, half);
+    phase.adopt(Detectors{}.ellipse);
+    push(half, turns.size());
+    const double change = turns[half] - turns[half - 1] - (turns[half - 1] - turns[half - 2]);
+    EXPECT_LT(std::abs(change), 0.2) << rate_hz;
+    for (std::size_t i = half + 1; i + 1 < turns.size(); ++i) {
+      const auto truth = [&](std::size_t k) {
+        return phase_turns(motion, static_cast<double>(k) / rate_hz, 0.0);
+      };
+      ASSERT_NEAR(turns[i + 1] - 2.0 * turns[i] + turns[i - 1],
+                  truth(i + 1) - 2.0 * truth(i) + truth(i - 1), 1e-3);
+    }
+  }
+}
+
+TEST(QuadraturePhase, ExpectsNothingWhereItBeginsAgain) {
+  const Motion motion;
+  const auto signals = simulate(motion, Detectors{}, 2);
+  QuadraturePhase phase(Detectors{}.ellipse);
+  std::vector<double> turns(signals.u1.size());
+  ASSERT_TRUE(phase.push(signals.u1, signals.u2, turns));
+  EXPECT_EQ(phase.statistics().doubtful, 0U);
+  phase.forget_extremes();
+  EXPECT_FALSE(phase.statistics().radius_ratio());
+  EXPECT_EQ(phase.statistics().turns_covered(), 0.0);
+  phase.begin_again(); // with signals of another velocity
+  ASSERT_TRUE(phase.push(std::span(signals.u1).subspan(3000), std::span(signals.u2).subspan(3000),
+                         std::span(turns).subspan(3000)));
+  EXPECT_EQ(phase.statistics().doubtful, 0U);
+  EXPECT_GT(phase.statistics().turns_covered(), 1.0);
 }
 
 TEST(QuadraturePhase, NamesTheSampleThatIsNotFinite) {

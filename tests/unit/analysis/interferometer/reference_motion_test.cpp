@@ -188,6 +188,25 @@ TEST(ReferenceMotion, AQuantityIsItsDerivativeOverTheFrequency) {
   EXPECT_EQ(motion_factor(velocity, velocity, 2.0), std::complex<double>(1.0, 0.0));
 }
 
+TEST(ReferenceMotion, LeavesOutSamplesBesideEndsAndGaps) {
+  std::vector<std::int64_t> stamps;
+  std::vector<double> values;
+  for (std::int64_t i = 0; i < 1000; ++i) {
+    if (i < 400 || i >= 450) {
+      stamps.push_back(i * 1'000'000);
+      values.push_back(static_cast<double>(i));
+    }
+  }
+  const CentredSamples centred = centred_samples(20.0, stamps, values); // half a period is 25 ms
+  ASSERT_EQ(centred.values.size(), 400U - 52U + 550U - 52U);
+  EXPECT_EQ(centred.values.front(), 26.0);
+  EXPECT_EQ(centred.values.back(), 973.0);
+  for (std::size_t i = 0; i < centred.values.size(); ++i) {
+    EXPECT_TRUE(centred.values[i] < 375.0 || centred.values[i] > 474.0);
+    EXPECT_EQ(centred.stamps_ns[i], static_cast<std::int64_t>(centred.values[i]) * 1'000'000);
+  }
+}
+
 TEST(ReferenceMotion, RefusesWhatItCannotDo) {
   const auto slow = motion_of(record_of(500.0, 5000, 160.0), 160.0);
   ASSERT_FALSE(slow);
