@@ -33,6 +33,7 @@ struct SystemOfLines {
   std::vector<ChannelSamples> channels;
   std::vector<SeparatedLines> lines; // one: of all channels
   std::vector<SignalIntegrity> integrity;
+  std::vector<double> noise_parts; // of what the lines leave (line_products.hpp)
 
   [[nodiscard]] const SeparatedLines& separated() const { return lines.front(); }
   [[nodiscard]] double u_scatter_s() const {
@@ -41,9 +42,9 @@ struct SystemOfLines {
 };
 
 // What only the whole signal of a channel shows.
-SignalIntegrity whole_signal(std::span<const Frequency> lines, double period_s,
-                             const SystemOfLines& system, std::size_t channel) {
-  SignalIntegrity integrity;
+void look_at_whole_signal(std::span<const Frequency> lines, double period_s, std::size_t channel,
+                          SystemOfLines& system) {
+  SignalIntegrity& integrity = system.integrity.emplace_back();
   const ChannelSamples& samples = system.channels[channel];
   integrity.samples = samples.values.size();
   measure_compound_integrity(samples.values, system.separated().rest(channel), samples.expected,
@@ -52,7 +53,7 @@ SignalIntegrity whole_signal(std::span<const Frequency> lines, double period_s,
       measure_line_products(lines, period_s, system.separated(), channel, system.times_ns);
   integrity.thd = products.distortion;
   integrity.u_thd = products.u_distortion;
-  return integrity;
+  system.noise_parts.push_back(products.noise_part);
 }
 
 Expected<SystemOfLines> fit_system(const MultisineStampingInput& input,
@@ -77,7 +78,7 @@ Expected<SystemOfLines> fit_system(const MultisineStampingInput& input,
   system.lines.push_back(std::move(*separated));
   system.channels = std::move(channels);
   for (std::size_t channel = 0; channel < system.channels.size(); ++channel) {
-    system.integrity.push_back(whole_signal(lines, input.period_s, system, channel));
+    look_at_whole_signal(lines, input.period_s, channel, system);
   }
   return system;
 }
@@ -183,6 +184,24 @@ AbsoluteTimeInput comparison_of(const MultisineStampingInput& input, const Linke
   return one;
 }
 
+// A fit takes all that it leaves for noise; what the lines make of each other falls on none of
+// them.
+void take_products_from_noise(const std::string& subject, double noise_part, TransferPoint& point) {
+  for (Contribution& row : point.budget) {
+    if (row.kind != ContributionKind::fit_noise || row.subject != subject) {
+      continue;
+    }
+    const double less = 1.0 - noise_part * noise_part;
+    const auto without = [&](double u, double of_row) {
+      return std::sqrt(std::max(0.0, u * u - less * of_row * of_row));
+    };
+    point.u_magnitude = without(point.u_magnitude, row.u_magnitude_rel * point.magnitude);
+    point.u_phase_rad = without(point.u_phase_rad, row.u_phase_rad);
+    row.u_magnitude_rel *= noise_part;
+    row.u_phase_rad *= noise_part;
+  }
+}
+
 // Of what is drawn from the samples.
 double stated_noise_rel(const TransferPoint& point) {
   double squares = 0.0;
@@ -216,7 +235,7 @@ void add_neighbour_row(const MultisineStampingInput& input, const LinkedSystems&
                     systems.dau_on_acs_ns.front() - systems.dau.times_ns.front()));
   if (u_rel > 0.0) {
     point.budget.push_back({.kind = ContributionKind::structure,
-                            .subject = "the lines beside " + point.channel,
+                            .subject = "the lines beside the excitation",
                             .u_magnitude_rel = u_rel,
                             .u_phase_rad = u_rel});
     point.u_magnitude = std::hypot(point.u_magnitude, u_rel * point.magnitude);
@@ -253,6 +272,10 @@ Expected<EvaluatedLine> evaluate_line(const MultisineStampingInput& input,
     TransferPoint& point = evaluated.points[i];
     take_whole_signal(systems.dau.integrity[i + 1], point.dut);
     return_to_own_clock(systems.dau.clock, shift_ns, point.dut);
+    take_products_from_noise("the sensor", systems.dau.noise_parts[i + 1], point);
+    if (!is_differentiated(systems.acs.channels[1])) { // whose noise is not that of its samples
+      take_products_from_noise("the reference", systems.acs.noise_parts[1], point);
+    }
     add_neighbour_row(input, systems, line, i + 1, point);
     add_lag_row(frequency.angular() * systems.u_lag_s, point);
   }

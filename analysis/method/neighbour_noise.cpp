@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <vector>
 
-#include "analysis/base/chi_squared_limit.hpp"
 #include "analysis/sine/line_projection.hpp"
 
 namespace dyncal::analysis {
@@ -55,11 +54,7 @@ double neighbour_noise_beyond(double stated, std::span<const Frequency> lines, s
                   relative(reference, frequency, rest_of_reference) * std::polar(1.0, turned_rad));
   }
   const double freedom = 2.0 * static_cast<double>(beside.size());
-  if (beside.empty() ||
-      squares / freedom < stated * stated * chi_squared_limit(freedom, once_in_a_thousand)) {
-    return 0.0;
-  }
-  return std::sqrt(squares / freedom - stated * stated);
+  return beside.empty() ? 0.0 : std::sqrt(std::max(0.0, squares / freedom - stated * stated));
 }
 
 } // namespace dyncal::analysis

@@ -6,7 +6,8 @@
 // P_b of what the joint fit of the lines has left. Odd lines alone: noise of any colour, and what a
 // sensor of third order makes of the excitation, are there as they are at the line itself. What
 // both channels show alike, as where the exciter's amplitude swings, is none of the ratio's, and
-// cancels. Counts where it is more than chance makes of `stated` once in a thousand times.
+// cancels. Whatever is more than `stated` counts, by chance too: of ten lines that adds 12 % to the
+// square of u where there is nothing.
 //
 // REQUIRES: lines of the period. Any thread.
 #pragma once

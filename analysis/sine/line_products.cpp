@@ -58,10 +58,12 @@ LineProducts measure_line_products(std::span<const Frequency> lines, double peri
   for (std::size_t line = 0; line < lines.size(); ++line) {
     excited += std::norm(record.at(line, channel).phasor);
   }
-  const double variance = std::max(0.0, squares / n - 0.5 * products);
+  const double others = n - 2.0 * static_cast<double>(found.looked_at);
+  const double variance = std::max(0.0, (squares - 0.5 * n * products) / others);
   const double noise = 4.0 * variance / n * static_cast<double>(found.looked_at);
   found.distortion = std::sqrt(std::max(0.0, products - noise) / excited);
   found.u_distortion = std::sqrt(noise / excited);
+  found.noise_part = squares > 0.0 ? std::min(1.0, std::sqrt(variance / (squares / n))) : 1.0;
   return found;
 }
 

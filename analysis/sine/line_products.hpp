@@ -26,6 +26,7 @@ struct LineProducts {
   double distortion = 0.0; // of the lines together
   double u_distortion = 0.0;
   std::size_t looked_at = 0;
+  double noise_part = 1.0; // of the standard deviation of e: what is noise, and none of these
 };
 
 [[nodiscard]] LineProducts measure_line_products(std::span<const Frequency> lines, double period_s,

@@ -71,9 +71,9 @@ Expected<LoadedWaveform> load_waveform(std::string_view identity, std::span<cons
     loaded.commands.push_back(
         packet(samples_v.subspan(first, count), peak_v, first + count == samples_v.size()));
   }
-  loaded.commands.push_back({":SOURce1:FUNCtion ARB", {}});
   loaded.commands.push_back({":SOURce1:FUNCtion:ARB:MODE SRATE", {}});
   loaded.commands.push_back({":SOURce1:FUNCtion:ARB:SRATe " + scpi_decimal(rate_hz), {}});
+  loaded.commands.push_back({":SOURce1:FUNCtion ARB", {}});
   return loaded;
 }
 

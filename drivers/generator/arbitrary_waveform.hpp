@@ -5,8 +5,9 @@
 //   Rigol DG800, DG900, DG1000Z   :SOURce1:TRACe:DATA:DAC16 VOLATILE,CON|END,#5<bytes><points>
 //   and the virtual bench         in packets, points of 14 bits in two bytes, low byte first;
 //                                 0 is -peak, 3FFF peak. Then the rate of the points:
-//                                 :SOURce1:FUNCtion ARB, :SOURce1:FUNCtion:ARB:MODE SRATE,
-//                                 :SOURce1:FUNCtion:ARB:SRATe <points per second>
+//                                 :SOURce1:FUNCtion:ARB:MODE SRATE,
+//                                 :SOURce1:FUNCtion:ARB:SRATe <points per second>,
+//                                 :SOURce1:FUNCtion ARB
 //
 // A packet has 16384 points at most; a period has 8 to 8 000 000. Other families: other words, or
 // too few points (DG4000: 16384), which nobody has tried here; they are refused by name. Pure

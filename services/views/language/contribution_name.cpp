@@ -101,6 +101,8 @@ constexpr std::pair<std::string_view, Sentence> subjects[] = {
     {"the series", {"series of the sensor", "Serien des Kalibriergegenstands"}},
     {"the ratio of the signals",
      {"ratio of sensor and reference", "Verhältnis von Kalibriergegenstand und Bezugsnormal"}},
+    {"the lines beside the excitation",
+     {"frequencies beside the excitation", "Frequenzen neben der Anregung"}},
     {"the exciter, where the clocks see other parts of it",
      {"exciter, in the parts that one record alone has",
       "Schwingungserreger, in Teilen nur einer Aufzeichnung"}},

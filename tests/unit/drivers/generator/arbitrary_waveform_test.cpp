@@ -31,7 +31,7 @@ TEST(ArbitraryWaveform, HasItsPeakAtTheEndsOfTheConverter) {
   EXPECT_EQ(code(1), 0x3FFF);
   EXPECT_EQ(code(2), 0);
   EXPECT_EQ(code(3), 12287);
-  EXPECT_EQ(loaded->commands[3].text, ":SOURce1:FUNCtion:ARB:SRATe 3276.8");
+  EXPECT_EQ(loaded->commands[2].text, ":SOURce1:FUNCtion:ARB:SRATe 3276.8");
 }
 
 TEST(ArbitraryWaveform, GoesInPacketsOfWhichTheLastSaysSo) {
@@ -59,7 +59,7 @@ TEST(ArbitraryWaveform, IsRefusedByNameWhereNobodyKnowsHowToLoadIt) {
     const auto refused = load_waveform(other, samples, 10.0);
     ASSERT_FALSE(refused) << other;
     EXPECT_EQ(refused.error().code, ErrorCode::refused);
-    EXPECT_THAT(refused.error().message, HasSubstr(other));
+    EXPECT_THAT(refused.error().message, HasSubstr(std::string(other).substr(0, 40)));
   }
 }
 

@@ -161,9 +161,9 @@ TEST_F(Scpi, PlaysAnArbitraryWaveformAtTheVoltageThatIsSet) {
   EXPECT_EQ(ask(":SYST:ERR?"), "-224,\"Illegal parameter value\""); // nothing is loaded yet
   ask(":SOURce1:VOLTage 0.4");
   ask(":SOURce1:TRACe:DATA:DAC16 VOLATILE,END," + block);
-  ask(":SOURce1:FUNCtion ARB");
   ask(":SOURce1:FUNCtion:ARB:MODE SRATE");
   ask(":SOURce1:FUNCtion:ARB:SRATe 80");
+  ask(":SOURce1:FUNCtion ARB");
   EXPECT_EQ(ask(":SYST:ERR?"), "0,\"No error\"");
   const auto line = [&] {
     return bench_.drive().lines.empty() ? DriveLine{} : bench_.drive().lines.front();
