@@ -13,9 +13,9 @@
 //
 //      u_k = w_k sum_j g_j w_j u(lag_j) / sum_j g_j w_j^2,   g: weights of the link
 //
-//    jitter of the DAU's stamps and of its sync. Noise is what a fit leaves, without the products of
-//    the lines (line_products.hpp), which fall on none of them; and what the lines beside it show,
-//    that nobody excites, beyond that (neighbour_noise.hpp).
+//    jitter of the DAU's stamps and of its sync. Noise is what a fit leaves, without the products
+//    of the lines (line_products.hpp), which fall on none of them; and what the lines beside it
+//    show, that nobody excites, beyond that (neighbour_noise.hpp).
 //
 // Distortion is read from lines that nobody excites (line_products.hpp), end stops and stuck values
 // from the whole signal (compound_integrity.hpp); both are the same for all lines of a channel.

@@ -4,6 +4,7 @@
 #include "services/evaluation/method/calibrated_channels.hpp"
 #include "services/evaluation/method/disturbance_cut.hpp"
 #include "services/evaluation/method/method_kinds.hpp"
+#include "services/evaluation/method/reference_channel.hpp"
 #include "services/evaluation/method/step_results.hpp"
 #include "services/evaluation/method/step_task.hpp"
 
@@ -20,11 +21,12 @@ StepTask task_of_line(const StepTask& task, std::size_t line) {
 analysis::Expected<analysis::MultisineStampingResult>
 evaluate_channels(const StepTask& task, const SelectedChannels& acs, const SelectedChannels& dau) {
   const Recipe& recipe = *task.recipe;
+  DYNCAL_TRY(const auto reference_samples, reference_channel(acs));
   analysis::MultisineStampingInput input{.lines = {},
                                          .period_s = recipe.multisine_period_s,
                                          .frequency_search_rel = recipe.frequency_search_rel,
                                          .acs_stamps_ns = acs.stamps_ns(),
-                                         .reference = acs.channel(0),
+                                         .reference = reference_samples,
                                          .sync_acs = acs.channel(1),
                                          .dau_stamps_ns = dau.stamps_ns(),
                                          .sync_dau = dau.channel(0),
@@ -74,7 +76,7 @@ std::vector<StepResult> evaluate(StepTask task, SourceInterval acs_source,
         return findings_of(*result);
       });
   StepInput input{.dut = dut,
-                  .reference_unit = acs.unit(0),
+                  .reference_unit = excitation_unit(acs),
                   .units = units_of(acs, dau, 1),
                   .samples = {acs.summary(), dau.summary()},
                   .data_sha256 = digest_of({&acs, &dau}),

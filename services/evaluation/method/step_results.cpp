@@ -37,7 +37,9 @@ std::optional<Flag> find_level_deviation(const RecipeStep& step, double level_de
 // response is per.
 std::vector<analysis::ChannelFit> shown_fits(const StepInput& input,
                                              std::vector<analysis::ChannelFit> common_fits) {
-  common_fits.front() = excitation_fit(*input.common.front().selected, common_fits.front());
+  if (const SelectedChannels* reference = input.common.front().selected) {
+    common_fits.front() = excitation_fit(*reference, common_fits.front());
+  }
   return common_fits;
 }
 
@@ -207,6 +209,8 @@ std::vector<StepResult> make_results(const StepTask& task, const StepInput& inpu
   const std::vector<ChannelLines> common_lines = lines_of_common(task, input, step->common_fits);
   const std::vector<SteppedClock> stepped = stepped_clocks(task, input);
   const std::vector<analysis::ChannelFit> shown = shown_fits(input, step->common_fits);
+  const SelectedChannels* reference = input.common.front().selected; // none of an evaluated one
+  const bool differentiated = reference != nullptr && is_differentiated(*reference);
   std::vector<StepResult> results;
   for (std::size_t i = 0; i < input.dut.size() && !task.given_up.stop_requested(); ++i) {
     StepResult& result =
@@ -222,8 +226,7 @@ std::vector<StepResult> make_results(const StepTask& task, const StepInput& inpu
       add_check(check, result);
     }
     add_check(check_signal(step->points[i].dut), result);
-    check_shape(step->common_fits.front(), is_differentiated(*input.common.front().selected),
-                step->points[i].dut, result);
+    check_shape(step->common_fits.front(), differentiated, step->points[i].dut, result);
     std::vector<ChannelLines> lines = common_lines;
     lines.push_back(lines_of(task, input, {"the sensor"}, step->points[i].dut,
                              {input.first_dut.selected, input.first_dut.index + i},
