@@ -50,12 +50,12 @@ std::vector<ResultFlag> kinds(const StepResult& of) {
 
 TEST(ShapeCheck, NamesTheChannelWhosePeaksAreBent) {
   StepResult of_sensor = result(1e-3);
-  check_shape(channel("acs/ref", 0.0), channel("dau/z", 0.005), of_sensor);
+  check_shape(channel("acs/ref", 0.0), false, channel("dau/z", 0.005), of_sensor);
   ASSERT_THAT(kinds(of_sensor), testing::ElementsAre(ResultFlag::peaks_bent));
   EXPECT_THAT(of_sensor.flags[0].sentence, HasSubstr("dau/z"));
   EXPECT_TRUE(of_sensor.valid);
   StepResult of_reference = result(1e-3);
-  check_shape(channel("acs/ref", 0.005), channel("dau/z", 0.0), of_reference);
+  check_shape(channel("acs/ref", 0.005), false, channel("dau/z", 0.0), of_reference);
   ASSERT_THAT(kinds(of_reference), testing::ElementsAre(ResultFlag::peaks_bent));
   EXPECT_THAT(of_reference.flags[0].sentence, HasSubstr("acs/ref"));
 }
@@ -63,7 +63,7 @@ TEST(ShapeCheck, NamesTheChannelWhosePeaksAreBent) {
 // A filter behind the ends turns harmonics, as if the sensor had gained amplitude.
 TEST(ShapeCheck, NamesBothWhereTheShapesDoNotTellWhich) {
   StepResult turned = result(1e-3);
-  check_shape(channel("acs/ref", 0.0), channel("dau/z", -0.02), turned);
+  check_shape(channel("acs/ref", 0.0), false, channel("dau/z", -0.02), turned);
   ASSERT_THAT(kinds(turned), testing::ElementsAre(ResultFlag::peaks_bent, ResultFlag::peaks_bent));
   EXPECT_THAT(turned.flags[0].sentence, testing::StartsWith("acs/ref: "));
   EXPECT_THAT(turned.flags[0].sentence, HasSubstr("or those of dau/z"));
@@ -74,16 +74,16 @@ TEST(ShapeCheck, NamesBothWhereTheShapesDoNotTellWhich) {
 
 TEST(ShapeCheck, SaysNothingWhereUncertaintyCoversItOrBothHaveIt) {
   StepResult covered = result(0.02);
-  check_shape(channel("acs/ref", 0.0), channel("dau/z", 0.005), covered);
+  check_shape(channel("acs/ref", 0.0), false, channel("dau/z", 0.005), covered);
   EXPECT_TRUE(covered.flags.empty());
   StepResult common = result(1e-4);
-  check_shape(channel("acs/ref", 0.005), channel("dau/z", 0.005), common);
+  check_shape(channel("acs/ref", 0.005), false, channel("dau/z", 0.005), common);
   EXPECT_TRUE(common.flags.empty());
 }
 
 TEST(ShapeCheck, RefusesWhatIsBentByMuch) {
   StepResult bent = result(1e-3);
-  check_shape(channel("acs/ref", 0.0), channel("dau/z", 0.03), bent);
+  check_shape(channel("acs/ref", 0.0), false, channel("dau/z", 0.03), bent);
   EXPECT_FALSE(bent.valid);
   EXPECT_THAT(bent.problem, HasSubstr("the peaks of dau/z are bent"));
 }
@@ -92,7 +92,7 @@ TEST(ShapeCheck, FlagsHeldValuesForTheirHarmonicsAndDoesNotRefuseThem) {
   StepResult held = result(1e-3);
   analysis::ChannelFit sensor = channel("dau/z", 0.05);
   sensor.integrity->repeated_beyond_chance_part = 0.02;
-  check_shape(channel("acs/ref", 0.0), sensor, held);
+  check_shape(channel("acs/ref", 0.0), false, sensor, held);
   EXPECT_TRUE(held.valid);
   EXPECT_THAT(kinds(held),
               testing::ElementsAre(ResultFlag::values_off_stamps, ResultFlag::peaks_bent));
@@ -106,10 +106,10 @@ TEST(ShapeCheck, ShotsAreJudgedTogether) {
     }
   }
   StepResult alone = result(1e-3);
-  check_shape_of_shots(channel("acs/ref", 0.0), "tss/z", std::span(shots).first(1), alone);
+  check_shape_of_shots(channel("acs/ref", 0.0), false, "tss/z", std::span(shots).first(1), alone);
   EXPECT_TRUE(alone.flags.empty());
   StepResult together = result(1e-3);
-  check_shape_of_shots(channel("acs/ref", 0.0), "tss/z", shots, together);
+  check_shape_of_shots(channel("acs/ref", 0.0), false, "tss/z", shots, together);
   EXPECT_THAT(kinds(together), testing::ElementsAre(ResultFlag::peaks_bent));
 }
 
@@ -117,14 +117,14 @@ TEST(ShapeCheck, StampsThatScatterAreFlaggedFromTheUncertaintyOn) {
   analysis::ChannelFit sensor = channel("dau/z", 0.0);
   sensor.scatter = {.shortening_rel = 3e-3, .u_shortening_rel = 1e-5};
   StepResult small = result(5e-3);
-  check_shape(channel("acs/ref", 0.0), sensor, small);
+  check_shape(channel("acs/ref", 0.0), false, sensor, small);
   EXPECT_TRUE(small.flags.empty());
   StepResult large = result(1e-3);
-  check_shape(channel("acs/ref", 0.0), sensor, large);
+  check_shape(channel("acs/ref", 0.0), false, sensor, large);
   EXPECT_THAT(kinds(large), testing::ElementsAre(ResultFlag::stamps_scatter));
   sensor.scatter.far_off = 5;
   StepResult few = result(1e-3);
-  check_shape(channel("acs/ref", 0.0), sensor, few);
+  check_shape(channel("acs/ref", 0.0), false, sensor, few);
   EXPECT_THAT(kinds(few),
               testing::ElementsAre(ResultFlag::values_off_stamps, ResultFlag::stamps_scatter));
 }
@@ -133,13 +133,13 @@ TEST(ShapeCheck, HeldValuesAndReadBuffersAreSaid) {
   analysis::ChannelFit held = channel("dau/z", 0.0);
   held.integrity->repeated_beyond_chance_part = 0.1;
   StepResult of_held = result(1e-3);
-  check_shape(channel("acs/ref", 0.0), held, of_held);
+  check_shape(channel("acs/ref", 0.0), false, held, of_held);
   ASSERT_THAT(kinds(of_held), testing::ElementsAre(ResultFlag::values_off_stamps));
   EXPECT_THAT(of_held.flags[0].sentence, HasSubstr("10 % of the values are held"));
   analysis::ChannelFit read = channel("dau/z", 0.0);
   read.scatter.batched_part = 0.875;
   StepResult of_read = result(1e-3);
-  check_shape(channel("acs/ref", 0.0), read, of_read);
+  check_shape(channel("acs/ref", 0.0), false, read, of_read);
   EXPECT_THAT(kinds(of_read), testing::ElementsAre(ResultFlag::values_off_stamps));
 }
 
@@ -147,7 +147,7 @@ TEST(ShapeCheck, ValuesInTurnOfTwoSensorsAreSaidWithTheirDifference) {
   analysis::ChannelFit alternating = channel("dau/z", 0.0);
   alternating.scatter.alternating.certain_rel = 0.025;
   StepResult of_two = result(1e-3);
-  check_shape(channel("acs/ref", 0.0), alternating, of_two);
+  check_shape(channel("acs/ref", 0.0), false, alternating, of_two);
   ASSERT_THAT(kinds(of_two), testing::ElementsAre(ResultFlag::values_off_stamps));
   EXPECT_THAT(of_two.flags[0].sentence, HasSubstr("a sine that differs by 5 %"));
 }
