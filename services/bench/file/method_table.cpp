@@ -114,9 +114,6 @@ void read_reference_table(TomlTable& table, const Sources& sources, MethodSettin
         fmt::format("is \"{}\" but must be a source of [sources] with driver = \"table\"", name));
     return;
   }
-  if (method.kind != EvaluationMethod::sample_timestamping) {
-    table.refuse("reference_table", "needs kind = \"sample-timestamping\"");
-  }
   for (const char* role : {"reference", "sync_acs"}) {
     if (table.has(role)) {
       static_cast<void>(table.text(role));
@@ -130,7 +127,7 @@ void read_reference_table(TomlTable& table, const Sources& sources, MethodSettin
 }
 
 void read_roles(TomlTable& table, const Sources& sources, MethodSettings& method) {
-  if (table.has("reference_table")) {
+  if (method.kind == EvaluationMethod::sample_timestamping && table.has("reference_table")) {
     read_reference_table(table, sources, method);
     return;
   }
