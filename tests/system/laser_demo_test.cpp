@@ -13,6 +13,13 @@
 namespace dyncal::tests {
 namespace {
 
+// But for that of a channel whose axis points the other way, as one of this sensor does.
+bool has_no_flag(const nlohmann::json& point) {
+  const auto& flags = point["flags"];
+  return std::all_of(flags.begin(), flags.end(),
+                     [](const auto& flag) { return flag == "polarity inverted"; });
+}
+
 class LaserDemo : public testing::TestWithParam<const char*> {};
 
 // Of magnitude or phase, in standard uncertainties.
@@ -40,7 +47,7 @@ TEST_P(LaserDemo, AgreesWithTheTruthWithoutAFlag) {
       if (point["channel"] == "dau/" + expected["channel"].get<std::string>() &&
           point["frequency_hz"] == expected["frequency_hz"]) {
         EXPECT_LT(largest_deviation(point, expected), 4.0) << point;
-        EXPECT_TRUE(point["flags"].empty()) << point["flags"];
+        EXPECT_TRUE(has_no_flag(point)) << point["flags"];
         ++compared;
       }
     }
@@ -48,10 +55,10 @@ TEST_P(LaserDemo, AgreesWithTheTruthWithoutAFlag) {
   EXPECT_EQ(compared, 30U); // three axes
   for (const auto& point : result["points"]) {
     EXPECT_TRUE(point["valid"].get<bool>()) << point;
-    EXPECT_TRUE(point["flags"].empty()) << point["flags"];
+    EXPECT_TRUE(has_no_flag(point)) << point["flags"];
     EXPECT_EQ(point["lost"], 0) << point["step"];
   }
-  EXPECT_EQ(result["points"].size(), 60U);
+  EXPECT_EQ(result["points"].size(), 20U * 9U); // channels of the sensor
   for (const char* ending : {".svg", ".csv"}) {
     const auto path = files / (std::string("ellipse-acs-displacement") + ending);
     ASSERT_TRUE(std::filesystem::exists(path)) << path << "\n" << demo.output();
