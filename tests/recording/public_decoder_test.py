@@ -92,7 +92,7 @@ class PublicDecoder(unittest.TestCase):
         recording.unlink(missing_ok=True)
         subprocess.run([self.publisher.with_name("every_topic"), recording], check=True)
         topics = self.decode(recording)
-        self.assertEqual(len(topics), 15)
+        self.assertEqual(len(topics), 16)
         for topic in ("CanSamples", "DsoRecord", "TssRecord", "CatchUpRequest", "Command"):
             self.assertEqual(topics[topic], 50)
 
