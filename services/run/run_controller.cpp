@@ -203,17 +203,7 @@ wire::MeasurementState RunController::final_state(bool excited) const {
 Expected<void>
 RunController::open(const std::vector<analysis::AdcCalibrationPoint>& adc_calibration) {
   DYNCAL_TRY(const auto recipe, plan_recipe(bench_, run_, adc_calibration));
-  if (!recipe.channel_responses.empty()) { // which the contract's message does not carry
-    return fail(ErrorCode::bad_argument,
-                fmt::format("the sensitivity of {} is taken from results by 'dyncal analyse' "
-                            "alone: for a run leave it out of the bench file",
-                            recipe.channel_responses.front().channel.text()));
-  }
-  if (recipe.is_multisine()) { // nor this
-    return fail(ErrorCode::bad_argument,
-                "a multi-sine is evaluated by 'dyncal analyse' from files alone: a run excites one "
-                "frequency after the other (excitation.kind = \"sine\")");
-  }
+  DYNCAL_TRY(check_for_run(recipe));
   wire::Measurement measurement = to_message(recipe);
   measurement.planned_utc_ns(clock_.utc_now_ns());
   add_adc_file(adc_file_of(bench_), measurement);

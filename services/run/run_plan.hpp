@@ -22,6 +22,9 @@ namespace dyncal::inline run {
 plan_recipe(const BenchFile& file, const std::string& run,
             const std::vector<analysis::AdcCalibrationPoint>& adc_calibration);
 
+// Fails (bad_argument) with what only 'dyncal analyse' evaluates, and what to do for a run.
+[[nodiscard]] Expected<void> check_for_run(const Recipe& recipe);
+
 // The file of the ADC's calibration, as it is now; nothing when the bench file names none.
 [[nodiscard]] std::optional<AdcFile> adc_file_of(const BenchFile& bench);
 

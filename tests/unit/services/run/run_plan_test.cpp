@@ -38,5 +38,23 @@ TEST(RunPlan, RefusesWhatTheMethodDoesNotHave) {
               testing::HasSubstr("give the longest settling as settling_s"));
 }
 
+TEST(RunPlan, RefusesForARunWhatOnlyFilesAreEvaluatedWith) {
+  const auto refusal = [](const Recipe& recipe) {
+    const auto checked = check_for_run(recipe);
+    return checked ? "conducted" : checked.error().message;
+  };
+  const Recipe plain;
+  EXPECT_EQ(refusal(plain), "conducted");
+  Recipe multisine;
+  multisine.multisine_period_s = 10.0;
+  EXPECT_THAT(refusal(multisine), testing::HasSubstr("excitation.kind = \"sine\""));
+  Recipe table;
+  table.reference_table = "acs";
+  EXPECT_THAT(refusal(table), testing::HasSubstr("source 'acs' is a table"));
+  Recipe response;
+  response.channel_responses.push_back({{"dau", "v"}, {}});
+  EXPECT_THAT(refusal(response), testing::HasSubstr("the sensitivity of dau/v"));
+}
+
 } // namespace
 } // namespace dyncal::inline run
