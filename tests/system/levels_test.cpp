@@ -23,22 +23,15 @@ protected:
   std::filesystem::path folder_ = fresh_folder(
       std::string("levels-") + testing::UnitTest::GetInstance()->current_test_info()->name());
 
-  struct Ended {
-    int status = -1;
-    std::string output;
-    std::string errors;
-  };
-  Ended run(const std::string& program, const std::vector<std::string>& arguments) {
-    ProgramRun run(program, arguments, folder_);
-    const auto status = run.wait(patience);
-    return {status.value_or(-1), run.output(), run.errors()};
+  EndedRun run(const std::string& program, const std::vector<std::string>& arguments) {
+    return run_to_end(program, arguments, folder_);
   }
 
   // A result of five levels at 80 Hz, excited along z, whose bench is named by the seed.
   std::filesystem::path measured(int seed) {
     const std::filesystem::path place = folder_ / fmt::format("{}", seed);
     std::filesystem::create_directories(place);
-    const Ended recorded =
+    const EndedRun recorded =
         run("dyncal-virtual-bench",
             {"--seed", fmt::format("{}", seed), "--record-csv", place, "--adc-file",
              place / "adc.json", "--frequencies", "80,80,80,80,80", "--levels", "2,4,8,12,15",
@@ -82,7 +75,7 @@ acs_delay_s = 1e-7
     return place / "result.json";
   }
 
-  Ended table_; // of the newest
+  EndedRun table_; // of the newest
 };
 
 TEST_F(Levels, AreFivePointsInTableFigureAndCsv) {
@@ -111,13 +104,13 @@ TEST_F(Levels, AreFivePointsInTableFigureAndCsv) {
 TEST_F(Levels, ArePairedByCompareOneByOne) {
   const auto first = measured(1);
   const auto second = measured(2);
-  const Ended all = run("dyncal", {"compare", first, second});
+  const EndedRun all = run("dyncal", {"compare", first, second});
   EXPECT_THAT(all.output, HasSubstr(" of 5 points agree")) << all.errors;
   EXPECT_THAT(all.output, Not(HasSubstr("no partner")));
-  const Ended same = run("dyncal", {"compare", first, first});
+  const EndedRun same = run("dyncal", {"compare", first, first});
   EXPECT_EQ(same.status, 0) << same.output << same.errors;
   EXPECT_THAT(all.output, HasSubstr("dau/acceleration_z, axis z\n"));
-  const Ended single = run("dyncal", {"compare", first, second, "--single"});
+  const EndedRun single = run("dyncal", {"compare", first, second, "--single"});
   EXPECT_THAT(single.output, HasSubstr(" of 10 points agree"));
 
   // Another plan: one level is missing, one is different.
@@ -126,7 +119,7 @@ TEST_F(Levels, ArePairedByCompareOneByOne) {
   values.erase(0);
   values[0]["level_m_s2"] = 5.0;
   std::ofstream(folder_ / "other.json") << other;
-  const Ended some = run("dyncal", {"compare", first, folder_ / "other.json"});
+  const EndedRun some = run("dyncal", {"compare", first, folder_ / "other.json"});
   EXPECT_EQ(some.status, 3);
   EXPECT_THAT(some.output, HasSubstr(" of 3 points agree"));
   EXPECT_THAT(some.output, HasSubstr("3 points have no partner and are not compared:"));
@@ -135,14 +128,14 @@ TEST_F(Levels, ArePairedByCompareOneByOne) {
   EXPECT_THAT(some.output, HasSubstr("other.json: dau/acceleration_z at 80 Hz, 5 m/s^2, axis z\n"));
   EXPECT_THAT(some.output, HasSubstr("the levels differ: 2, 4, 8, 12, 15 m/s^2 in the first, "
                                      "5, 8, 12, 15 m/s^2 in the second"));
-  const Ended one = run("dyncal", {"compare", first, folder_ / "other.json", "--level", "4",
-                                   "--other-level", "5", "--json"});
+  const EndedRun one = run("dyncal", {"compare", first, folder_ / "other.json", "--level", "4",
+                                      "--other-level", "5", "--json"});
   const auto json = nlohmann::json::parse(one.output, nullptr, false);
   ASSERT_EQ(json["points"].size(), 1U);
   EXPECT_EQ(json["points"][0]["level_m_s2"], 4.0);
   EXPECT_EQ(json["points"][0]["other_level_m_s2"], 5.0);
   EXPECT_EQ(json["only_first"].size(), 0U);
-  const Ended none = run("dyncal", {"compare", first, folder_ / "other.json", "--level", "2"});
+  const EndedRun none = run("dyncal", {"compare", first, folder_ / "other.json", "--level", "2"});
   EXPECT_EQ(none.status, 1);
   EXPECT_THAT(none.errors, HasSubstr("no channel and frequency in common"));
 }
@@ -152,7 +145,7 @@ TEST_F(Levels, AreLinesOfTheirOwnInStoreAndHistory) {
   for (const int seed : {1, 2}) {
     std::vector<std::string> add{"store", "add", measured(seed)};
     add.insert(add.end(), store.begin(), store.end());
-    const Ended added = run("dyncal", add);
+    const EndedRun added = run("dyncal", add);
     ASSERT_EQ(added.status, 0) << added.errors;
   }
   const auto history = [&](std::vector<std::string> options) {
@@ -168,12 +161,12 @@ TEST_F(Levels, AreLinesOfTheirOwnInStoreAndHistory) {
     EXPECT_EQ(line["values"][0]["level_m_s2"], line["values"][1]["level_m_s2"]);
     EXPECT_TRUE(line["values"][1]["en_magnitude"].is_number());
   }
-  const Ended table = history({"--figures", folder_ / "drift"});
+  const EndedRun table = history({"--figures", folder_ / "drift"});
   EXPECT_THAT(table.output, HasSubstr("dau/acceleration_z at 80 Hz, 15 m/s^2, magnitude in"));
   EXPECT_THAT(table.output, HasSubstr("of 5 values agree with the calibration before"));
   EXPECT_THAT(text_of(folder_ / "drift/drift-dau-acceleration_z.svg"),
               HasSubstr("80 Hz, 12 m/s^2"));
-  const Ended one = history({"--level", "8"});
+  const EndedRun one = history({"--level", "8"});
   EXPECT_THAT(one.output, HasSubstr("dau/acceleration_z at 80 Hz, magnitude in"));
   EXPECT_THAT(one.output, HasSubstr("of 1 values agree"));
 }

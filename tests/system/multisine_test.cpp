@@ -27,15 +27,8 @@ protected:
   std::filesystem::path folder_ = fresh_folder(
       std::string("multisine-") + testing::UnitTest::GetInstance()->current_test_info()->name());
 
-  struct Ended {
-    int status = -1;
-    std::string output;
-    std::string errors;
-  };
-  Ended run(const std::string& program, const std::vector<std::string>& arguments) {
-    ProgramRun run(program, arguments, folder_);
-    const auto status = run.wait(patience);
-    return {status.value_or(-1), run.output(), run.errors()};
+  EndedRun run(const std::string& program, const std::vector<std::string>& arguments) {
+    return run_to_end(program, arguments, folder_);
   }
 
   void record(int repetitions, const std::vector<std::string>& more = {}) {
@@ -64,7 +57,7 @@ protected:
                                        "--duration-per-step",
                                        "10"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    const Ended recorded = run("dyncal-virtual-bench", arguments);
+    const EndedRun recorded = run("dyncal-virtual-bench", arguments);
     ASSERT_EQ(recorded.status, 0) << recorded.errors;
   }
 
@@ -106,7 +99,7 @@ acs_delay_s = 1e-8
   }
 
   nlohmann::json analyse(int repetitions) {
-    const Ended analysed =
+    const EndedRun analysed =
         run("dyncal", {"analyse", bench_file(repetitions), "--output", folder_ / "result.json"});
     EXPECT_EQ(analysed.status, 0) << analysed.errors;
     return read_json(folder_ / "result.json");
@@ -164,7 +157,7 @@ TEST_F(Multisine, ShowsASecondOrderAsDistortionAndNotAsBias) {
 
 TEST_F(Multisine, IsNotForARun) {
   record(1);
-  const Ended refused = run("dyncal", {"run", bench_file(1)});
+  const EndedRun refused = run("dyncal", {"run", bench_file(1)});
   EXPECT_NE(refused.status, 0);
   EXPECT_THAT(refused.errors, HasSubstr("a multi-sine is evaluated by 'dyncal analyse'"));
 }

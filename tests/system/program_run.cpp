@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "tests/dds_domain.hpp"
+#include "tests/patience.hpp"
 
 namespace dyncal::tests {
 namespace {
@@ -153,6 +154,13 @@ std::string ProgramRun::errors() const {
 double ProgramRun::seconds() const {
   return std::chrono::duration<double>(ended_.value_or(std::chrono::steady_clock::now()) - began_)
       .count();
+}
+
+EndedRun run_to_end(const std::string& program, const std::vector<std::string>& arguments,
+                    const std::filesystem::path& folder) {
+  ProgramRun run(program, arguments, folder);
+  const auto status = run.wait(patience);
+  return {status.value_or(-1), run.output(), run.errors()};
 }
 
 std::filesystem::path fresh_folder(const std::string& name) {

@@ -53,6 +53,17 @@ private:
   daemon::ChildProcess process_;
 };
 
+struct EndedRun {
+  int status = -1; // -1: not within patience
+  std::string output;
+  std::string errors;
+};
+
+// The same to its end.
+[[nodiscard]] EndedRun run_to_end(const std::string& program,
+                                  const std::vector<std::string>& arguments,
+                                  const std::filesystem::path& folder);
+
 // A fresh folder of this test below the build tree.
 [[nodiscard]] std::filesystem::path fresh_folder(const std::string& name);
 

@@ -7,6 +7,7 @@
 #include "services/evaluation/method/reference_channel.hpp"
 #include "services/evaluation/method/step_results.hpp"
 #include "services/evaluation/method/step_task.hpp"
+#include "services/evaluation/method/two_clocks.hpp"
 
 namespace dyncal::inline evaluation {
 namespace {
@@ -102,35 +103,15 @@ std::vector<StepResult> evaluate(StepTask task, SourceInterval acs_source,
 // The excitation is found in the first line, with all others taken away. Lines share their samples,
 // the link of the clocks and what is known of the instruments: rows of the budget that are the same
 // error of time for all of them are common delays, and count in full in a group delay.
-class MultisineTimeStamping : public Method {
+class MultisineTimeStamping : public TwoClocks {
 public:
-  using Method::Method;
-
-  [[nodiscard]] std::vector<SearchedChannel> searches() const override {
-    return {{roles_.sync_acs, {roles_.sync_acs.source}},
-            {roles_.sync_sensor, {roles_.sync_sensor.source}}};
-  }
-
-  [[nodiscard]] Evaluation evaluation(std::size_t step, const RunRecords& records) override {
-    const auto of_acs = records.interval(0, step);
-    const auto of_dau = records.interval(1, step);
-    if (!of_acs || !of_dau) {
-      return lines_not_found(step, records, of_acs ? roles_.sync_sensor : roles_.sync_acs);
-    }
-    SourceInterval acs = records.samples(roles_.sync_acs.source, *of_acs);
-    SourceInterval dau = records.samples(roles_.sync_sensor.source, *of_dau);
-    StepTask task = make_step_task(recipe_, step, records, {acs, dau});
-    return [task = std::move(task), acs = std::move(acs), dau = std::move(dau)](
-               const std::stop_token& stop) { return evaluate(task.until(stop), acs, dau); };
-  }
-
-  [[nodiscard]] std::optional<std::string> clock_source() const override {
-    return roles_.sync_sensor.source;
-  }
+  using TwoClocks::TwoClocks;
 
 private:
-  [[nodiscard]] Evaluation lines_not_found(std::size_t step, const RunRecords& records,
-                                           const ChannelName& sync) const {
+  [[nodiscard]] StepEvaluation step_evaluation() const override { return evaluate; }
+
+  [[nodiscard]] Evaluation without(std::size_t step, const RunRecords& records,
+                                   const ChannelName& sync) const override {
     const auto dut = calibrated_channels(*recipe_, records.of(roles_.sync_sensor.source));
     const std::string problem = no_sine(*recipe_, records, step, sync);
     std::vector<StepResult> results;

@@ -7,6 +7,7 @@
 #include "services/evaluation/method/step_results.hpp"
 #include "services/evaluation/method/step_settling.hpp"
 #include "services/evaluation/method/step_task.hpp"
+#include "services/evaluation/method/two_clocks.hpp"
 
 namespace dyncal::inline evaluation {
 namespace {
@@ -80,32 +81,17 @@ std::vector<StepResult> evaluate(StepTask task, SourceInterval acs_source,
 //
 // Without channels under calibration in the recipe, all channels of the DAU but sync and
 // temperature are. The response of the DAU's sync ADC is corrected by the recipe's calibration.
-class SampleTimeStamping : public Method {
+class SampleTimeStamping : public TwoClocks {
 public:
-  using Method::Method;
+  using TwoClocks::TwoClocks;
 
-  [[nodiscard]] std::vector<SearchedChannel> searches() const override {
-    return {{roles_.sync_acs, {roles_.sync_acs.source}},
-            {roles_.sync_sensor, {roles_.sync_sensor.source}}};
-  }
+private:
+  [[nodiscard]] StepEvaluation step_evaluation() const override { return evaluate; }
 
-  [[nodiscard]] Evaluation evaluation(std::size_t step, const RunRecords& records) override {
-    const auto of_acs = records.interval(0, step);
-    const auto of_dau = records.interval(1, step);
-    if (!of_acs || !of_dau) {
-      const auto dut = calibrated_channels(*recipe_, records.of(roles_.sync_sensor.source));
-      const ChannelName& sync = of_acs ? roles_.sync_sensor : roles_.sync_acs;
-      return not_found(step, records, sync, dut);
-    }
-    SourceInterval acs = records.samples(roles_.sync_acs.source, *of_acs);
-    SourceInterval dau = records.samples(roles_.sync_sensor.source, *of_dau);
-    StepTask task = make_step_task(recipe_, step, records, {acs, dau});
-    return [task = std::move(task), acs = std::move(acs), dau = std::move(dau)](
-               const std::stop_token& stop) { return evaluate(task.until(stop), acs, dau); };
-  }
-
-  [[nodiscard]] std::optional<std::string> clock_source() const override {
-    return roles_.sync_sensor.source;
+  [[nodiscard]] Evaluation without(std::size_t step, const RunRecords& records,
+                                   const ChannelName& sync) const override {
+    return not_found(step, records, sync,
+                     calibrated_channels(*recipe_, records.of(roles_.sync_sensor.source)));
   }
 };
 

@@ -20,10 +20,10 @@ use dust_dds::{
         sample_info::{ANY_INSTANCE_STATE, ANY_SAMPLE_STATE, ANY_VIEW_STATE},
         status::NO_STATUS,
         time::{Duration, DurationKind},
-        type_support::DdsType,
     },
     publication::{data_writer::DataWriter, publisher::Publisher},
     subscription::{data_reader::DataReader, subscriber::Subscriber},
+    xtypes::type_support::TypeSupport,
 };
 use std::time::Instant;
 
@@ -142,7 +142,7 @@ fn print_function(one: &wire::TransferFunction) {
     println!();
 }
 
-fn taken<T: DdsType + 'static>(reader: &DataReader<T>) -> Vec<T> {
+fn taken<T: TypeSupport + 'static>(reader: &DataReader<T>) -> Vec<T> {
     reader
         .take(100, ANY_SAMPLE_STATE, ANY_VIEW_STATE, ANY_INSTANCE_STATE)
         .map(|samples| samples.into_iter().filter_map(|sample| sample.data).collect())
