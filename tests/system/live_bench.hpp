@@ -27,7 +27,9 @@ struct LiveBenchSettings {
   std::string excitation;                   // lines of the bench file's tables
   std::string generator = "level_per_volt = 50.0\n";
   std::string source_dau = R"(time_base = "utc")";
-  std::string rest;               // further tables
+  std::string source_acs{}; // lines of its table; empty: the stream of the virtual bench
+  std::string reference = "reference = \"acs/reference\"\nsync_acs = \"acs/sync\"\n";
+  std::string rest{};             // further tables
   std::string dds = "cyclonedds"; // of all programs; as without --dds
 };
 
@@ -110,12 +112,12 @@ private:
         << fmt::format("driver = \"scpi\"\naddress = \"127.0.0.1:{}\"\n", generator_port_)
         << settings.generator << "\n[sources.dau]\ndriver = \"smartup\"\nsensor = \"0xbccb0100\"\n"
         << "listen = \"" << dau << "\"\nchannels = { Data_11 = \"sync\" }\n"
-        << settings.source_dau << "\n[sources.acs]\ndriver = \"socket\"\n"
-        << fmt::format("address = \"127.0.0.1:{}\"\n", acs_port) << R"([method]
-kind = "sample-timestamping"
-reference = "acs/reference"
-sync_acs = "acs/sync"
-sync_dau = "dau/sync"
+        << settings.source_dau << "\n[sources.acs]\n"
+        << (settings.source_acs.empty()
+                ? fmt::format("driver = \"socket\"\naddress = \"127.0.0.1:{}\"\n", acs_port)
+                : settings.source_acs)
+        << "[method]\nkind = \"sample-timestamping\"\n"
+        << settings.reference << R"(sync_dau = "dau/sync"
 dut = ["dau/acceleration_x", "dau/acceleration_y", "dau/acceleration_z"]
 [uncertainty]
 reference_magnitude_rel = 1e-3

@@ -14,6 +14,10 @@ constexpr double reference_noise_m_s2 = 0.004;
 constexpr double sync_noise_v = 60e-6;
 constexpr double hum_hz = 49.98; // the mains are rarely exactly at 50 Hz
 constexpr double reference_hum_m_s2 = 1.5e-3;
+constexpr double pulse_range_v = 5.0;
+constexpr double pulse_height_v = 3.3;
+constexpr double pulse_width_s = 0.1;
+constexpr double samples_of_edge = 6.0;
 constexpr double sync_hum_v = 150e-6;
 
 std::int32_t to_counts(double value, double scale) {
@@ -47,6 +51,10 @@ AcsInstrument::AcsInstrument(const AcsSettings& settings)
   channels_ = {{"reference", "Acceleration", "\\metre\\second\\tothe{-2}", reference_range_m_s2,
                 reference_scale_},
                {"sync", "Voltage", "\\volt", sync_range_v, sync_scale_}};
+  if (settings.pulses_utc_origin_ns) {
+    channels_.push_back(
+        {"pps", "Voltage", "\\volt", pulse_range_v, pulse_range_v / counts_per_range});
+  }
   reference_gains_ = {std::polar(1.0 + gain_error_, phase_error_rad_), 1.0 + gain_error_,
                       1.0 + gain_error_};
   if (settings.interferometer) {
@@ -66,6 +74,19 @@ double AcsInstrument::sync_amplitude_v(const Motion& motion) const {
   return settings_.sync_is_first_output ? motion.generator_v
          : motion.sync_on               ? settings_.sync_amplitude_v * motion.sync_part
                                         : 0.0;
+}
+
+// Edges as a filter of no delay makes them, whose response is a raised cosine.
+double AcsInstrument::pulse_v(double at_s) const {
+  const double origin_s =
+      static_cast<double>(*settings_.pulses_utc_origin_ns % 1'000'000'000) / 1e9;
+  const double since_second_s = origin_s + at_s - std::floor(origin_s + at_s);
+  const auto edge = [width_s = samples_of_edge * interval_s()](double after_s) {
+    const double part = std::clamp(after_s / width_s + 0.5, 0.0, 1.0);
+    return part - std::sin(2.0 * std::numbers::pi * part) / (2.0 * std::numbers::pi);
+  };
+  return pulse_height_v * (edge(since_second_s) - edge(since_second_s - pulse_width_s) +
+                           edge(since_second_s - 1.0)); // of the next second
 }
 
 void AcsInstrument::sample_until(double time_s, const Excitation& excitation, AcsSamples& samples) {
@@ -107,6 +128,11 @@ void AcsInstrument::sample_reference_until(double time_s, const Excitation& exci
         reference_disturbance_.held(to_counts(reference, reference_scale_), at_s)));
     samples.counts.push_back(
         static_cast<std::int32_t>(sync_disturbance_.held(to_counts(sync, sync_scale_), at_s)));
+    if (settings_.pulses_utc_origin_ns) {
+      const double noise_v = noise_.normal(sync_noise_v);
+      samples.counts.push_back(
+          to_counts(pulse_v(at_s) + noise_v, pulse_range_v / counts_per_range));
+    }
   }
 }
 

@@ -6,6 +6,9 @@
 // gain and a phase error, drawn once from the standard uncertainties that the recipe states; of an
 // interferometer it is the spot on the table at which it looks that moves by so much differently.
 //
+// On demand a third channel has the pulse-per-second output of a GPS receiver, from each second of
+// UTC on: 3.3 V for 0.1 s, behind the filter that keeps aliases away.
+//
 // Values are counts of a 24-bit converter, of 14 bits with an interferometer, whose channels have
 // none of `reference_faults` and `sync_faults`; drivers/acs/README.md describes the stream that
 // carries them. One thread.
@@ -40,6 +43,8 @@ struct AcsSettings {
   ChannelFaults sync_faults;
   SampleLoss loss;                                      // of what it sends at a time
   std::optional<InterferometerSettings> interferometer; // in place of the reference channel
+  // UTC at bench time 0, for the channel with pulses; empty: there is none.
+  std::optional<std::int64_t> pulses_utc_origin_ns{};
 };
 
 struct AcsSamples {
@@ -89,6 +94,7 @@ private:
   [[nodiscard]] double interval_s() const; // of bench time
   void sample_reference_until(double time_s, const Excitation& excitation, AcsSamples& samples);
   [[nodiscard]] double sync_amplitude_v(const Motion& motion) const;
+  [[nodiscard]] double pulse_v(double at_s) const;
 
   HarmonicGains reference_gains_;
   std::uint64_t next_sample_ = 0;

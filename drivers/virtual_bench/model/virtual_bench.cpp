@@ -56,11 +56,12 @@ AcsSettings acs_settings(const BenchSettings& settings) {
   acs.rate_hz = settings.acs_rate_hz;
   acs.origin_ns = std::llround(
       random.uniform(0.0, 1e15)); // counts from when it was switched on, up to 11 days ago
-  if (settings.acs_utc || settings.utc_origin_ns) {
+  const bool has_own_clock = settings.acs_pulses && !settings.acs_utc; // which pulses tell of UTC
+  if (settings.acs_utc || (settings.utc_origin_ns && !has_own_clock)) {
     acs.utc = true;
     acs.origin_ns = settings.utc_origin_ns.value_or(start_utc_ns(settings.seed));
   }
-  if (settings.utc_origin_ns) {
+  if (settings.utc_origin_ns && !has_own_clock) {
     acs.max_rate_error = 0.0;
   }
   acs.sync_is_first_output = settings.sync_is_first_output;
@@ -72,6 +73,9 @@ AcsSettings acs_settings(const BenchSettings& settings) {
   acs.sync_faults = settings.faults.sync_acs;
   acs.loss = settings.faults.acs_loss;
   acs.interferometer = settings.interferometer;
+  if (settings.acs_pulses) {
+    acs.pulses_utc_origin_ns = settings.utc_origin_ns.value_or(start_utc_ns(settings.seed));
+  }
   return acs;
 }
 

@@ -36,6 +36,7 @@ struct BenchSettings {
   std::optional<ResponseTable> response;                // of z, in place of the preset's
   bool acs_utc = false;                                 // the ACS stamps in UTC too
   bool sync_is_first_output = false;                    // see acs_instrument.hpp
+  bool acs_pulses = false;                              // of a GPS receiver, in a third channel
   std::optional<InterferometerSettings> interferometer; // of the ACS, in place of its reference
   // The instant of bench time 0 in UTC: ACS and unit then keep UTC, as instruments with a GPS
   // receiver do, instead of epochs of their own.

@@ -221,6 +221,9 @@ void BenchServer::advance_to(double time_s) {
   if (settings_.after_advance) {
     settings_.after_advance(time_s);
   }
+  if (settings_.with_samples) {
+    settings_.with_samples(frame_);
+  }
   while (bench_.now_s() >= next_description_s_) {
     for (const std::string& datagram : packer_.descriptions(bench_.unit().channels())) {
       path_.send(datagram);

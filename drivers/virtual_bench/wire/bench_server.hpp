@@ -44,6 +44,8 @@ struct ServerSettings {
   // `speed` then has no meaning.
   double utc_lead_s = 0.03;
   std::function<void(double time_s)> after_advance; // bench time has come to `time_s`
+  // With what the ACS has sampled since it sent last, newest last.
+  std::function<void(const AcsSamples&)> with_samples;
 };
 
 class BenchServer {

@@ -76,6 +76,8 @@ void add_instrument_options(CLI::App& app, Words& words, BenchOptions& options) 
   app.add_option("--ports-file", options.ports_file,
                  "write the ports to this file as JSON once they are open");
   app.add_option("--truth", options.truth_file, "write what is true to this file");
+  app.add_option("--acs-table", options.acs_table,
+                 "the ACS evaluates each excitation itself, and writes this table");
   app.add_option("--adc-file", options.adc_file,
                  "write the calibration of the sync ADC to this file");
 }
@@ -104,6 +106,9 @@ void add_model_options(CLI::App& app, Words& words, BenchOptions& options) {
   add_checked(app, "--acs-rate", words.acs_rate_hz,
               "samples per second (20000; of an interferometer 500000)", CLI::Range(100, 1000000));
   app.add_flag("--acs-utc", options.bench.acs_utc, "the ACS stamps in UTC, as the unit does");
+  app.add_flag("--acs-pulses", options.bench.acs_pulses,
+               "the ACS has a third channel, 'pps': the pulses of a GPS receiver; the unit then "
+               "keeps the UTC of this host, in real time");
   app.add_flag(
       "--sync-is-first-output", options.bench.sync_is_first_output,
       "sync is the output that drives the exciter, not a second one of constant amplitude");
@@ -156,8 +161,8 @@ void add_recording_options(CLI::App& app, Words& words, BenchOptions& options) {
   add_checked(app, "--duration-per-step", options.programme.duration_s,
               "with --record-csv, seconds", CLI::PositiveNumber);
   app.add_option("--multisine", words.multisine_period_s,
-                 "with --record-csv: all frequencies at once, as lines of a waveform of so many "
-                 "seconds")
+                 "all frequencies at once, as lines of a waveform of so many seconds: what "
+                 "--record-csv excites, and what the ranges are for")
       ->check(CLI::PositiveNumber);
   app.add_flag("--exit-with-parent", options.exit_with_parent,
                "end when the process that started this one ends");
@@ -210,9 +215,6 @@ Expected<void> read_scope_faults(const std::vector<std::string>& texts,
 // Phases that keep the peaks low, and the ranges of the instruments by these peaks.
 Expected<void> read_multisine(const Words& words, BenchOptions& options) {
   device::Programme& programme = options.programme;
-  if (options.record_folder.empty()) {
-    return refuse("--multisine is for --record-csv");
-  }
   const auto checked =
       analysis::check_multisine_lines(programme.frequencies_hz, words.multisine_period_s);
   if (!checked) {
@@ -340,6 +342,9 @@ Expected<void> read_acs(const Words& words, device::BenchSettings& bench) {
   if (bench.acs_rate_hz < lowest_rate_hz) {
     return refuse("--acs-rate {}: an interferometer needs at least {} samples per second",
                   bench.acs_rate_hz, lowest_rate_hz);
+  }
+  if (bench.acs_pulses) {
+    return refuse("--acs-pulses: an interferometer records no pulses");
   }
   if (bench.faults.reference != device::ChannelFaults{} ||
       bench.faults.sync_acs != device::ChannelFaults{}) {

@@ -20,6 +20,7 @@ struct BenchOptions {
       programme;                    // its frequencies are those of the truth and ADC files as well
   std::filesystem::path truth_file; // empty: not wanted
   std::filesystem::path adc_file;
+  std::filesystem::path acs_table; // of an ACS that evaluates itself; empty: it does not
   std::filesystem::path ports_file;
   std::filesystem::path record_folder;           // set: files instead of sockets
   std::string can_interface;                     // of a sensor with CAN output; empty: none

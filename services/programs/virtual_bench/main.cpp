@@ -16,6 +16,7 @@
 #include "services/base/output_file.hpp"
 #include "services/daemon/program/command_line.hpp"
 #include "services/programs/virtual_bench/bench_options.hpp"
+#include "services/programs/virtual_bench/evaluating_acs.hpp"
 
 namespace {
 
@@ -109,6 +110,15 @@ Expected<void> serve(device::VirtualBench& bench, const BenchOptions& options) {
     dyncal::drivers::virtual_bench::request_realtime_priority(5); // below the line
     settings.after_advance = [&](double time_s) { can->advance_to(time_s, bench); };
   }
+  std::optional<dyncal::virtual_bench::EvaluatingAcs> acs;
+  if (!options.acs_table.empty()) {
+    DYNCAL_TRY(auto opened,
+               dyncal::virtual_bench::EvaluatingAcs::open(bench.acs(), options.acs_table));
+    acs.emplace(std::move(opened));
+    settings.with_samples = [&](const device::AcsSamples& samples) {
+      acs->take(samples, bench.drive());
+    };
+  }
   device::BenchServer server(bench, settings);
   if (auto opened = server.open(); !opened) {
     return fail(ErrorCode::device, opened.error().message);
@@ -137,7 +147,8 @@ Expected<void> run(BenchOptions options) {
   if (options.exit_with_parent) {
     prctl(PR_SET_PDEATHSIG, SIGTERM);
   }
-  if (!options.can_interface.empty()) {
+  const bool is_live = options.record_folder.empty();
+  if (!options.can_interface.empty() || (options.bench.acs_pulses && is_live)) {
     options.bench.utc_origin_ns = dyncal::utc_now_ns();
   }
   device::VirtualBench bench(options.bench);
@@ -145,7 +156,7 @@ Expected<void> run(BenchOptions options) {
                             device::truth_json(bench, options.programme.frequencies_hz)));
   DYNCAL_TRY(write_if_named(options.adc_file,
                             device::adc_calibration_json(bench, options.programme.frequencies_hz)));
-  return options.record_folder.empty() ? serve(bench, options) : record(bench, options);
+  return is_live ? serve(bench, options) : record(bench, options);
 }
 
 } // namespace
