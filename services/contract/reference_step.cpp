@@ -42,6 +42,15 @@ PhasorUncertainty uncertainty_of(const wire::SineFit& fit) {
 
 } // namespace
 
+std::vector<PlannedReferenceStep> planned_reference_steps(const wire::Measurement& measurement) {
+  std::vector<PlannedReferenceStep> steps;
+  for (const wire::PlannedStep& planned : measurement.steps()) {
+    steps.push_back({planned.step(), planned.repetition(), planned.frequency_text_hz(),
+                     planned.settling_s() + planned.duration_s()});
+  }
+  return steps;
+}
+
 wire::AcsStep to_message(const ReferenceStep& step) {
   wire::AcsStep message;
   MessageWriter writer;

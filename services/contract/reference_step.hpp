@@ -8,10 +8,12 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace dyncal::wire {
 class AcsStep;
-}
+class Measurement;
+} // namespace dyncal::wire
 
 namespace dyncal::inline contract {
 
@@ -34,6 +36,16 @@ struct ReferenceStep {
   std::string problem{}; // why it has no value; empty: it has one
   bool operator==(const ReferenceStep&) const = default;
 };
+
+// A step of a run, as whoever reads a table for it needs it.
+struct PlannedReferenceStep {
+  std::uint32_t step = 0;
+  std::uint32_t repetition = 0;
+  std::string frequency_text_hz{};
+  double length_s = 0.0; // with its settling
+};
+[[nodiscard]] std::vector<PlannedReferenceStep>
+planned_reference_steps(const wire::Measurement& measurement);
 
 // Everything but bench, source, run and session.
 [[nodiscard]] wire::AcsStep to_message(const ReferenceStep& step);

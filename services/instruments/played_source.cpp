@@ -140,7 +140,8 @@ SourceOptions options_of(const BenchFile& bench, const SourceSettings& settings)
           .silent_after = is_file ? std::chrono::seconds(0) : std::chrono::seconds(2),
           .when_full = is_file               ? WhenFull::wait
                        : is_held_back_by_tcp ? WhenFull::wait_briefly
-                                             : WhenFull::drop};
+                                             : WhenFull::drop,
+          .hands_out_steps = settings.is<TableSourceSettings>()};
 }
 
 Expected<PlayedSource> PlayedSource::prepare(const SourceSettings& settings,

@@ -4,29 +4,34 @@
 // steps of the plan and no key says so, with all of their names. Plain functions; any thread.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "drivers/sample_block.hpp"
+#include "drivers/tables/table_match.hpp"
 #include "services/base/error.hpp"
 #include "services/bench/file/source_settings.hpp"
 #include "services/contract/reference_step.hpp"
 
 namespace dyncal::inline instruments {
 
-struct PlannedTableStep {
-  std::uint32_t step = 0;
-  std::uint32_t repetition = 0;
-  std::string frequency_text_hz;
-  double frequency_hz = 0.0;
-};
-
 // Its channels are those that reference and sync would be; no samples come of them.
 [[nodiscard]] drivers::SourceDescription describe_table(const SourceSettings& source);
 
 // In the order of the plan; those that have no row say so. REQUIRES: driver "table".
 [[nodiscard]] Expected<std::vector<ReferenceStep>>
-read_reference_steps(const SourceSettings& source, const std::vector<PlannedTableStep>& plan);
+read_reference_steps(const SourceSettings& source, const std::vector<PlannedReferenceStep>& plan);
+
+// Of one step, and of one that has no row.
+[[nodiscard]] Expected<ReferenceStep> reference_step_of(const SourceSettings& source,
+                                                        const PlannedReferenceStep& planned,
+                                                        const drivers::tables::LoopRow& row);
+[[nodiscard]] ReferenceStep missing_step(const PlannedReferenceStep& planned, std::string problem);
+// One sentence that names them.
+[[nodiscard]] std::string rows_of_no_step(const drivers::tables::TableMatch& match);
+[[nodiscard]] Error named(const SourceSettings& source, const drivers::Error& error);
+// The plan as tables are matched with it.
+[[nodiscard]] std::vector<drivers::tables::PlannedRow>
+planned_rows(const std::vector<PlannedReferenceStep>& plan);
 
 } // namespace dyncal::inline instruments

@@ -85,6 +85,10 @@ std::string RunCommands::obey(const wire::Command& command, const bus::WriterId&
     aborted_by_ = sender_of(command, writer);
     return "";
   case wire::COMMAND_REPEAT:
+    if (steps_.empty()) {
+      return "no step of this run is excited again: the rows of the reference's table would not "
+             "tell the second excitation from the first";
+    }
     if (!steps_.contains(command.step())) {
       return fmt::format("the run's plan has no step {}", command.step());
     }

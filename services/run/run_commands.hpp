@@ -41,8 +41,8 @@ public:
     std::string refusal; // empty: it is obeyed
   };
 
-  // `steps`: of the plan. Fails (network) as readers do. `participant` and `clock` outlive the
-  // object.
+  // `steps`: of the plan, that may be excited again; none: no step may. Fails (network) as readers
+  // do. `participant` and `clock` outlive the object.
   [[nodiscard]] static Expected<RunCommands> open(bus::Participant& participant, bus::Clock& clock,
                                                   const std::string& bench, std::string run,
                                                   std::set<std::uint32_t> steps,

@@ -99,23 +99,12 @@ Expected<Recipe> plan_recipe(const BenchFile& file, const std::string& run,
 }
 
 Expected<void> check_for_run(const Recipe& recipe) {
-  // None of the first two is in the contract's message, and nobody sends the third during a run.
+  // Not in the contract's message.
   if (!recipe.channel_responses.empty()) {
     return fail(ErrorCode::bad_argument,
                 fmt::format("the sensitivity of {} is taken from results by 'dyncal analyse' "
                             "alone: for a run leave it out of the bench file",
                             recipe.channel_responses.front().channel.text()));
-  }
-  if (recipe.is_multisine()) {
-    return fail(ErrorCode::bad_argument,
-                "a multi-sine is evaluated by 'dyncal analyse' from files alone: a run excites one "
-                "frequency after the other (excitation.kind = \"sine\")");
-  }
-  if (!recipe.reference_table.empty()) {
-    return fail(ErrorCode::bad_argument,
-                fmt::format("source '{}' is a table, which 'dyncal analyse' evaluates from files "
-                            "alone: a run needs the samples of a reference (method.reference)",
-                            recipe.reference_table));
   }
   return {};
 }

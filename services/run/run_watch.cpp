@@ -24,9 +24,11 @@ Expected<std::unique_ptr<RunWatch>> RunWatch::open(bus::Participant& participant
   const std::string run = measurement.run().to_string();
   DYNCAL_TRY(auto messages,
              RunMessages::open(participant, clock, bench, run, std::move(generator), wake_up));
-  std::set<std::uint32_t> steps;
+  std::set<std::uint32_t> steps; // that may be excited again
   for (const wire::PlannedStep& step : measurement.steps()) {
-    steps.insert(step.step());
+    if (measurement.reference_table().empty()) {
+      steps.insert(step.step());
+    }
   }
   DYNCAL_TRY(auto commands,
              RunCommands::open(participant, clock, bench, run, std::move(steps), wake_up));

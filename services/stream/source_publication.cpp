@@ -39,9 +39,13 @@ SourcePublication::create(bus::Participant& participant, std::shared_ptr<SourceP
   DYNCAL_TRY(auto status, participant.writer<dyncal::wire::SourceStatus>(
                               bus::topics::source_status, bus::Profile::state, options.bench));
   DYNCAL_TRY(auto samples, StreamWriter::create(participant, options));
-  return std::make_unique<SourcePublication>(
-      std::move(publisher), std::move(kept), std::move(software),
-      SourceWriters{std::move(description), std::move(status), std::move(samples)});
+  SourceWriters writers{std::move(description), std::move(status), std::move(samples)};
+  if (options.hands_out_steps) {
+    DYNCAL_TRY(writers.steps, participant.writer<wire::AcsStep>(
+                                  bus::topics::acs_step, bus::Profile::results, options.bench));
+  }
+  return std::make_unique<SourcePublication>(std::move(publisher), std::move(kept),
+                                             std::move(software), std::move(writers));
 }
 
 SourcePublication::SourcePublication(std::shared_ptr<SourcePublisher> publisher,
@@ -173,8 +177,31 @@ bool SourcePublication::write_next(std::chrono::nanoseconds limit) {
   return true;
 }
 
+bool SourcePublication::write_steps(std::chrono::nanoseconds limit) {
+  if (!writers_.steps) {
+    return true;
+  }
+  for (HandedOutStep& step : publisher_->take_handed_out()) {
+    steps_due_.push_back(std::move(step));
+  }
+  for (; !steps_due_.empty(); steps_due_.pop_front()) {
+    const SourceOptions& options = publisher_->options();
+    wire::AcsStep message = to_message(steps_due_.front().step);
+    message.bench(options.bench);
+    message.source(options.source);
+    message.run(steps_due_.front().run);
+    message.session(session_);
+    const auto outcome = writers_.steps->write(message, limit);
+    if (outcome == bus::WriteOutcome::timed_out) {
+      return false;
+    }
+    failed_writes_ += outcome == bus::WriteOutcome::failed ? 1 : 0;
+  }
+  return true;
+}
+
 bool SourcePublication::step(std::chrono::nanoseconds write_limit) {
-  if (!write_description(write_limit)) {
+  if (!write_description(write_limit) || !write_steps(write_limit)) {
     return false;
   }
   if (!description_ && !flushing_) {

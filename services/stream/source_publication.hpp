@@ -1,4 +1,4 @@
-// The publishing thread's side of one source: its three writers and what is due to be written.
+// The publishing thread's side of one source: its writers and what is due to be written.
 //
 // Everything it does is one short step that may block for `write_limit` at most, so that one source
 // does not hold up the others: what could not be written stays and is tried again at the next step.
@@ -28,6 +28,7 @@ struct SourceWriters {
   bus::Writer<dyncal::wire::SourceDescription> description;
   bus::Writer<dyncal::wire::SourceStatus> status;
   std::unique_ptr<StreamWriter> samples;
+  std::optional<bus::Writer<dyncal::wire::AcsStep>> steps{}; // of a source that hands out steps
 };
 
 class SourcePublication {
@@ -57,8 +58,12 @@ public:
 
   // Blocks are published even if the source never got a description: the service stops.
   void flush() { flushing_ = true; }
-  [[nodiscard]] bool blocked() const { return pending_.has_value() || description_due_; }
-  [[nodiscard]] bool idle() const { return !pending_ && publisher_->ring().empty(); }
+  [[nodiscard]] bool blocked() const {
+    return pending_.has_value() || description_due_ || !steps_due_.empty();
+  }
+  [[nodiscard]] bool idle() const {
+    return !pending_ && steps_due_.empty() && publisher_->ring().empty();
+  }
 
   [[nodiscard]] std::uint64_t messages_written() const { return written_; }
 
@@ -73,6 +78,7 @@ public:
 
 private:
   bool write_description(std::chrono::nanoseconds limit);
+  bool write_steps(std::chrono::nanoseconds limit);
   bool write_next(std::chrono::nanoseconds limit);
   bool next_message();
   void hold(RingEntry entry, const std::string& answers_run);
@@ -107,6 +113,7 @@ private:
     bool end_of_stream = false;
   };
   std::optional<Pending> pending_; // its message is the stream writer's
+  std::deque<HandedOutStep> steps_due_;
   std::deque<std::string> runs_to_answer_;
 
   dyncal::wire::SourceState published_state_ = wire::SOURCE_STARTING;

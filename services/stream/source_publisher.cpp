@@ -1,6 +1,7 @@
 #include "services/stream/source_publisher.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include <spdlog/spdlog.h>
 
@@ -196,6 +197,7 @@ bool SourcePublisher::may_answer(const std::string& run) {
   {
     const std::lock_guard lock(mutex_);
     if (playing_.empty() || playing_ == run) {
+      answered_run_ = run;
       return true;
     }
     superseded_ = true;
@@ -210,6 +212,35 @@ void SourcePublisher::note_running(const std::vector<std::string>& runs) {
     running_ = runs;
   }
   running_changed_.notify_all();
+}
+
+void SourcePublisher::note_run(HeardRun run) {
+  const std::lock_guard lock(mutex_);
+  if (run.is_under_way || !heard_run_ || heard_run_->run == run.run) { // else one that is over
+    heard_run_ = std::move(run);
+  }
+}
+
+std::optional<HeardRun> SourcePublisher::heard_run() const {
+  const std::lock_guard lock(mutex_);
+  auto heard = heard_run_;
+  if (heard) {
+    heard->is_answered = heard->run == answered_run_;
+  }
+  return heard;
+}
+
+void SourcePublisher::hand_out(HandedOutStep step) {
+  {
+    const std::lock_guard lock(mutex_);
+    handed_out_.push_back(std::move(step));
+  }
+  wake_up_->ring();
+}
+
+std::vector<HandedOutStep> SourcePublisher::take_handed_out() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(handed_out_, {});
 }
 
 std::chrono::nanoseconds SourcePublisher::usual_gap() const {

@@ -28,6 +28,7 @@
 #include "drivers/sample_sink.hpp"
 #include "services/contract/bench_file_origin.hpp"
 #include "services/contract/device_identity.hpp"
+#include "services/contract/reference_step.hpp"
 #include "services/contract/source_kind.hpp"
 #include "services/stream/block_ring.hpp"
 #include "services/stream/block_split.hpp"
@@ -62,6 +63,22 @@ struct SourceOptions {
   std::stop_token stop = {}; // once requested, take() waits no longer: its block is lost
   std::uint64_t session = 0; // the first one; 0: a random number
   std::size_t max_block_bytes = stream::max_block_bytes; // longer ones become several
+  bool hands_out_steps = false; // evaluated ones, in place of samples (hand_out())
+};
+
+// The run of the bench that is under way, or was the last.
+struct HeardRun {
+  std::string run{};
+  std::vector<PlannedReferenceStep> steps{};
+  bool is_under_way = false; // PLANNED or RUNNING
+  bool is_running = false;
+  bool is_answered = false; // by this source, so that its begin was seen here
+};
+
+// A step that a source has evaluated itself.
+struct HandedOutStep {
+  std::string run;
+  ReferenceStep step;
 };
 
 enum class SourceStage { starting, streaming, ended, failed };
@@ -91,6 +108,11 @@ public:
   // Of a triggered source: one shot with its values. Never blocks. Returns false if the ring is
   // full: the shot is lost and counted.
   [[nodiscard]] bool take_shot(Shot shot, drivers::SampleBlock values);
+
+  // Of a source that evaluates itself. Never blocks: as many as a run has steps are few.
+  void hand_out(HandedOutStep step);
+  // Of such a source; nothing before a run was heard of.
+  [[nodiscard]] std::optional<HeardRun> heard_run() const;
 
   // Of a device that is asked for its records: RUNNING while it can be reached, else SILENT.
   void set_reachable(bool reachable);
@@ -135,6 +157,8 @@ public:
   [[nodiscard]] std::vector<double> factors() const;
   [[nodiscard]] BlockRing& ring() { return ring_; }
   void note_running(const std::vector<std::string>& runs);
+  void note_run(HeardRun run); // `is_answered` is known here
+  [[nodiscard]] std::vector<HandedOutStep> take_handed_out();
   // Somebody arms for this run. Returns whether the source may answer now: not while it plays
   // another run, whose session that answer would belong to.
   [[nodiscard]] bool may_answer(const std::string& run);
@@ -160,6 +184,9 @@ private:
   std::condition_variable_any running_changed_;
   std::vector<std::string> running_;
   std::vector<std::string> returned_;
+  std::optional<HeardRun> heard_run_;
+  std::string answered_run_; // the last one
+  std::vector<HandedOutStep> handed_out_;
   std::string playing_; // a run; empty: none
   bool superseded_ = false;
   bool play_ended_ = false;

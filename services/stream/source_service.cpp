@@ -21,6 +21,11 @@ constexpr std::size_t max_name = 64; // bound of the keys of the contract
 constexpr auto rest = std::chrono::milliseconds(5);
 constexpr std::uint64_t rest_worthwhile = 2; // messages in one turn
 
+bool is_under_way(const wire::Measurement& measurement) {
+  return measurement.state() == wire::MEASUREMENT_PLANNED ||
+         measurement.state() == wire::MEASUREMENT_RUNNING;
+}
+
 } // namespace
 
 Expected<void> SourceService::join_bench(const std::string& bench) {
@@ -79,13 +84,19 @@ void SourceService::take_commands(const std::string& bench, BenchReaders& reader
 void SourceService::take_measurements(const std::string& bench, BenchReaders& readers) {
   auto running = readers.running;
   bool under_way = false;
+  std::optional<HeardRun> heard;
   readers.measurement.take([&](const wire::Measurement& measurement) {
     const std::string run = measurement.run().c_str();
     std::erase(running, run);
-    under_way = under_way || measurement.state() == wire::MEASUREMENT_PLANNED ||
-                measurement.state() == wire::MEASUREMENT_RUNNING;
+    under_way = under_way || is_under_way(measurement);
     if (measurement.state() == wire::MEASUREMENT_RUNNING) {
       running.push_back(run);
+    }
+    if (!heard || is_under_way(measurement)) {
+      heard = HeardRun{.run = run,
+                       .steps = planned_reference_steps(measurement),
+                       .is_under_way = is_under_way(measurement),
+                       .is_running = measurement.state() == wire::MEASUREMENT_RUNNING};
     }
   });
   const bool changed = running != readers.running;
@@ -99,6 +110,9 @@ void SourceService::take_measurements(const std::string& bench, BenchReaders& re
     }
     if (changed) {
       channel->publisher().note_running(readers.running);
+    }
+    if (heard && channel->publisher().options().hands_out_steps) {
+      channel->publisher().note_run(*heard);
     }
   }
 }

@@ -107,6 +107,9 @@ BenchFile read_tables(const toml::table& parsed, const std::filesystem::path& pa
   if (auto excitation = root.table("excitation")) {
     check_multisine(std::move(*excitation), file);
   }
+  if (auto generator = root.table("generator")) {
+    check_generator(std::move(*generator), file);
+  }
   if (auto corrections = root.table("corrections")) {
     file.corrections = read_corrections(std::move(*corrections), files);
   }

@@ -37,6 +37,8 @@ namespace dyncal::inline bench {
 // this excitation is refused.
 [[nodiscard]] GeneratorSettings read_generator(TomlTable table,
                                                const ExcitationSettings& excitation);
+// The same table: what cannot go together with the sources and the method is refused.
+void check_generator(TomlTable table, const BenchFile& file);
 
 // [corrections]: what is known of ADC, trigger and delays beforehand.
 //

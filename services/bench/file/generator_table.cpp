@@ -1,3 +1,5 @@
+#include <fmt/core.h>
+
 #include "services/bench/file/bench_tables.hpp"
 
 namespace dyncal::inline bench {
@@ -52,6 +54,21 @@ GeneratorSettings read_generator(TomlTable table, const ExcitationSettings& exci
   }
   table.finish();
   return generator;
+}
+
+void check_generator(TomlTable table, const BenchFile& file) {
+  if (file.excitation.multisine && file.generator.driver == GeneratorDriver::by_hand) {
+    table.refuse("driver", "\"by-hand\" cannot excite a multi-sine: an instrument has to be given "
+                           "its waveform (\"scpi\"), or records are evaluated (\"none\")");
+  }
+  const SourceSettings* reference = file.source(file.method.reference.source);
+  if (file.generator.level_tolerance_rel && reference != nullptr &&
+      reference->is<TableSourceSettings>()) {
+    table.refuse("level_tolerance_rel",
+                 fmt::format("needs samples of the reference while a step is excited, but source "
+                             "'{}' is a table; leave it out",
+                             reference->name));
+  }
 }
 
 } // namespace dyncal::inline bench

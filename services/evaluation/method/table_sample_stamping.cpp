@@ -140,6 +140,22 @@ public:
                const std::stop_token& stop) { return evaluate(task.until(stop), row, samples); };
   }
 
+  // A row that its system has taken back, since the table does not bear it out any more.
+  [[nodiscard]] bool settle(std::span<StepResult> results) const override {
+    bool changed = false;
+    for (StepResult& result : results) {
+      const auto rows = rows_.find(result.step);
+      const bool is_taken_back = rows != rows_.end() && rows->second.size() > result.attempt &&
+                                 !rows->second.back().problem.empty();
+      if (is_taken_back && !has_flag(result.flags, ResultFlag::step_number_uncertain)) {
+        result.flags.push_back(
+            flag_with_reason(ResultFlag::step_number_uncertain, rows->second.back().problem));
+        changed = true;
+      }
+    }
+    return changed;
+  }
+
   [[nodiscard]] std::optional<std::string> clock_source() const override {
     return roles_.sync_sensor.source;
   }

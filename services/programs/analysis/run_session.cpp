@@ -260,13 +260,16 @@ void RunSession::watch_sources(Instant now) {
   if (!goes_on || is<Failed>() || now - last_heard_of_run_ > runner_limit) {
     return;
   }
-  if (const auto recovered = streams_->recovered(); recovered != recovered_) {
-    recovered_ = recovered;
+  if (const auto come = streams_->recovered() + streams_->steps_handed_out(); come != come_) {
+    come_ = come;
     last_progress_ = now;
   }
   auto lost =
       streams_->lost_source(now, std::max(last_progress_, present_since_), silence_limit,
                             excited_by_steps_ && measurement_.state() == wire::MEASUREMENT_RUNNING);
+  if (!lost) {
+    lost = late_steps(now);
+  }
   if (!lost) {
     conductor_.note_sources_seen();
     if (auto* const takeover = std::get_if<TakingOver>(&state_)) {
@@ -282,6 +285,16 @@ void RunSession::watch_sources(Instant now) {
   } else {
     enter(Failed{}, std::move(lost->message));
   }
+}
+
+// All has been excited, and a system that evaluates itself is behind.
+std::optional<LostSource> RunSession::late_steps(Instant now) const {
+  const bool is_all_excited =
+      excitation_over() || (!excited_by_steps_ && evaluator_->has_planned_steps());
+  std::string late = is_all_excited && now - last_progress_ > silence_limit
+                         ? streams_->steps_not_handed_out()
+                         : std::string();
+  return late.empty() ? std::nullopt : std::optional(LostSource{.message = std::move(late)});
 }
 
 void RunSession::wait_for_source(LostSource lost, Instant now) {

@@ -123,6 +123,7 @@ private:
   void enter(SessionState state, std::string message);
   void publish();
   void begin_arming_again(Instant now);
+  [[nodiscard]] std::optional<LostSource> late_steps(Instant now) const;
   void wait_for_source(LostSource lost, Instant now);
   void refuse(std::string message);
   [[nodiscard]] bool lacks_samples(Instant now) const;
@@ -154,9 +155,9 @@ private:
   std::string message_; // of the state, for people
   Instant last_heard_of_run_;
   Instant last_progress_;
-  Instant worked_;              // when work() was called last
-  Instant present_since_;       // since when it has been called without a break
-  std::uint64_t recovered_ = 0; // messages that had to be asked for
+  Instant worked_;         // when work() was called last
+  Instant present_since_;  // since when it has been called without a break
+  std::uint64_t come_ = 0; // messages that had to be asked for, and steps handed out
   Instant next_command_;
   Instant next_status_;
 };

@@ -7,6 +7,7 @@
 
 #include "services/bus/participant_name.hpp"
 #include "services/contract/bench_file_origin.hpp"
+#include "services/contract/reference_step.hpp"
 #include "services/contract/session_number.hpp"
 #include "services/contract/source_block.hpp"
 #include "services/contract/source_description.hpp"
@@ -24,6 +25,9 @@ SourceStreams::SourceStreams(bus::Participant& participant, std::shared_ptr<bus:
       begin_(begin) {
   for (const std::string& source : evaluator_.recipe().sources()) {
     streams_.emplace(source, Stream{});
+  }
+  if (const std::string& table = evaluator_.recipe().reference_table; !table.empty()) {
+    streams_.emplace(table, Stream{}); // its blocks, which have no samples, show that it is there
   }
 }
 
@@ -71,6 +75,7 @@ Expected<void> SourceStreams::describe(const std::string& name, Stream& stream,
     return accepted;
   }
   take_description(stream, description);
+  DYNCAL_TRY(open_steps(name));
   const bool triggered = contract::is_triggered(from_wire(description.kind()));
   if (!stream.follower) {
     stream.follower.emplace(make_follower(name, triggered));
@@ -197,6 +202,36 @@ Expected<void> SourceStreams::open_answer_readers() {
   return {};
 }
 
+Expected<void> SourceStreams::open_steps(const std::string& name) {
+  if (!steps_ && name == evaluator_.recipe().reference_table) {
+    DYNCAL_TRY(auto steps, HandedOutSteps::open(participant_, wake_up_, bench_, run_, name));
+    steps_.emplace(std::move(steps));
+  }
+  return {};
+}
+
+void SourceStreams::take_steps() {
+  if (!steps_) {
+    return;
+  }
+  Stream& stream = streams_.at(steps_->source());
+  steps_->take([&](const wire::AcsStep& step, const bus::WriterId& writer) {
+    if (!is_described(stream, step.session())) {
+      return false;
+    }
+    if (!stream.writers.takes(step.session(), writer)) {
+      note_second_writer(steps_->source(), stream, step.session(), writer);
+      return false;
+    }
+    evaluator_.add(steps_->source(), from_message(step));
+    return true;
+  });
+}
+
+std::string SourceStreams::steps_not_handed_out() const {
+  return steps_ ? steps_->missing(evaluator_.recipe().steps.size()) : "";
+}
+
 void SourceStreams::take_samples(Instant now) {
   heard_ = now;
   for (auto& [name, stream] : streams_) {
@@ -221,6 +256,7 @@ void SourceStreams::take_samples(Instant now) {
   for (auto& [kind, reader] : record_readers_) {
     take(reader, live);
   }
+  take_steps();
 }
 
 template <class Message, class Take>

@@ -32,6 +32,7 @@
 #include "services/contract/known_sources.hpp"
 #include "services/evaluation/run_evaluator.hpp"
 #include "services/programs/analysis/described_sessions.hpp"
+#include "services/programs/analysis/handed_out_steps.hpp"
 #include "services/programs/analysis/left_out_messages.hpp"
 #include "services/programs/analysis/session_writers.hpp"
 #include "services/programs/analysis/stream_follower.hpp"
@@ -76,8 +77,13 @@ public:
   [[nodiscard]] bool contains(const std::string& source) const { return streams_.contains(source); }
   // Hands new descriptions to the evaluator. Fails as RunEvaluator::describe() and readers do.
   [[nodiscard]] Expected<void> take_descriptions(const KnownSources& known, Instant now);
-  // Hands what has come of sources that have answered to the evaluator.
+  // Hands what has come of sources that have answered to the evaluator: samples, and steps that a
+  // source has evaluated itself.
   void take_samples(Instant now);
+  // A sentence about the steps that such a source has not handed out yet; empty: none.
+  [[nodiscard]] std::string steps_not_handed_out() const;
+  // How many it has.
+  [[nodiscard]] std::size_t steps_handed_out() const { return steps_ ? steps_->count() : 0; }
   // What sources are to be asked for, by asker(). Fails as readers do.
   [[nodiscard]] Expected<std::vector<Request>> requests_due(Instant now);
   [[nodiscard]] const std::string& asker() const { return asker_; }
@@ -151,6 +157,8 @@ private:
   [[nodiscard]] Expected<void>
   open_reader(std::map<wire::SourceKind, bus::Reader<Message>>& readers, wire::SourceKind kind);
   [[nodiscard]] Expected<void> open_answer_readers();
+  [[nodiscard]] Expected<void> open_steps(const std::string& name);
+  void take_steps();
   template <class Message, class Take>
   void take(bus::Reader<Message>& reader, Take take);
   void note_second_writer(const std::string& name, Stream& stream, std::uint64_t session,
@@ -171,6 +179,7 @@ private:
   std::map<std::string, Stream> streams_;
   std::map<wire::SourceKind, bus::Reader<wire::SampleBlock>> block_readers_;
   std::map<wire::SourceKind, bus::Reader<wire::TriggeredRecord>> record_readers_;
+  std::optional<HandedOutSteps> steps_; // of the recipe's reference_table
   struct AnswerReaders {
     bus::Reader<wire::SampleBlock> blocks;
     bus::Reader<wire::TriggeredRecord> records;

@@ -94,9 +94,10 @@ Expected<void> take_table(const BenchFile& bench, RunEvaluator& evaluator, RunOu
   if (name.empty()) {
     return {};
   }
-  std::vector<PlannedTableStep> plan;
+  std::vector<PlannedReferenceStep> plan;
   for (const RecipeStep& step : evaluator.recipe().steps) {
-    plan.push_back({step.step, step.repetition, step.frequency_text_hz, step.frequency.hz()});
+    plan.push_back(
+        {step.step, step.repetition, step.frequency_text_hz, step.settling_s + step.duration_s});
   }
   const SourceSettings& source = *bench.source(name);
   DYNCAL_TRY(auto steps, read_reference_steps(source, plan));

@@ -45,12 +45,6 @@ TEST(RunPlan, RefusesForARunWhatOnlyFilesAreEvaluatedWith) {
   };
   const Recipe plain;
   EXPECT_EQ(refusal(plain), "conducted");
-  Recipe multisine;
-  multisine.multisine_period_s = 10.0;
-  EXPECT_THAT(refusal(multisine), testing::HasSubstr("excitation.kind = \"sine\""));
-  Recipe table;
-  table.reference_table = "acs";
-  EXPECT_THAT(refusal(table), testing::HasSubstr("source 'acs' is a table"));
   Recipe response;
   response.channel_responses.push_back({{"dau", "v"}, {}});
   EXPECT_THAT(refusal(response), testing::HasSubstr("the sensitivity of dau/v"));

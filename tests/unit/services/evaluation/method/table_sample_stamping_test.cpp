@@ -104,6 +104,26 @@ TEST(TableSampleStamping, WaitsForTheRowOfEachStep) {
   EXPECT_EQ(table.evaluator.take_output().results.size(), 2U);
 }
 
+TEST(TableSampleStamping, FlagsAResultWhoseRowIsTakenBack) {
+  const tests::SyntheticRun run;
+  const auto expected = results_of_samples(run);
+  TableRun table(run);
+  table.evaluator.add("acs", row_of(expected.front()));
+  EXPECT_EQ(table.evaluator.take_output().results.size(), 1U);
+  ReferenceStep taken_back = row_of(expected.front());
+  taken_back.problem = "the table has changed since";
+  table.evaluator.add("acs", taken_back);
+  table.evaluator.add("acs", row_of(expected.back()));
+  const EvaluationOutput output = table.evaluator.take_output();
+  ASSERT_EQ(output.settled.size(), 2U); // all are handed over once more
+  for (const StepResult& result : output.settled) {
+    EXPECT_EQ(has_flag(result.flags, ResultFlag::step_number_uncertain),
+              result.step == expected.front().step);
+  }
+  EXPECT_THAT(sentences_of(output.settled.front().flags),
+              testing::Contains(HasSubstr("the table has changed since")));
+}
+
 TEST(TableSampleStamping, GivesAStepWithoutARowNoValue) {
   const tests::SyntheticRun run;
   const auto expected = results_of_samples(run);

@@ -74,6 +74,18 @@ public:
     write(block);
   }
   void send_nothing() { write(empty_block()); }
+  // An evaluated step of the run, of a source that hands out those.
+  void hand_out(wire::AcsStep step) {
+    step.bench(bench());
+    step.source(name());
+    step.run(played_run);
+    if (!steps_) {
+      steps_.emplace(
+          participant_.writer<wire::AcsStep>(bus::topics::acs_step, bus::Profile::results, bench())
+              .value());
+    }
+    steps_->write(step);
+  }
   void end_stream() {
     wire::SampleBlock block = empty_block();
     block.end_of_stream(true);
@@ -170,6 +182,7 @@ private:
   bus::Reader<wire::Command> commands_;
   bus::Reader<wire::CatchUpRequest> requests_;
   std::optional<bus::Writer<wire::SampleBlock>> again_;
+  std::optional<bus::Writer<wire::AcsStep>> steps_;
   std::string asker_;
   std::set<std::string> names_; // of requests that were answered
   std::vector<wire::SampleBlock> kept_;
