@@ -20,6 +20,7 @@
 
 #include <chrono>
 #include <functional>
+#include <span>
 #include <stop_token>
 #include <string>
 
@@ -36,6 +37,13 @@ public:
   [[nodiscard]] virtual const std::string& identity() const = 0;
   [[nodiscard]] virtual Expected<void> set_frequency(const std::string& decimal_hz) = 0;
   [[nodiscard]] virtual Expected<void> set_amplitude_v(double amplitude_v) = 0;
+  // One period of a waveform in place of the sine, to repeat, until the next connection; the peak
+  // of its samples is the amplitude. Fails (refused) where the generator cannot. REQUIRES: the
+  // output is off.
+  [[nodiscard]] virtual Expected<void> set_waveform(std::span<const double> /*samples_v*/,
+                                                    double /*rate_hz*/) {
+    return fail(ErrorCode::refused, identity() + ": takes no waveform");
+  }
   // The output is known to be off when set_output(false) is in effect, see wait_for_effect().
   [[nodiscard]] virtual Expected<void> set_output(bool on) = 0;
   // Returns true once everything that was set is in effect: with an instrument when the call that

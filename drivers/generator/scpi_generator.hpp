@@ -54,11 +54,10 @@ public:
   [[nodiscard]] Expected<void> set_output(bool on) override;
   // A rectangle in place of the sine until the next connection, to calibrate trigger delays.
   [[nodiscard]] Expected<void> set_rectangle(bool rectangle);
-  // One period of a waveform in place of the sine, to repeat, until the next connection; the peak
-  // of its samples is the amplitude. Fails as set_amplitude_v() and load_waveform() do
-  // (arbitrary_waveform.hpp), and where the connection was lost on the way. REQUIRES: the output
-  // is off.
-  [[nodiscard]] Expected<void> set_waveform(std::span<const double> samples_v, double rate_hz);
+  // Fails as set_amplitude_v() and load_waveform() do (arbitrary_waveform.hpp), and where the
+  // connection was lost on the way.
+  [[nodiscard]] Expected<void> set_waveform(std::span<const double> samples_v,
+                                            double rate_hz) override;
   // Whether the instrument says that its output is on; nothing where its answer is neither.
   [[nodiscard]] Expected<std::optional<bool>> output_is_on();
   [[nodiscard]] Expected<bool> wait_for_effect(std::chrono::milliseconds) override { return true; }

@@ -21,6 +21,31 @@ double highest_level_m_s2(const Recipe& recipe, const std::string& frequency_tex
   return highest;
 }
 
+// Of a multi-sine, whose lines cannot be told apart in so short a window: the peak of all, where
+// the channel has the quantity of the levels.
+std::optional<double> peak_in(const SourceRecord& reference, std::size_t channel,
+                              const TimeInterval& window, const std::string& name,
+                              const analysis::Frequency& frequency) {
+  const auto factor = acceleration_factor(reference.description(), name, frequency.angular());
+  if (factor != acceleration_factor(reference.description(), name, 2.0 * frequency.angular())) {
+    return std::nullopt;
+  }
+  const std::vector<double> values = part_of(reference, channel, window, frequency).values;
+  if (values.empty()) {
+    return std::nullopt;
+  }
+  const auto [lowest, highest] = std::ranges::minmax(values);
+  return *factor * 0.5 * (highest - lowest);
+}
+
+double sum_of_levels_m_s2(const Recipe& recipe) {
+  double sum = 0.0;
+  for (std::size_t line = 0; line < recipe.lines_at_once(); ++line) {
+    sum += recipe.steps[line].level_m_s2;
+  }
+  return sum;
+}
+
 } // namespace
 
 std::optional<std::string> LevelWatch::look(const SourceRecord& reference,
@@ -40,9 +65,13 @@ std::optional<std::string> LevelWatch::look(const SourceRecord& reference,
     return std::nullopt;
   }
   looked_ns_ = newest_ns;
-  const auto level =
-      level_in(reference, *channel, {newest_ns - window_ns, newest_ns}, planned.frequency);
-  const double planned_m_s2 = highest_level_m_s2(recipe_, planned.frequency_text_hz);
+  const TimeInterval window{newest_ns - window_ns, newest_ns};
+  const bool multisine = recipe_.is_multisine();
+  const auto level = multisine ? peak_in(reference, *channel, window, recipe_.reference().channel,
+                                         planned.frequency)
+                               : level_in(reference, *channel, window, planned.frequency);
+  const double planned_m_s2 = multisine ? sum_of_levels_m_s2(recipe_)
+                                        : highest_level_m_s2(recipe_, planned.frequency_text_hz);
   if (!level || *level <= max_excess * planned_m_s2) {
     return std::nullopt;
   }

@@ -102,6 +102,26 @@ Expected<LevelReading> LevelMeter::level_after(double bench_time_s,
 }
 
 std::optional<std::map<std::string, double>>
+LevelMeter::line_levels_after(double bench_time_s, const std::vector<std::string>& frequencies_hz,
+                              double period_s) const {
+  const auto channel = record_.described() ? record_.channel(reference_.channel) : std::nullopt;
+  const auto window = window_after(bench_time_s, period_s);
+  if (!channel || !window) {
+    return std::nullopt;
+  }
+  std::map<std::string, double> levels;
+  for (const std::string& text : frequencies_hz) {
+    const analysis::Frequency frequency = *analysis::Frequency::parse(text); // the file was checked
+    const auto level = level_in(record_, *channel, *window, frequency);
+    if (!level) {
+      return std::nullopt;
+    }
+    levels[text] = *level;
+  }
+  return levels;
+}
+
+std::optional<std::map<std::string, double>>
 LevelMeter::quiet_levels_after(double bench_time_s,
                                const std::vector<std::string>& frequencies_hz) const {
   std::map<std::string, double> levels;

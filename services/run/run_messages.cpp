@@ -148,6 +148,13 @@ bool is_planned(const StepResult& result, const Recipe& recipe) {
            return step.step == result.step && step.repetition == result.repetition;
          });
 }
+// The step whose announcement is of this one too: the first line of its multi-sine, or itself.
+std::uint32_t excitation_of(const Recipe& recipe, std::uint32_t step) {
+  const auto found = std::ranges::find(recipe.steps, step, &RecipeStep::step);
+  const auto place = static_cast<std::size_t>(found - recipe.steps.begin());
+  const std::size_t lines = recipe.lines_at_once();
+  return found == recipe.steps.end() ? step : recipe.steps[place / lines * lines].step;
+}
 bool is_planned(const TransferFunction& function, const Recipe& recipe) {
   return has_channel(recipe, function.channel);
 }
@@ -188,7 +195,7 @@ std::size_t RunMessages::take_newest(bus::Reader<Message>& reader, std::vector<R
       return;
     }
     Result result = from_message(message);
-    if (planned && (!is_planned(result, *planned) || !was_excited(result, all))) {
+    if (planned && (!is_planned(result, *planned) || !was_excited(*planned, result, all))) {
       ++unplanned_;
       return;
     }
@@ -206,9 +213,9 @@ std::size_t RunMessages::take_newest(bus::Reader<Message>& reader, std::vector<R
 
 // Recorded files announce no steps. A result that is not valid may be of a step that was never
 // begun: it says why. An attempt of the conductor before may have no result yet.
-bool RunMessages::was_excited(const StepResult& result,
+bool RunMessages::was_excited(const Recipe& planned, const StepResult& result,
                               const std::vector<StepResult>& known) const {
-  const auto announced = attempts_.find(result.step);
+  const auto announced = attempts_.find(excitation_of(planned, result.step));
   std::uint32_t made = announced == attempts_.end() ? 0 : announced->second;
   if (was_planned_here_) {
     return result.attempt <= std::max(made, 1U) && (made > 0 || attempts_.empty() || !result.valid);

@@ -130,10 +130,10 @@ private:
   void take_sources(RunOutcome& outcome);
   void take_status(RunOutcome& outcome);
   void take_source(RunSource source, std::vector<RunSource>& sources);
-  [[nodiscard]] bool was_excited(const StepResult& result,
+  [[nodiscard]] bool was_excited(const Recipe& planned, const StepResult& result,
                                  const std::vector<StepResult>& known) const;
   template <class Result> // of a whole run
-  [[nodiscard]] static bool was_excited(const Result& /*result*/,
+  [[nodiscard]] static bool was_excited(const Recipe& /*planned*/, const Result& /*result*/,
                                         const std::vector<Result>& /*known*/) {
     return true;
   }

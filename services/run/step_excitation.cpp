@@ -21,9 +21,10 @@ constexpr auto look_interval = 20ms;
 constexpr auto confirmation_slice = 200ms;
 constexpr double off_s = 0.3; // between two steps
 constexpr double shot_slice_s = 0.25;
-constexpr double max_listening_s = 10.0; // beyond what it needs
-constexpr double slice_s = 0.4;          // bench time between two looks at the network
-constexpr double max_hum = 0.2;          // of a level: so far would the exciter be from it
+constexpr double max_listening_s = 10.0;  // beyond what it needs
+constexpr double slice_s = 0.4;           // bench time between two looks at the network
+constexpr double max_hum = 0.2;           // of a level: so far would the exciter be from it
+constexpr double level_record_part = 0.5; // of the levels of a multi-sine's lines
 constexpr double edge_frames = 4.0; // excitation_window.hpp: up to two frames are lost at each edge
 
 // Time beyond settling and duration for which a step is excited, see
@@ -46,7 +47,11 @@ StepExcitation::StepExcitation(const RunEnvironment& environment, const BenchFil
                                std::string run, std::shared_ptr<bus::WakeUp> wake_up,
                                StepHooks hooks)
     : participant_(environment.participant), clock_(environment.clock), bench_(bench),
-      run_(std::move(run)), wake_up_(std::move(wake_up)), hooks_(std::move(hooks)) {}
+      run_(std::move(run)), wake_up_(std::move(wake_up)), hooks_(std::move(hooks)) {
+  if (bench_.excitation.multisine) {
+    multisine_.emplace(bench_);
+  }
+}
 
 Expected<std::unique_ptr<StepExcitation>> StepExcitation::open(const RunEnvironment& environment,
                                                                const BenchFile& bench,
@@ -77,6 +82,9 @@ Expected<std::unique_ptr<StepExcitation>> StepExcitation::open(const RunEnvironm
 }
 
 Expected<void> StepExcitation::check_levels(const wire::Measurement& measurement) const {
+  if (multisine_) {
+    return multisine_->check();
+  }
   for (const wire::PlannedStep& step : measurement.steps()) {
     const auto voltage = drivers::generator::voltage_for_level(
         step.level_m_s2(), bench_.generator.level_per_volt, level_limits(bench_));
@@ -134,7 +142,8 @@ Expected<void> StepExcitation::excite(const wire::PlannedStep& step, std::uint32
   stop_ = stop;
   generator_away_ = false;
   fault_may_pass_ = false;
-  auto excited = hold_step(step, stop);
+  was_level_record_ = multisine_ && meter_ && !multisine_->has_levels();
+  auto excited = was_level_record_ ? record_levels(step, stop) : hold_step(step, stop);
   if (const auto off = switch_off(); !off && excited && !stop.stop_requested()) {
     excited = fail(off.error());
   }
@@ -142,7 +151,7 @@ Expected<void> StepExcitation::excite(const wire::PlannedStep& step, std::uint32
     excited = wait_for_effect(stop).map(
         [&](bool in_effect) { output_may_be_on_ = output_may_be_on_ && !in_effect; });
   }
-  if (!excited || stop.stop_requested()) {
+  if (!excited || stop.stop_requested() || was_level_record_) {
     announce(step, wire::EXCITATION_ABORTED);
     return excited;
   }
@@ -151,7 +160,8 @@ Expected<void> StepExcitation::excite(const wire::PlannedStep& step, std::uint32
   if (!now) {
     return fail(reported(now.error()));
   }
-  return hold_until(*now + off_s, stop).map([](bool) {});
+  const double pause_s = multisine_ ? std::max(off_s, multisine_->margin_s()) : off_s;
+  return hold_until(*now + pause_s, stop).map([](bool) {});
 }
 
 StepExcitation::~StepExcitation() {
@@ -175,9 +185,7 @@ Expected<bool> StepExcitation::switch_off() {
 
 Expected<void> StepExcitation::hold_step(const wire::PlannedStep& step,
                                          const std::stop_token& stop) {
-  const auto began =
-      meter_ ? switch_on_to_level(step, stop)
-             : switch_on(step, step.level_m_s2() / bench_.generator.level_per_volt, stop);
+  const auto began = begin_step(step, stop);
   if (!began || stop.stop_requested()) {
     return began.map([](double) {});
   }
@@ -191,21 +199,47 @@ Expected<void> StepExcitation::hold_step(const wire::PlannedStep& step,
   }
   announce(step, wire::EXCITATION_STEADY);
   hooks_.show("measuring");
-  const auto held =
-      hold_until(steady_from_s + step.duration_s() + margin_s(frequency_of(step).hz()), stop);
+  const double margin = multisine_ ? multisine_->margin_s() : margin_s(frequency_of(step).hz());
+  const auto held = hold_until(steady_from_s + step.duration_s() + margin, stop);
   if (!held || !*held || !shots_) {
     return held.map([](bool) {});
   }
   return hold_until_shots_are_taken(stop);
 }
 
-// The bench time from which on the output is on.
+Expected<double> StepExcitation::begin_step(const wire::PlannedStep& step,
+                                            const std::stop_token& stop) {
+  if (multisine_) {
+    return switch_on_multisine(step, 1.0, stop);
+  }
+  return meter_ ? switch_on_to_level(step, stop)
+                : switch_on(step, step.level_m_s2() / bench_.generator.level_per_volt, stop);
+}
+
 Expected<double> StepExcitation::switch_on(const wire::PlannedStep& step, double voltage_v,
                                            const std::stop_token& stop) {
   output_may_be_on_ = true;
-  auto set = generator().set_frequency(step.frequency_text_hz()).and_then([&] {
+  return switch_on_as_set(step, generator().set_frequency(step.frequency_text_hz()).and_then([&] {
     return generator().set_amplitude_v(voltage_v);
-  });
+  }),
+                          stop);
+}
+
+// The frequency is what the generator answers with, and what dyncal-guard knows the run by.
+Expected<double> StepExcitation::switch_on_multisine(const wire::PlannedStep& step, double part,
+                                                     const std::stop_token& stop) {
+  hooks_.show("loading the waveform");
+  return switch_on_as_set(step, generator().set_frequency(step.frequency_text_hz()).and_then([&] {
+    return generator().set_waveform(multisine_->samples_v(part), multisine_->rate_hz());
+  }),
+                          stop);
+}
+
+// The bench time from which on the output is on.
+Expected<double> StepExcitation::switch_on_as_set(const wire::PlannedStep& step,
+                                                  drivers::Expected<void> set,
+                                                  const std::stop_token& stop) {
+  output_may_be_on_ = true;
   if (set) {
     // Before the output is on: from then on dyncal-guard must know of it, whatever becomes of us.
     announce(step, wire::EXCITATION_SETTLING);
@@ -220,6 +254,39 @@ Expected<double> StepExcitation::switch_on(const wire::PlannedStep& step, double
     return fail(reported(began.error()));
   }
   return *began;
+}
+
+// The exciter settles, then a whole period is looked at.
+Expected<void> StepExcitation::record_levels(const wire::PlannedStep& step,
+                                             const std::stop_token& stop) {
+  const auto began = switch_on_multisine(step, level_record_part, stop);
+  if (!began || stop.stop_requested()) {
+    return began.map([](double) {});
+  }
+  hooks_.show("setting the levels of all lines");
+  const double settled_s = *began + step.settling_s();
+  const double period_s = multisine_->period_s();
+  DYNCAL_TRY(hold_until(settled_s + period_s + level_transport_s, stop));
+  const double deadline_s = settled_s + period_s + level_transport_s + max_listening_s;
+  while (!stop.stop_requested()) {
+    const auto now = generator().clock_now_s();
+    if (!now) {
+      return fail(reported(now.error()));
+    }
+    meter_->take(*now, settled_s - *began + period_s + max_listening_s);
+    if (const auto levels =
+            meter_->line_levels_after(settled_s, multisine_->frequencies_hz(), period_s)) {
+      return multisine_->take_levels(*levels, level_record_part);
+    }
+    if (*now > deadline_s) {
+      return fail(fault_of_step(fmt::format("of {} no whole period of the waveform came; do its "
+                                            "samples come?",
+                                            bench_.method.reference.text())));
+    }
+    clock_.wait(*wake_up_, clock_.now() + look_interval);
+    DYNCAL_TRY(hooks_.keep_alive());
+  }
+  return {};
 }
 
 // The same, and the level within its tolerance before the planned settling is over.
@@ -375,7 +442,8 @@ Expected<bool> StepExcitation::hold_until(double bench_time_s, const std::stop_t
     now = generator().wait_until_s(std::min(bench_time_s, *now + slice_s), stop);
     DYNCAL_TRY(hooks_.keep_alive());
     if (now && meter_) {
-      meter_->take(*now);
+      meter_->take(*now, multisine_ ? multisine_->period_s() + max_listening_s
+                                    : LevelMeter::usually_kept_s);
     }
   }
   if (!now) {

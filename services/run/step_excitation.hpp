@@ -7,7 +7,9 @@
 //
 // With a level tolerance the voltage follows what the reference shows
 // (drivers/generator/level_control.hpp) within the planned settling
-// (services/run/level_settling.hpp).
+// (services/run/level_settling.hpp). Of a multi-sine (multisine_drive.hpp) a first excitation with
+// half the levels shows what each line needs; it ends as one that was broken off, and the step is
+// to be excited again.
 //
 // The output is off whenever excite() has returned, unless output_may_be_on(): then the generator
 // or its operator has not confirmed it, and switch_off() tries again. A guard switches it off when
@@ -31,6 +33,7 @@
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
 #include "services/run/generator_connection.hpp"
+#include "services/run/multisine_drive.hpp"
 #include "services/run/run_environment.hpp"
 #include "services/run/shot_counter.hpp"
 
@@ -70,6 +73,8 @@ public:
   [[nodiscard]] Expected<void> excite(const wire::PlannedStep& step, std::uint32_t attempt,
                                       const std::stop_token& stop);
 
+  // The last excitation was one that shows the levels of a multi-sine's lines.
+  [[nodiscard]] bool was_level_record() const { return was_level_record_; }
   [[nodiscard]] bool output_may_be_on() const { return output_may_be_on_; }
   // The generator did not answer in the last step, or not as it should: a link that is down, an
   // instrument that was switched off. Never of one that is set by hand.
@@ -94,8 +99,16 @@ private:
   Error reported(const drivers::Error& error);
   Error fault_of_step(const std::string& what);
   Expected<void> hold_step(const wire::PlannedStep& step, const std::stop_token& stop);
+  // Sets frequency and voltage, or the waveform of this part of a multi-sine's levels, and waits
+  // until the output is on; see below.
   Expected<double> switch_on(const wire::PlannedStep& step, double voltage_v,
                              const std::stop_token& stop);
+  Expected<double> switch_on_multisine(const wire::PlannedStep& step, double part,
+                                       const std::stop_token& stop);
+  Expected<double> switch_on_as_set(const wire::PlannedStep& step, drivers::Expected<void> set,
+                                    const std::stop_token& stop);
+  Expected<double> begin_step(const wire::PlannedStep& step, const std::stop_token& stop);
+  Expected<void> record_levels(const wire::PlannedStep& step, const std::stop_token& stop);
   Expected<double> switch_on_to_level(const wire::PlannedStep& step, const std::stop_token& stop);
   // Before the output is on; listens before the first step after begin().
   Expected<void> refuse_hum(const wire::PlannedStep& step, const std::stop_token& stop);
@@ -120,6 +133,8 @@ private:
   bool output_may_be_on_ = false;
   bool generator_away_ = false;
   bool fault_may_pass_ = false;
+  bool was_level_record_ = false;
+  std::optional<MultisineDrive> multisine_;
   wire::PlannedStep step_;                        // that is, or was last, excited
   std::uint32_t attempt_ = 1;                     // of the step that is excited
   std::stop_token stop_;                          // likewise

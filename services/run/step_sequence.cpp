@@ -18,10 +18,26 @@ constexpr auto broken_off_limit = 10s;    // for the result of a step that was b
 constexpr auto generator_interval = 1s;   // between two attempts to reach it
 constexpr auto last_result_quiet = 300ms; // then all results of a step have come
 
+std::uint32_t repetition_of(const wire::PlannedStep& step) {
+  return step.repetition();
+}
+
+// How many steps one excitation is of.
+std::size_t lines_at_once(const wire::Measurement& measurement) {
+  const auto& steps = measurement.steps();
+  if (!(measurement.multisine_period_s() > 0.0)) {
+    return 1;
+  }
+  return static_cast<std::size_t>(
+      std::ranges::count(steps, steps.front().repetition(), &repetition_of));
+}
+
+// Of the steps that are excited; a multi-sine's is its first line.
 std::vector<std::uint32_t> numbers_of(const wire::Measurement& measurement) {
   std::vector<std::uint32_t> numbers;
-  for (const wire::PlannedStep& step : measurement.steps()) {
-    numbers.push_back(step.step());
+  for (std::size_t place = 0; place < measurement.steps().size();
+       place += lines_at_once(measurement)) {
+    numbers.push_back(measurement.steps()[place].step());
   }
   return numbers;
 }
@@ -29,7 +45,8 @@ std::vector<std::uint32_t> numbers_of(const wire::Measurement& measurement) {
 } // namespace
 
 StepSequence::StepSequence(RunWatch& watch, const BenchFile& bench)
-    : watch_(watch), repeats_(numbers_of(watch.measurement()), bench.excitation.attempts) {}
+    : watch_(watch), lines_(lines_at_once(watch.measurement())),
+      repeats_(numbers_of(watch.measurement()), bench.excitation.attempts) {}
 
 StepSequence::~StepSequence() = default;
 
@@ -66,7 +83,8 @@ Expected<std::unique_ptr<StepSequence>> StepSequence::open(const RunEnvironment&
 
 void StepSequence::resume() {
   bool all_so_far = true;
-  for (const wire::PlannedStep& step : watch_.measurement().steps()) {
+  for (std::size_t place = 0; place < watch_.measurement().steps().size(); place += lines_) {
+    const wire::PlannedStep& step = watch_.measurement().steps()[place];
     std::uint32_t attempts = 0;
     for (const StepResult& result : watch_.outcome().results) {
       attempts = result.step == step.step() ? std::max(attempts, result.attempt) : attempts;
@@ -85,7 +103,7 @@ void StepSequence::resume() {
 Expected<void> StepSequence::excite_all(const std::stop_token& stop) {
   Expected<void> excited = excitation_->begin();
   const std::size_t steps = watch_.measurement().steps().size();
-  for (std::size_t place = 0; place < steps && excited && !stop.stop_requested(); ++place) {
+  for (std::size_t place = 0; place < steps && excited && !stop.stop_requested(); place += lines_) {
     if (repeats_.attempts_of(watch_.measurement().steps()[place].step()) == 0) {
       excited = excite(place, stop);
     }
@@ -108,8 +126,9 @@ Expected<void> StepSequence::check_faults() const {
                   others == 0 ? "" : fmt::format("; steps that failed as well: {}", others)));
 }
 
+// None against a table: its rows would not tell the second excitation of a step from the first.
 Expected<void> StepSequence::repeat_steps(const std::stop_token& stop) {
-  while (!stop.stop_requested()) {
+  while (watch_.measurement().reference_table().empty() && !stop.stop_requested()) {
     DYNCAL_TRY(const auto evaluated, wait_until_evaluated(stop));
     const auto repeat =
         evaluated ? repeats_.next(watch_.outcome().results) : std::optional<StepRepeat>{};
@@ -132,7 +151,7 @@ std::size_t StepSequence::place_of(std::uint32_t step) const {
   const auto& steps = watch_.measurement().steps();
   const auto found =
       std::find_if(steps.begin(), steps.end(), [&](const auto& one) { return one.step() == step; });
-  return static_cast<std::size_t>(found - steps.begin());
+  return static_cast<std::size_t>(found - steps.begin()) / lines_ * lines_;
 }
 
 Expected<void> StepSequence::excite(std::size_t place, const std::stop_token& stop) {
@@ -154,6 +173,10 @@ Expected<void> StepSequence::excite(std::size_t place, const std::stop_token& st
     repeats_.broken_off(step.step());
     broken_off_ = step.step();
     fault = !excited && excitation_->fault_may_pass();
+    if (excited && excitation_->was_level_record()) {
+      repeats_.ask_for(step.step());
+      watch_.notice("the levels of all lines are set; this excitation is made again");
+    }
   }
   if (fault) {
     faults_.insert_or_assign(step.step(), excited.error());
@@ -171,7 +194,7 @@ Expected<void> StepSequence::excite(std::size_t place, const std::stop_token& st
 Expected<void> StepSequence::keep_alive() {
   watch_.look();
   for (const std::uint32_t step : watch_.commands().take_repeats()) {
-    repeats_.ask_for(step);
+    repeats_.ask_for(watch_.measurement().steps()[place_of(step)].step());
   }
   const RunOutlook now = watch_.outlook();
   if (now.kind == Kind::well) {

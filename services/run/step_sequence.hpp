@@ -83,6 +83,7 @@ private:
   [[nodiscard]] std::size_t place_of(std::uint32_t step) const;
 
   RunWatch& watch_;
+  std::size_t lines_; // steps that are excited at once
   StepRepeats repeats_;
   std::unique_ptr<StepExcitation> excitation_;
   std::optional<RunOutlook> interrupted_by_; // the step that is, or was last, excited

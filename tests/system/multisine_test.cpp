@@ -155,12 +155,5 @@ TEST_F(Multisine, ShowsASecondOrderAsDistortionAndNotAsBias) {
   }
 }
 
-TEST_F(Multisine, IsNotForARun) {
-  record(1);
-  const EndedRun refused = run("dyncal", {"run", bench_file(1)});
-  EXPECT_NE(refused.status, 0);
-  EXPECT_THAT(refused.errors, HasSubstr("a multi-sine is evaluated by 'dyncal analyse'"));
-}
-
 } // namespace
 } // namespace dyncal::tests

@@ -33,9 +33,8 @@ void report_plan(const BenchView& view, const Recipe& recipe, Findings& findings
   if (recipe.is_multisine()) {
     findings.push_back(
         view.at(Severity::note, {"excitation"},
-                fmt::format("has {} multi-sines of {} lines, about {}; 'dyncal analyse' evaluates "
-                            "them from files, 'dyncal run' does not excite them",
-                            recipe.excitations(), recipe.lines_at_once(),
+                fmt::format("has {} multi-sines of {} lines, about {}", recipe.excitations(),
+                            recipe.lines_at_once(),
                             time_text(seconds / static_cast<double>(recipe.lines_at_once())))));
     return;
   }

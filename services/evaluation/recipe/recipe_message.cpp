@@ -80,6 +80,7 @@ void message_members(auto& visit, Either<Recipe> auto& recipe, auto& measurement
   visit(recipe.reference_standard.file, measurement.reference_file());
   visit(recipe.reference_standard.file_sha256, measurement.reference_file_sha256());
   visit(recipe.reference_table, measurement.reference_table());
+  visit(recipe.multisine_period_s, measurement.multisine_period_s());
   visit(recipe.channel_axes, measurement.channel_axes());
   visit(recipe.transverse_motion.points, measurement.transverse_motion());
   visit(recipe.transverse_motion.source, measurement.transverse_motion_source());

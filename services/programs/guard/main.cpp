@@ -31,10 +31,14 @@ GuardedExciter exciter_of(const BenchFile& bench) {
     OutputSettings settings;
     const std::string& text = bench.excitation.frequencies_hz[i];
     std::from_chars(text.data(), text.data() + text.size(), settings.frequency_hz);
-    if (!exciter.has_closed_loop && i < bench.excitation.levels_m_s2.size()) {
+    const bool has_own_voltage = !exciter.has_closed_loop && !bench.excitation.multisine;
+    if (has_own_voltage && i < bench.excitation.levels_m_s2.size()) {
       settings.voltage_vpp = 2.0 * bench.excitation.levels_m_s2[i] / exciter.level_per_volt;
     }
     exciter.planned.push_back(settings);
+  }
+  if (bench.excitation.multisine) { // how a generator may name the frequency of a waveform
+    exciter.planned.push_back({1.0 / bench.excitation.multisine->period_s, std::nullopt});
   }
   return exciter;
 }
