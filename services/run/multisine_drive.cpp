@@ -1,7 +1,9 @@
 #include "services/run/multisine_drive.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <optional>
 
@@ -15,9 +17,9 @@
 namespace dyncal::inline run {
 namespace {
 
-constexpr double samples_of_a_turn = 64.0; // of the highest line
+constexpr double samples_of_a_turn = 32.0; // of the highest line, at least
 constexpr double fewest_samples = 1 << 14;
-constexpr double most_samples = 1 << 21;
+constexpr double most_samples = 1 << 22;
 constexpr double frames_of_margin = 5.0;
 constexpr double turns_of_frame = 2.0;
 constexpr double least_response = 1.0 / 20.0; // of the one that the bench file states
@@ -69,10 +71,11 @@ double MultisineDrive::peak_v() const {
   return peak([](const Line& line) { return line.level_m_s2 / line.level_per_volt; });
 }
 
+// A power of two, which whoever takes such a waveform apart can do by halves.
 double MultisineDrive::rate_hz() const {
-  const double turns = lines_.back().frequency_hz * period_s_;
-  return std::round(std::clamp(samples_of_a_turn * turns, fewest_samples, most_samples)) /
-         period_s_;
+  const double wanted = std::clamp(samples_of_a_turn * lines_.back().frequency_hz * period_s_,
+                                   fewest_samples, most_samples);
+  return static_cast<double>(std::bit_ceil(static_cast<std::uint64_t>(wanted))) / period_s_;
 }
 
 std::vector<double> MultisineDrive::samples_v(double part) const {

@@ -102,6 +102,27 @@ class Laboratory:
             done = subprocess.run(words, capture_output=True, text=True, check=False)
             if done.returncode:
                 raise CannotBeSetUp(f"{' '.join(words[:6])}: {done.stderr.strip()}")
+        for name in (self.own, self.other):
+            self.wait_for_link(name)
+
+    def wait_for_link(self, namespace):
+        """The kernel says up to a second later that a link is up; until then Fast DDS and dust-dds
+        find no network, and do not look again."""
+        deadline = time.monotonic() + PATIENCE_S
+        while not self.link_is_up(namespace):
+            if time.monotonic() > deadline:
+                raise CannotBeSetUp(f"the link of {namespace} does not come up")
+            time.sleep(0.05)
+
+    @staticmethod
+    def link_is_up(namespace):
+        shown = subprocess.run(
+            ["ip", "-n", namespace, "-o", "link", "show", "lab"],
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        return "state UP" in shown.stdout
 
     def start(self, name, namespace, words, ready=None, environment=None):
         """A program and its log; waits for `ready` in it."""

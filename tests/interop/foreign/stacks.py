@@ -157,6 +157,7 @@ def python_dust(version):
     return make
 
 
+NO_PARTITIONS = "it has no partitions, and samples are taken in the bench's alone"
 NO_LISTS = "its Python module has no lists but of bytes"
 
 
@@ -187,6 +188,7 @@ STACKS = [
     Stack("dust-rust", "Rust, `dust_dds`", rust("dust", "dust_dds")),
     Stack(
         *("rustdds", "Rust, `rustdds`", rust("rustdds", "rustdds")),
+        cannot={"write": NO_PARTITIONS},
         partitions=False,
     ),
     Stack(
