@@ -67,6 +67,10 @@ double MultisineDrive::peak(Amplitude amplitude) const {
   return std::max(-lowest, highest);
 }
 
+double MultisineDrive::peak_m_s2() const {
+  return peak([](const Line& line) { return line.level_m_s2; });
+}
+
 double MultisineDrive::peak_v() const {
   return peak([](const Line& line) { return line.level_m_s2 / line.level_per_volt; });
 }
@@ -100,7 +104,6 @@ Expected<void> MultisineDrive::check() const {
     velocity_m_s += analysis::velocity_m_s(line.level_m_s2, line.frequency_hz);
     displacement_m += analysis::displacement_m(line.level_m_s2, line.frequency_hz);
   }
-  const double level_m_s2 = peak([](const Line& line) { return line.level_m_s2; });
   const struct {
     const char* key;
     std::optional<double> largest;
@@ -108,7 +111,7 @@ Expected<void> MultisineDrive::check() const {
     const char* unit;
   } limits[] = {
       {"maximum_voltage_v", generator.maximum_voltage_v, peak_v(), "V"},
-      {"maximum_level_m_s2", generator.maximum_level_m_s2, level_m_s2, "m/s^2"},
+      {"maximum_level_m_s2", generator.maximum_level_m_s2, peak_m_s2(), "m/s^2"},
       {"maximum_velocity_m_s", generator.maximum_velocity_m_s, velocity_m_s, "m/s"},
       {"maximum_displacement_mm", generator.maximum_displacement_mm, mm * displacement_m, "mm"}};
   for (const auto& limit : limits) {

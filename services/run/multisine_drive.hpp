@@ -26,6 +26,9 @@ public:
   explicit MultisineDrive(const BenchFile& bench);
 
   [[nodiscard]] Expected<void> check() const;
+  // Of all lines together.
+  [[nodiscard]] double peak_m_s2() const;
+  [[nodiscard]] double peak_v() const;
 
   // One period in volt, of this part of the levels; how many of its samples are a second.
   [[nodiscard]] std::vector<double> samples_v(double part) const;
@@ -55,7 +58,6 @@ private:
   [[nodiscard]] double peak(Amplitude amplitude) const;
   template <class Amplitude>
   [[nodiscard]] std::vector<double> waveform(Amplitude amplitude) const;
-  [[nodiscard]] double peak_v() const;
 
   const BenchFile& bench_;
   std::vector<Line> lines_; // ascending

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "services/checks/bench_check/checks.hpp"
+#include "services/run/multisine_drive.hpp"
 #include "services/run/run_plan.hpp"
 
 namespace dyncal::inline checks::bench_check {
@@ -19,6 +20,26 @@ std::string time_text(double seconds) {
                       : fmt::format("{} h {} min", whole / 3600, whole % 3600 / 60);
 }
 
+void report_multisine(const BenchView& view, const Recipe& recipe, double seconds,
+                      Findings& findings) {
+  findings.push_back(
+      view.at(Severity::note, {"excitation"},
+              fmt::format("has {} multi-sines of {} lines, about {}", recipe.excitations(),
+                          recipe.lines_at_once(), time_text(seconds))));
+  if (view.bench.generator.driver == GeneratorDriver::none) {
+    return;
+  }
+  const MultisineDrive drive(view.bench);
+  if (const auto checked = drive.check(); !checked) {
+    findings.push_back(view.at(Severity::error, {"excitation", "level"}, checked.error().message));
+  } else {
+    findings.push_back(view.at(Severity::note, {"excitation", "level"},
+                               fmt::format("is of each line; the peak of all together is {:.3g} "
+                                           "m/s^2, {:.3g} V of the generator",
+                                           drive.peak_m_s2(), drive.peak_v())));
+  }
+}
+
 void report_plan(const BenchView& view, const Recipe& recipe, Findings& findings) {
   const ExcitationSettings& excitation = view.bench.excitation;
   if (excitation.whole_record) {
@@ -31,11 +52,7 @@ void report_plan(const BenchView& view, const Recipe& recipe, Findings& findings
     seconds += step.settling_s + step.duration_s + between_steps_s;
   }
   if (recipe.is_multisine()) {
-    findings.push_back(
-        view.at(Severity::note, {"excitation"},
-                fmt::format("has {} multi-sines of {} lines, about {}", recipe.excitations(),
-                            recipe.lines_at_once(),
-                            time_text(seconds / static_cast<double>(recipe.lines_at_once())))));
+    report_multisine(view, recipe, seconds / static_cast<double>(recipe.lines_at_once()), findings);
     return;
   }
   findings.push_back(view.at(

@@ -136,7 +136,7 @@ def table_of(tried, versions, reasons, trials):
     for stack in tried:
         if stack.name not in versions:
             cells = ["SETUP_FAIL"] * len(columns)
-            lines.append(f"| {stack.label} | {reasons[stack.name]} | {' | '.join(cells)} |")
+            lines.append(f"| {stack.label} | - | {' | '.join(cells)} |")
             continue
         cells = []
         for action in ("read", "write"):
@@ -148,7 +148,8 @@ def table_of(tried, versions, reasons, trials):
                 }
                 cells.append(", ".join(sorted(said)) or "SETUP_FAIL")
         lines.append(f"| {stack.label} | {versions[stack.name]} | {' | '.join(cells)} |")
-    return "\n".join(lines) + "\n"
+    untried = [f"- {stack.label}: {reasons[stack.name]}" for stack in tried if stack.name in reasons]
+    return "\n".join([*lines, "", *untried] if untried else lines) + "\n"
 
 
 def write_table(page, table):
