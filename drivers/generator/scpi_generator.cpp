@@ -52,6 +52,7 @@ void ScpiGenerator::choose_clock() {
 }
 
 Expected<void> ScpiGenerator::reconnect() {
+  has_waveform_ = false;
   DYNCAL_TRY(auto connection, ScpiConnection::connect("generator", address_, connect_limit,
                                                       never_raised_, connect_limit));
   connection.set_delivery_limit(delivery_limit);
@@ -192,13 +193,24 @@ Expected<void> ScpiGenerator::check_before_on() {
   return check_voltage(amplitude_v_);
 }
 
+Expected<void> ScpiGenerator::switch_on() {
+  if (!wants_waveform_) {
+    is_on_ = true;
+    return command(":OUTPut1 ON");
+  }
+  if (!has_waveform_ || connection_->lost()) {
+    return fail(ErrorCode::disconnected,
+                "generator " + address_ +
+                    " was connected anew and no longer has its waveform; it is loaded once more");
+  }
+  is_on_ = true;
+  return connection_->command(":OUTPut1 ON"); // and over no other connection
+}
+
 Expected<void> ScpiGenerator::set_output(bool on) {
   is_on_ = false;
   if (on) {
-    return check_before_on().and_then([this] {
-      is_on_ = true;
-      return command(":OUTPut1 ON");
-    });
+    return check_before_on().and_then([this] { return switch_on(); });
   }
   switches_off_ = true;
   auto off = command(":OUTPut1 OFF").and_then([this] { return confirm_off(); });
@@ -212,6 +224,8 @@ Expected<void> ScpiGenerator::set_rectangle(bool rectangle) {
 
 // A connection that is made anew has a sine again: all of it goes over one.
 Expected<void> ScpiGenerator::set_waveform(std::span<const double> samples_v, double rate_hz) {
+  wants_waveform_ = true;
+  has_waveform_ = false;
   if (connection_->lost()) {
     DYNCAL_TRY(reconnect());
   }
@@ -220,6 +234,7 @@ Expected<void> ScpiGenerator::set_waveform(std::span<const double> samples_v, do
   for (const WaveformCommand& command : loaded.commands) {
     DYNCAL_TRY(connection_->command(command.text, command.block));
   }
+  has_waveform_ = true;
   return {};
 }
 

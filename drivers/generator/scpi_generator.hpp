@@ -55,7 +55,8 @@ public:
   // A rectangle in place of the sine until the next connection, to calibrate trigger delays.
   [[nodiscard]] Expected<void> set_rectangle(bool rectangle);
   // Fails as set_amplitude_v() and load_waveform() do (arbitrary_waveform.hpp), and where the
-  // connection was lost on the way.
+  // connection was lost on the way. An output is not switched on over another connection than that
+  // of its waveform (disconnected): its amplitude would be that of a single sine.
   [[nodiscard]] Expected<void> set_waveform(std::span<const double> samples_v,
                                             double rate_hz) override;
   // Whether the instrument says that its output is on; nothing where its answer is neither.
@@ -74,6 +75,7 @@ private:
   Expected<void> reset(ScpiConnection& connection);
   Expected<void> check_voltage(double amplitude_v) const;
   Expected<void> check_before_on();
+  Expected<void> switch_on();
   Expected<void> confirm_off();
   Expected<void> confirm_on();
   Expected<void> command(const std::string& text);
@@ -93,7 +95,9 @@ private:
   double amplitude_v_ = 0.0; // as set last
   double offset_v_ = 0.0;    // as read last
   bool is_on_ = false;       // as set last
-  double asked_s_ = 0.0;     // host clock: whether it still is
+  bool wants_waveform_ = false;
+  bool has_waveform_ = false; // over this connection
+  double asked_s_ = 0.0;      // host clock: whether it still is
   HostClock host_clock_;
 };
 

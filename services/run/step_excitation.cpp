@@ -219,20 +219,20 @@ Expected<double> StepExcitation::begin_step(const wire::PlannedStep& step,
 Expected<double> StepExcitation::switch_on(const wire::PlannedStep& step, double voltage_v,
                                            const std::stop_token& stop) {
   output_may_be_on_ = true;
-  return switch_on_as_set(step, generator().set_frequency(step.frequency_text_hz()).and_then([&] {
+  auto set = generator().set_frequency(step.frequency_text_hz()).and_then([&] {
     return generator().set_amplitude_v(voltage_v);
-  }),
-                          stop);
+  });
+  return switch_on_as_set(step, std::move(set), stop);
 }
 
 // The frequency is what the generator answers with, and what dyncal-guard knows the run by.
 Expected<double> StepExcitation::switch_on_multisine(const wire::PlannedStep& step, double part,
                                                      const std::stop_token& stop) {
   hooks_.show("loading the waveform");
-  return switch_on_as_set(step, generator().set_frequency(step.frequency_text_hz()).and_then([&] {
+  auto set = generator().set_frequency(step.frequency_text_hz()).and_then([&] {
     return generator().set_waveform(multisine_->samples_v(part), multisine_->rate_hz());
-  }),
-                          stop);
+  });
+  return switch_on_as_set(step, std::move(set), stop);
 }
 
 // The bench time from which on the output is on.

@@ -35,8 +35,8 @@ std::size_t lines_at_once(const wire::Measurement& measurement) {
 // Of the steps that are excited; a multi-sine's is its first line.
 std::vector<std::uint32_t> numbers_of(const wire::Measurement& measurement) {
   std::vector<std::uint32_t> numbers;
-  for (std::size_t place = 0; place < measurement.steps().size();
-       place += lines_at_once(measurement)) {
+  const std::size_t lines = lines_at_once(measurement);
+  for (std::size_t place = 0; place < measurement.steps().size(); place += lines) {
     numbers.push_back(measurement.steps()[place].step());
   }
   return numbers;

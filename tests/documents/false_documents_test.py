@@ -152,8 +152,9 @@ class FalseDocuments(DocumentsOfRun):
         shutil.copy(self.other_run / "recording.mcap", run)
         self.assert_refused(RECORDING, self.certify(run, "--force"))
         run = self.copy("cut-recording", store=False)
-        with open(run / "recording.mcap", "r+b") as file:
-            file.truncate(random.Random(SEED).randrange(500_000, 5_000_000))
+        size = (run / "recording.mcap").stat().st_size
+        with open(run / "recording.mcap", "r+b") as file:  # among its samples
+            file.truncate(int(size * random.Random(SEED).uniform(0.4, 0.9)))
         for make in (self.certify, self.issue):
             self.assert_refused("lacks samples of", make(run))
             self.assert_refused("nothing is signed or issued", make(run, "--force"))

@@ -148,7 +148,9 @@ def table_of(tried, versions, reasons, trials):
                 }
                 cells.append(", ".join(sorted(said)) or "SETUP_FAIL")
         lines.append(f"| {stack.label} | {versions[stack.name]} | {' | '.join(cells)} |")
-    untried = [f"- {stack.label}: {reasons[stack.name]}" for stack in tried if stack.name in reasons]
+    untried = [
+        f"- {stack.label}: {reasons[stack.name]}" for stack in tried if stack.name in reasons
+    ]
     return "\n".join([*lines, "", *untried] if untried else lines) + "\n"
 
 

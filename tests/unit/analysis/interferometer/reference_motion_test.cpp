@@ -3,6 +3,7 @@
 #include <cmath>
 #include <complex>
 #include <cstdint>
+#include <cstdlib>
 #include <numbers>
 #include <random>
 #include <string>
@@ -85,6 +86,39 @@ TEST(ReferenceMotion, ItsUncertaintyHoldsForSmallFastMotion) {
 
 TEST(ReferenceMotion, ItsUncertaintyHoldsBesideTheMotionOfTheTable) {
   expect_honest({80.0, 1.0, 0.4, 2e4, 0.5, 1e-7, 0.5, 0.05}, 200);
+}
+
+// DYNCAL_COVERAGE_RUNS: how many draws of each row, 30 at least for what is held of many.
+int coverage_runs() {
+  const char* text = std::getenv("DYNCAL_COVERAGE_RUNS");
+  return text != nullptr ? std::atoi(text) : 1;
+}
+
+// From 10 Hz to 2 kHz and 0.1 to 100 m/s^2, at 1 MS/s; 1e-7 m/s of drift.
+TEST(ReferenceMotion, ItsUncertaintyHoldsFromSlowToFastAndFromSmallToLarge) {
+  constexpr int fewest = 30;
+  const int runs = coverage_runs();
+  const struct {
+    double frequency_hz;
+    double acceleration_m_s2;
+    double seconds;
+  } rows[] = {{10.0, 0.1, 1.0},    {80.0, 1.0, 1.0},      {160.0, 10.0, 1.0},
+              {1000.0, 0.1, 1.0},  {1000.0, 100.0, 0.5},  {2000.0, 10.0, 1.0},
+              {5000.0, 50.0, 0.2}, {10000.0, 200.0, 0.1}, {10000.0, 10.0, 0.1}};
+  for (const auto& row : rows) {
+    const Motion motion{
+        row.frequency_hz, row.acceleration_m_s2, 0.4, 1e6, row.seconds, 1e-7, 0.0, 0.05};
+    SCOPED_TRACE(std::to_string(row.frequency_hz) + " Hz");
+    if (runs >= fewest) {
+      expect_honest(motion, runs);
+      continue;
+    }
+    const auto one = run(motion, 1);
+    ASSERT_TRUE(one);
+    const std::complex<double> ratio = one->acceleration / true_acceleration(motion);
+    EXPECT_LT(std::abs(std::abs(ratio) - 1.0), 4.0 * one->u_magnitude_rel);
+    EXPECT_LT(std::abs(std::arg(ratio)), 4.0 * one->u_phase_rad);
+  }
 }
 
 TEST(ReferenceMotion, SlowMotionOfTheTableIsNoExcitation) {

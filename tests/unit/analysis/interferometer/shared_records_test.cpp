@@ -23,7 +23,7 @@ namespace {
 const std::string shared_reference = DYNCAL_SHARED_DATA "/reference/";
 constexpr double volt_per_count = 0.000152587890625;
 
-// Columns of int16 of a structured NumPy file; empty without it.
+// Columns of int16 of a structured NumPy file, or of one without a head; empty without it.
 std::vector<std::vector<std::int16_t>> read_columns(const std::string& name, std::size_t columns) {
   std::ifstream file(shared_reference + name, std::ios::binary);
   const std::string bytes((std::istreambuf_iterator<char>(file)), {});
@@ -32,7 +32,7 @@ std::vector<std::vector<std::int16_t>> read_columns(const std::string& name, std
     return values;
   }
   const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(bytes[at]); };
-  const std::size_t header = 10 + byte(8) + 256u * byte(9);
+  const std::size_t header = name.ends_with(".npy") ? 10 + byte(8) + 256u * byte(9) : 0;
   values.resize(columns);
   for (std::size_t at = header; at + 2 * columns <= bytes.size(); at += 2 * columns) {
     for (std::size_t j = 0; j < columns; ++j) {
@@ -101,6 +101,26 @@ TEST(SharedRecords, AnArcOfATenthOfARadianWithTheEllipseOfAnotherStep) {
 TEST(SharedRecords, LessThanOneSampleAFringe) {
   READ_OR_SKIP(columns, "quad/q4_80hz_100ms2_undersampled.npy", 3);
   expect_truth(columns, {80.0, 100.0, 4e5, 1e-8, 1e-8}, ellipse_of_q1);
+}
+
+// I and Q of a vibrometer that mixes its beat down are a pair with a nearly perfect circle.
+TEST(SharedRecords, TheIAndQOfAVibrometer) {
+  READ_OR_SKIP(columns, "iq/q1.sigmf-data", 2);
+  const auto ellipse = ellipse_of_record(std::span(columns[0]), std::span(columns[1]));
+  ASSERT_TRUE(ellipse) << ellipse.error().message;
+  std::vector<double> sync; // the record has none
+  for (std::size_t i = 0; i < columns[0].size(); ++i) {
+    sync.push_back(std::sin(2.0 * std::numbers::pi * 160.0 * 1e-6 * static_cast<double>(i)));
+  }
+  const auto result =
+      simulated::chain({160.0, 1e6, displacement_per_turn_m(simulated::wavelength_m, 1)},
+                       ellipse->fit.ellipse, columns[0], columns[1], sync);
+  ASSERT_TRUE(result);
+  const std::complex<double> ratio =
+      result->acceleration / std::polar(10.0, 0.4 + std::numbers::pi);
+  EXPECT_NEAR(std::abs(ratio), 1.0, 1e-6);
+  EXPECT_NEAR(std::arg(ratio), 0.0, 1e-6);
+  EXPECT_EQ(result->phase.doubtful, 0u);
 }
 
 struct PublishedAxis {

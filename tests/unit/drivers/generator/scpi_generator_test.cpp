@@ -39,6 +39,8 @@ public:
     const std::lock_guard lock(mutex_);
     ignores_off_ = true;
   }
+  // Instead of hearing the next line.
+  void hang_up() { hangs_up_ = true; }
   // To every other question; nothing: none at all.
   void answer_questions(const std::optional<std::string>& answer) {
     const std::lock_guard lock(mutex_);
@@ -52,6 +54,9 @@ public:
 private:
   void serve(ScriptedInstrument::Client& client) {
     for (std::string line = client.hear(); !line.empty(); line = client.hear()) {
+      if (hangs_up_.exchange(false)) {
+        return;
+      }
       const std::lock_guard lock(mutex_);
       if (line == "*IDN?") {
         client.say(identity_ + "\r\n");
@@ -76,6 +81,7 @@ private:
     }
   }
 
+  std::atomic<bool> hangs_up_ = false;
   std::mutex mutex_;
   bool is_on_ = false;
   bool ignores_off_ = false;
@@ -255,6 +261,25 @@ TEST(ScpiGenerator, GoesOnWhereTheAnswerSaysNeither) {
   ASSERT_TRUE(generator) << generator.error().message;
   EXPECT_FALSE((*generator)->output_is_on().value().has_value());
   EXPECT_TRUE((*generator)->set_output(false));
+}
+
+// Else a sine of the peak of all lines would reach the exciter.
+TEST(ScpiGenerator, SwitchesNothingOnOverAnotherConnectionThanThatOfItsWaveform) {
+  FakeGenerator fake({}, "Rigol Technologies,DG952,DG9A,00.01.14");
+  auto generator = ScpiGenerator::connect(fake.address());
+  ASSERT_TRUE(generator) << generator.error().message;
+  const std::vector<double> samples{1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0};
+  ASSERT_TRUE((*generator)->set_waveform(samples, 10.0));
+  fake.hang_up();
+  EXPECT_FALSE((*generator)->set_output(true));
+  ASSERT_TRUE((*generator)->set_frequency("40")); // connects anew
+  const auto on = (*generator)->set_output(true);
+  ASSERT_FALSE(on);
+  EXPECT_EQ(on.error().code, ErrorCode::disconnected);
+  EXPECT_THAT(on.error().message, HasSubstr("no longer has its waveform"));
+  EXPECT_THAT(fake.commands(), testing::Not(testing::Contains(":OUTPut1 ON")));
+  ASSERT_TRUE((*generator)->set_waveform(samples, 10.0));
+  EXPECT_TRUE((*generator)->set_output(true));
 }
 
 TEST(ScpiGenerator, SaysThatNobodyListens) {
