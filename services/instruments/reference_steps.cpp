@@ -16,13 +16,13 @@ namespace tables = drivers::tables;
 
 constexpr std::size_t max_extra_named = 10;
 
-const tables::TableSettings& settings_of(const SourceSettings& source) {
+} // namespace
+
+const tables::TableSettings& table_settings_of(const SourceSettings& source) {
   return std::get<TableSourceSettings>(source.driver);
 }
 
-} // namespace
-
-Error named(const SourceSettings& source, const drivers::Error& error) {
+Error table_error(const SourceSettings& source, const drivers::Error& error) {
   return {ErrorCode::bad_file, fmt::format("source '{}': {}", source.name, error.message)};
 }
 
@@ -58,9 +58,9 @@ ReferenceStep missing_step(const PlannedReferenceStep& planned, std::string prob
 Expected<ReferenceStep> reference_step_of(const SourceSettings& source,
                                           const PlannedReferenceStep& planned,
                                           const tables::LoopRow& row) {
-  const auto phasor = tables::phasor_of(*row.row, settings_of(source), row.file->name);
+  const auto phasor = tables::phasor_of(*row.row, table_settings_of(source), row.file->name);
   if (!phasor) {
-    return fail(named(source, phasor.error()));
+    return fail(table_error(source, phasor.error()));
   }
   return ReferenceStep{.step = planned.step,
                        .repetition = planned.repetition,
@@ -87,13 +87,13 @@ std::string rows_of_no_step(const tables::TableMatch& match) {
 
 Expected<std::vector<ReferenceStep>>
 read_reference_steps(const SourceSettings& source, const std::vector<PlannedReferenceStep>& plan) {
-  const auto files = tables::read_table_files(settings_of(source));
+  const auto files = tables::read_table_files(table_settings_of(source));
   if (!files) {
-    return fail(named(source, files.error()));
+    return fail(table_error(source, files.error()));
   }
-  const auto match = tables::match_table(*files, planned_rows(plan), settings_of(source));
+  const auto match = tables::match_table(*files, planned_rows(plan), table_settings_of(source));
   if (!match) {
-    return fail(named(source, match.error()));
+    return fail(table_error(source, match.error()));
   }
   if (!match->extra.empty()) {
     return fail(ErrorCode::bad_file,

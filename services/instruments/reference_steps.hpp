@@ -22,6 +22,8 @@ namespace dyncal::inline instruments {
 [[nodiscard]] Expected<std::vector<ReferenceStep>>
 read_reference_steps(const SourceSettings& source, const std::vector<PlannedReferenceStep>& plan);
 
+// REQUIRES: driver "table".
+[[nodiscard]] const drivers::tables::TableSettings& table_settings_of(const SourceSettings& source);
 // Of one step, and of one that has no row.
 [[nodiscard]] Expected<ReferenceStep> reference_step_of(const SourceSettings& source,
                                                         const PlannedReferenceStep& planned,
@@ -29,7 +31,7 @@ read_reference_steps(const SourceSettings& source, const std::vector<PlannedRefe
 [[nodiscard]] ReferenceStep missing_step(const PlannedReferenceStep& planned, std::string problem);
 // One sentence that names them.
 [[nodiscard]] std::string rows_of_no_step(const drivers::tables::TableMatch& match);
-[[nodiscard]] Error named(const SourceSettings& source, const drivers::Error& error);
+[[nodiscard]] Error table_error(const SourceSettings& source, const drivers::Error& error);
 // The plan as tables are matched with it.
 [[nodiscard]] std::vector<drivers::tables::PlannedRow>
 planned_rows(const std::vector<PlannedReferenceStep>& plan);

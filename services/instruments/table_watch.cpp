@@ -14,14 +14,10 @@ namespace {
 
 namespace tables = drivers::tables;
 
-const tables::TableSettings& settings_of(const SourceSettings& source) {
-  return std::get<TableSourceSettings>(source.driver);
-}
-
 Expected<std::vector<tables::TableFile>> read_files(const SourceSettings& source) {
-  auto files = tables::read_table_files(settings_of(source), tables::TableIs::written_to);
+  auto files = tables::read_table_files(table_settings_of(source), tables::TableIs::written_to);
   if (!files) {
-    return fail(named(source, files.error()));
+    return fail(table_error(source, files.error()));
   }
   return *std::move(files);
 }
@@ -60,7 +56,7 @@ std::vector<tables::TableFile> TableWatch::of_this_run(std::vector<tables::Table
       file.rows.erase(file.rows.begin(), first);
     }
   }
-  const auto& paths = settings_of(source_).paths;
+  const auto& paths = table_settings_of(source_).paths;
   if (paths.size() == 1) {
     std::erase_if(files, [](const tables::TableFile& file) { return file.rows.empty(); });
     return files;
@@ -146,9 +142,9 @@ void TableWatch::name_extra_rows(const tables::TableMatch& match, News& news) {
 Expected<TableWatch::News> TableWatch::look(Instant now, bool run_is_over) {
   DYNCAL_TRY(auto files, read_files(source_));
   note_changes(of_this_run(std::move(files)), now, run_is_over);
-  const auto match = tables::match_table(files_, plan_, settings_of(source_));
+  const auto match = tables::match_table(files_, plan_, table_settings_of(source_));
   if (!match) {
-    return fail(named(source_, match.error()));
+    return fail(table_error(source_, match.error()));
   }
   News news;
   DYNCAL_TRY(hand_out(*match, now, news));
