@@ -5,6 +5,7 @@
 
 #include <fmt/core.h>
 
+#include "analysis/base/statistics.hpp"
 #include "services/contract/excitation_quantity.hpp"
 #include "services/evaluation/record/channel_level.hpp"
 
@@ -21,29 +22,44 @@ double highest_level_m_s2(const Recipe& recipe, const std::string& frequency_tex
   return highest;
 }
 
-// Of a multi-sine, whose lines cannot be told apart in so short a window: the peak of all, where
-// the channel has the quantity of the levels.
-std::optional<double> peak_in(const SourceRecord& reference, std::size_t channel,
-                              const TimeInterval& window, const std::string& name,
-                              const analysis::Frequency& frequency) {
-  const auto factor = acceleration_factor(reference.description(), name, frequency.angular());
-  if (factor != acceleration_factor(reference.description(), name, 2.0 * frequency.angular())) {
+struct ShownLevel {
+  double shown_m_s2 = 0.0;
+  double planned_m_s2 = 0.0;
+  std::string of; // what is compared: the step, or all that are excited with it
+  const char* unit = "m/s^2";
+};
+
+std::optional<ShownLevel> level_of_step(const Recipe& recipe, const SourceRecord& reference,
+                                        std::size_t channel, const TimeInterval& window,
+                                        const RecipeStep& planned) {
+  const auto level = level_in(reference, channel, window, planned.frequency);
+  return level ? std::optional(ShownLevel{
+                     *level, highest_level_m_s2(recipe, planned.frequency_text_hz),
+                     fmt::format("step {}, {} Hz", planned.step, planned.frequency_text_hz)})
+               : std::nullopt;
+}
+
+// The lines of a multi-sine cannot be told apart in so short a window, but Schroeder's phases keep
+// its rms as it is in the whole. Only where the channel has the quantity of the levels.
+std::optional<ShownLevel> rms_of_lines(const Recipe& recipe, const SourceRecord& reference,
+                                       std::size_t channel, const TimeInterval& window,
+                                       const RecipeStep& planned) {
+  const std::string& name = recipe.reference().channel;
+  const double angular_hz = planned.frequency.angular();
+  const auto factor = acceleration_factor(reference.description(), name, angular_hz);
+  if (factor != acceleration_factor(reference.description(), name, 2.0 * angular_hz)) {
     return std::nullopt;
   }
-  const std::vector<double> values = part_of(reference, channel, window, frequency).values;
+  const std::vector<double> values = part_of(reference, channel, window, planned.frequency).values;
   if (values.empty()) {
     return std::nullopt;
   }
-  const auto [lowest, highest] = std::ranges::minmax(values);
-  return *factor * 0.5 * (highest - lowest);
-}
-
-double sum_of_levels_m_s2(const Recipe& recipe) {
-  double sum = 0.0;
+  double planned_power = 0.0;
   for (std::size_t line = 0; line < recipe.lines_at_once(); ++line) {
-    sum += recipe.steps[line].level_m_s2;
+    planned_power += 0.5 * recipe.steps[line].level_m_s2 * recipe.steps[line].level_m_s2;
   }
-  return sum;
+  return ShownLevel{*factor * analysis::standard_deviation(values), std::sqrt(planned_power),
+                    fmt::format("{} lines together", recipe.lines_at_once()), "m/s^2 rms"};
 }
 
 } // namespace
@@ -66,20 +82,17 @@ std::optional<std::string> LevelWatch::look(const SourceRecord& reference,
   }
   looked_ns_ = newest_ns;
   const TimeInterval window{newest_ns - window_ns, newest_ns};
-  const bool multisine = recipe_.is_multisine();
-  const auto level = multisine ? peak_in(reference, *channel, window, recipe_.reference().channel,
-                                         planned.frequency)
-                               : level_in(reference, *channel, window, planned.frequency);
-  const double planned_m_s2 = multisine ? sum_of_levels_m_s2(recipe_)
-                                        : highest_level_m_s2(recipe_, planned.frequency_text_hz);
-  if (!level || *level <= max_excess * planned_m_s2) {
+  const auto level = recipe_.is_multisine()
+                         ? rms_of_lines(recipe_, reference, *channel, window, planned)
+                         : level_of_step(recipe_, reference, *channel, window, planned);
+  if (!level || level->shown_m_s2 <= max_excess * level->planned_m_s2) {
     return std::nullopt;
   }
-  return fmt::format("step {}, {} Hz: {} shows {:.3g} m/s^2 where {:.3g} m/s^2 are planned; the "
-                     "excitation is stopped. Is generator.level_per_volt right for this exciter, "
-                     "and the gain of the amplifier?",
-                     planned.step, planned.frequency_text_hz, recipe_.reference().text(), *level,
-                     planned_m_s2);
+  return fmt::format("{}: {} shows {:.3g} {} where {:.3g} {} are planned; the excitation is "
+                     "stopped. Is generator.level_per_volt right for this exciter, and the gain "
+                     "of the amplifier?",
+                     level->of, recipe_.reference().text(), level->shown_m_s2, level->unit,
+                     level->planned_m_s2, level->unit);
 }
 
 } // namespace dyncal::inline evaluation

@@ -4,10 +4,10 @@
 // The level is the amplitude at the excited step's frequency in the newest window of the reference
 // (record/channel_level.hpp); it is looked at once a window. It counts as far above the plan when
 // it exceeds twice the highest level that the recipe plans at this frequency, so that samples of
-// another step that come late raise no alarm. Of a multi-sine the peak of all lines is compared
-// with the sum of their levels. A reference that shows no acceleration, and steps
-// that nobody announces (recorded files), are not watched: there the result carries a flag
-// (method/step_results.cpp).
+// another step that come late raise no alarm. Of a multi-sine it is the rms of all lines, against
+// that of their levels. A reference that shows no acceleration, or a multi-sine as velocity or
+// displacement, and steps that nobody announces (recorded files), are not watched: there the result
+// carries a flag (method/step_results.cpp).
 //
 // Belongs to one thread; the recipe must outlive it.
 #pragma once

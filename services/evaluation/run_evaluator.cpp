@@ -293,10 +293,10 @@ EvaluationOutput RunEvaluator::take_output() {
     return output;
   }
   if (!is_ending() && !has_all_steps()) {
-    if (runs_ahead_) {
+    if (runs_ahead_ && recipe_->reference_table.empty()) {
       records_.search(next_step_ + 1); // a result does not wait for the search for the next step
     } else {
-      records_.search();
+      records_.search(); // of a table the samples are ahead, and tell when all was excited
     }
     if (!evaluate_next_steps(output)) {
       return output;

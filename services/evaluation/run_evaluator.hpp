@@ -148,6 +148,10 @@ public:
   [[nodiscard]] bool is_ending() const { return ending_.valid() || finished_; }
   // Every planned step has been evaluated; some may be excited again.
   [[nodiscard]] bool has_planned_steps() const { return next_step_ >= recipe_->excitations(); }
+  // Every planned step was found in the records, or passed over there.
+  [[nodiscard]] bool has_found_planned_steps() const {
+    return records_.is_searched(recipe_->excitations() - 1);
+  }
   // Nobody conducts this run, and its records do not show all planned steps one after the other, or
   // not the same ones: whether each was taken for the right one, only a survey of all that they
   // show can tell (step_survey.hpp). REQUIRES: finished()

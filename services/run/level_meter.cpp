@@ -101,7 +101,7 @@ Expected<LevelReading> LevelMeter::level_after(double bench_time_s,
   return read_level(record_, *channel, *window, frequency, agreement_rel);
 }
 
-std::optional<std::map<std::string, double>>
+Expected<std::optional<std::map<std::string, double>>>
 LevelMeter::line_levels_after(double bench_time_s, const std::vector<std::string>& frequencies_hz,
                               double period_s) const {
   const auto channel = record_.described() ? record_.channel(reference_.channel) : std::nullopt;
@@ -109,6 +109,7 @@ LevelMeter::line_levels_after(double bench_time_s, const std::vector<std::string
   if (!channel || !window) {
     return std::nullopt;
   }
+  DYNCAL_TRY(check_range(record_, *channel, *window));
   std::map<std::string, double> levels;
   for (const std::string& text : frequencies_hz) {
     const analysis::Frequency frequency = *analysis::Frequency::parse(text); // the file was checked

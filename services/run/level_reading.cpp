@@ -50,18 +50,24 @@ double standard_deviation(std::span<const double> values) {
 
 } // namespace
 
-Expected<LevelReading> read_level(const SourceRecord& record, std::size_t channel,
-                                  const TimeInterval& window, const analysis::Frequency& frequency,
-                                  double agreement_rel) {
+Expected<void> check_range(const SourceRecord& record, std::size_t channel,
+                           const TimeInterval& window) {
   const drivers::ChannelDescription& described = record.description().channels[channel];
   const double part = part_at_range(described, samples_in(record, channel, window));
-  const std::vector<double> values = part_of(record, channel, window, frequency).values;
   if (part > max_part_at_range) {
     return fail(ErrorCode::device,
                 fmt::format("{}/{} is at an end of its range in {:.2g} % of its samples, so that "
                             "it shows less than there is; choose a wider range, or a lower level",
                             record.source(), described.name, 100.0 * part));
   }
+  return {};
+}
+
+Expected<LevelReading> read_level(const SourceRecord& record, std::size_t channel,
+                                  const TimeInterval& window, const analysis::Frequency& frequency,
+                                  double agreement_rel) {
+  DYNCAL_TRY(check_range(record, channel, window));
+  const std::vector<double> values = part_of(record, channel, window, frequency).values;
   const std::int64_t middle_ns = window.begin_ns + (window.end_ns - window.begin_ns) / 2;
   const auto sine = sine_in(record, channel, window, frequency);
   const auto level = sine ? std::optional(sine->amplitude) : std::nullopt;

@@ -32,7 +32,10 @@ struct LevelReading {
   std::string lacking{}; // why there is none, where the samples tell
 };
 
-// REQUIRES: the record is described, and has this channel.
+// Fails (device) where the samples of the window are at an end of the range, as above. REQUIRES, as
+// the next: the record is described, and has this channel.
+[[nodiscard]] Expected<void> check_range(const SourceRecord& record, std::size_t channel,
+                                         const TimeInterval& window);
 [[nodiscard]] Expected<LevelReading> read_level(const SourceRecord& record, std::size_t channel,
                                                 const TimeInterval& window,
                                                 const analysis::Frequency& frequency,

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 #include <optional>
 
 #include <fmt/core.h>
@@ -51,18 +52,18 @@ MultisineDrive::MultisineDrive(const BenchFile& bench)
 }
 
 template <class Amplitude>
-std::vector<double> MultisineDrive::waveform(Amplitude amplitude) const {
+std::vector<double> MultisineDrive::waveform(Amplitude amplitude, double lead_rad) const {
   std::vector<analysis::MultisineLine> lines;
   for (const Line& line : lines_) {
-    lines.push_back({line.frequency_hz, amplitude(line), line.phase_rad});
+    lines.push_back({line.frequency_hz, amplitude(line), line.phase_rad + lead_rad});
   }
   return analysis::multisine_waveform(
       lines, period_s_, static_cast<std::size_t>(std::llround(rate_hz() * period_s_)));
 }
 
 template <class Amplitude>
-double MultisineDrive::peak(Amplitude amplitude) const {
-  const std::vector<double> samples = waveform(amplitude);
+double MultisineDrive::peak(Amplitude amplitude, double lead_rad) const {
+  const std::vector<double> samples = waveform(amplitude, lead_rad);
   const auto [lowest, highest] = std::ranges::minmax(samples);
   return std::max(-lowest, highest);
 }
@@ -94,16 +95,14 @@ std::vector<std::string> MultisineDrive::frequencies_hz() const {
   return texts;
 }
 
-// Velocity and displacement are as many turns by a quarter and a half behind for all lines: their
-// peaks are those of sums of other phases, for which the sums of the amplitudes are the bound.
 Expected<void> MultisineDrive::check() const {
   const GeneratorSettings& generator = bench_.generator;
-  double velocity_m_s = 0.0;
-  double displacement_m = 0.0;
-  for (const Line& line : lines_) {
-    velocity_m_s += analysis::velocity_m_s(line.level_m_s2, line.frequency_hz);
-    displacement_m += analysis::displacement_m(line.level_m_s2, line.frequency_hz);
-  }
+  const double velocity_m_s = peak(
+      [](const Line& line) { return analysis::velocity_m_s(line.level_m_s2, line.frequency_hz); },
+      -0.5 * std::numbers::pi);
+  const double displacement_m = peak(
+      [](const Line& line) { return analysis::displacement_m(line.level_m_s2, line.frequency_hz); },
+      -std::numbers::pi);
   const struct {
     const char* key;
     std::optional<double> largest;
@@ -127,7 +126,6 @@ Expected<void> MultisineDrive::check() const {
 
 Expected<void> MultisineDrive::take_levels(const std::map<std::string, double>& levels_m_s2,
                                            double part) {
-  const double planned_peak_v = peak_v();
   for (Line& line : lines_) {
     const double measured_m_s2 = levels_m_s2.at(line.frequency_text_hz);
     const double expected_m_s2 = part * line.level_m_s2;
@@ -141,9 +139,9 @@ Expected<void> MultisineDrive::take_levels(const std::map<std::string, double>& 
     line.level_per_volt *= measured_m_s2 / expected_m_s2;
   }
   has_levels_ = true;
-  const double largest_v =
-      std::min(bench_.generator.maximum_voltage_v.value_or(std::numeric_limits<double>::infinity()),
-               drivers::generator::plausible_level_m_s2(planned_peak_v));
+  const double largest_v = std::min(
+      bench_.generator.maximum_voltage_v.value_or(std::numeric_limits<double>::infinity()),
+      drivers::generator::plausible_level_m_s2(peak_m_s2()) / bench_.generator.level_per_volt);
   if (const double needed_v = peak_v(); needed_v > largest_v) {
     return fail(
         ErrorCode::device,

@@ -6,9 +6,10 @@
 //   the levels of a first record have been taken; phi_k: Schroeder's (schroeder_phases.hpp)
 //
 // Limits hold for the peaks of the sums: of the voltage, of the planned acceleration, and of the
-// velocity and displacement that go with it. Fails: bad_argument (check(): a limit would be
-// passed), device (take_levels(): the reference shows less than a twentieth of what is expected, as
-// LevelControl, or what the corrected waveform needs is above a limit). Plain data; one thread.
+// velocity and displacement that go with it, a quarter and half a turn behind. Fails: bad_argument
+// (check(): a limit would be passed), device (take_levels(): the reference shows less than a
+// twentieth of what is expected, as LevelControl, or what the corrected waveform needs is above a
+// limit). Plain data; one thread.
 #pragma once
 
 #include <map>
@@ -55,9 +56,9 @@ private:
 
   // Of the sum of all lines, each with its amplitude.
   template <class Amplitude>
-  [[nodiscard]] double peak(Amplitude amplitude) const;
+  [[nodiscard]] double peak(Amplitude amplitude, double lead_rad = 0.0) const;
   template <class Amplitude>
-  [[nodiscard]] std::vector<double> waveform(Amplitude amplitude) const;
+  [[nodiscard]] std::vector<double> waveform(Amplitude amplitude, double lead_rad = 0.0) const;
 
   const BenchFile& bench_;
   std::vector<Line> lines_; // ascending

@@ -5,6 +5,7 @@
 #include "services/contract/contract_versions.hpp"
 #include "services/contract/source_description.hpp"
 #include "services/contract/topics.hpp"
+#include "services/evaluation/record/step_order.hpp"
 #include "services/evaluation/result/result_messages.hpp"
 #include "services/run/run_outlook.hpp"
 
@@ -150,10 +151,9 @@ bool is_planned(const StepResult& result, const Recipe& recipe) {
 }
 // The step whose announcement is of this one too: the first line of its multi-sine, or itself.
 std::uint32_t excitation_of(const Recipe& recipe, std::uint32_t step) {
-  const auto found = std::ranges::find(recipe.steps, step, &RecipeStep::step);
-  const auto place = static_cast<std::size_t>(found - recipe.steps.begin());
-  const std::size_t lines = recipe.lines_at_once();
-  return found == recipe.steps.end() ? step : recipe.steps[place / lines * lines].step;
+  const StepOrder order(recipe);
+  const auto place = order.find(step, 1);
+  return place ? order.step(*place).step : step;
 }
 bool is_planned(const TransferFunction& function, const Recipe& recipe) {
   return has_channel(recipe, function.channel);

@@ -274,8 +274,9 @@ Expected<void> StepExcitation::record_levels(const wire::PlannedStep& step,
       return fail(reported(now.error()));
     }
     meter_->take(*now, settled_s - *began + period_s + max_listening_s);
-    if (const auto levels =
-            meter_->line_levels_after(settled_s, multisine_->frequencies_hz(), period_s)) {
+    DYNCAL_TRY(const auto levels,
+               meter_->line_levels_after(settled_s, multisine_->frequencies_hz(), period_s));
+    if (levels) {
       return multisine_->take_levels(*levels, level_record_part);
     }
     if (*now > deadline_s) {

@@ -18,24 +18,9 @@ constexpr auto broken_off_limit = 10s;    // for the result of a step that was b
 constexpr auto generator_interval = 1s;   // between two attempts to reach it
 constexpr auto last_result_quiet = 300ms; // then all results of a step have come
 
-std::uint32_t repetition_of(const wire::PlannedStep& step) {
-  return step.repetition();
-}
-
-// How many steps one excitation is of.
-std::size_t lines_at_once(const wire::Measurement& measurement) {
-  const auto& steps = measurement.steps();
-  if (!(measurement.multisine_period_s() > 0.0)) {
-    return 1;
-  }
-  return static_cast<std::size_t>(
-      std::ranges::count(steps, steps.front().repetition(), &repetition_of));
-}
-
 // Of the steps that are excited; a multi-sine's is its first line.
-std::vector<std::uint32_t> numbers_of(const wire::Measurement& measurement) {
+std::vector<std::uint32_t> numbers_of(const wire::Measurement& measurement, std::size_t lines) {
   std::vector<std::uint32_t> numbers;
-  const std::size_t lines = lines_at_once(measurement);
   for (std::size_t place = 0; place < measurement.steps().size(); place += lines) {
     numbers.push_back(measurement.steps()[place].step());
   }
@@ -45,8 +30,8 @@ std::vector<std::uint32_t> numbers_of(const wire::Measurement& measurement) {
 } // namespace
 
 StepSequence::StepSequence(RunWatch& watch, const BenchFile& bench)
-    : watch_(watch), lines_(lines_at_once(watch.measurement())),
-      repeats_(numbers_of(watch.measurement()), bench.excitation.attempts) {}
+    : watch_(watch), lines_(watch.outcome().recipe->lines_at_once()),
+      repeats_(numbers_of(watch.measurement(), lines_), bench.excitation.attempts) {}
 
 StepSequence::~StepSequence() = default;
 

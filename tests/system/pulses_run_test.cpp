@@ -48,15 +48,7 @@ nlohmann::json closure_of_links(const nlohmann::json& result) {
 
 TEST(PulsesRun, LinksTheClocksByPulsesAndSync) {
   const auto result = result_of(fresh_folder_of_this_test(), "u_delay_s = 5e-8\n");
-  int compared = 0;
-  for (const auto& point : result["points"]) {
-    ASSERT_TRUE(point["valid"].get<bool>()) << point.dump();
-    if (point["channel"] == std::string("dau/") + axis) {
-      EXPECT_LT(deviation_of_point(point, result["truth"], axis), covered) << point.dump();
-      ++compared;
-    }
-  }
-  EXPECT_EQ(compared, 4);
+  EXPECT_EQ(points_near_truth(result, result["truth"], axis, covered), 4);
   const auto closure = closure_of_links(result);
   ASSERT_FALSE(closure.is_null()) << result["channels"].dump();
   EXPECT_EQ(closure["verdict"], "closes") << closure.dump();

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <string>
 
+#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 namespace dyncal::tests {
@@ -27,6 +28,21 @@ inline double deviation_of_point(const nlohmann::json& point, const nlohmann::js
     }
   }
   return std::numeric_limits<double>::infinity();
+}
+
+// How many points a live run has of an axis of its sensor: each valid, and within so many standard
+// uncertainties of the truth.
+inline int points_near_truth(const nlohmann::json& result, const nlohmann::json& truth,
+                             const std::string& axis, double uncertainties) {
+  int count = 0;
+  for (const nlohmann::json& point : result["points"]) {
+    if (point["channel"] == "dau/" + axis) {
+      EXPECT_TRUE(point["valid"].get<bool>()) << point.dump();
+      EXPECT_LT(deviation_of_point(point, truth, axis), uncertainties) << point.dump();
+      ++count;
+    }
+  }
+  return count;
 }
 
 } // namespace dyncal::tests

@@ -267,7 +267,8 @@ void RunSession::watch_sources(Instant now) {
   auto lost =
       streams_->lost_source(now, std::max(last_progress_, present_since_), silence_limit,
                             excited_by_steps_ && measurement_.state() == wire::MEASUREMENT_RUNNING);
-  if (!lost) {
+  const bool is_here = !lost;
+  if (is_here) {
     lost = late_steps(now);
   }
   if (!lost) {
@@ -285,12 +286,17 @@ void RunSession::watch_sources(Instant now) {
   } else {
     enter(Failed{}, std::move(lost->message));
   }
+  if (is_here && is<Failed>()) { // the steps that have come are evaluated
+    evaluator_->end_of_excitation(false);
+    evaluator_->finish_now();
+    wake_up_->ring();
+  }
 }
 
 // All has been excited, and a system that evaluates itself is behind.
 std::optional<LostSource> RunSession::late_steps(Instant now) const {
   const bool is_all_excited =
-      excitation_over() || (!excited_by_steps_ && evaluator_->has_planned_steps());
+      excitation_over() || (!excited_by_steps_ && evaluator_->has_found_planned_steps());
   std::string late = is_all_excited && now - last_progress_ > silence_limit
                          ? streams_->steps_not_handed_out()
                          : std::string();

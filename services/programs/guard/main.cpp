@@ -37,9 +37,6 @@ GuardedExciter exciter_of(const BenchFile& bench) {
     }
     exciter.planned.push_back(settings);
   }
-  if (bench.excitation.multisine) { // how a generator may name the frequency of a waveform
-    exciter.planned.push_back({1.0 / bench.excitation.multisine->period_s, std::nullopt});
-  }
   return exciter;
 }
 

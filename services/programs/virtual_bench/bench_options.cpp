@@ -356,6 +356,19 @@ Expected<void> read_acs(const Words& words, device::BenchSettings& bench) {
   return {};
 }
 
+Expected<void> check_acs_table(const BenchOptions& options) {
+  if (options.acs_table.empty()) {
+    return {};
+  }
+  if (!options.record_folder.empty()) {
+    return refuse("--acs-table is not for --record-csv, whose samples 'dyncal analyse' evaluates");
+  }
+  if (options.bench.interferometer) {
+    return refuse("--acs-table: no table is made of the signals of an interferometer");
+  }
+  return {};
+}
+
 Expected<void> read_words(const Words& words, BenchOptions& options) {
   const auto preset = device::preset_by_name(words.preset);
   if (!preset) {
@@ -384,7 +397,8 @@ Expected<void> read_words(const Words& words, BenchOptions& options) {
       .and_then([&] { return read_programme(words, options); })
       .and_then([&] { return read_response(words, options); })
       .and_then([&] { return read_triggered(words, options); })
-      .and_then([&] { return read_can(words, options); });
+      .and_then([&] { return read_can(words, options); })
+      .and_then([&] { return check_acs_table(options); });
 }
 
 } // namespace

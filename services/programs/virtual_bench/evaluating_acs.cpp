@@ -26,9 +26,10 @@ bool is_same(const device::Drive& a, const device::Drive& b) {
 
 Expected<EvaluatingAcs> EvaluatingAcs::open(const device::AcsInstrument& acs,
                                             const std::filesystem::path& table) {
-  std::ofstream file(table, std::ios::binary);
-  file << "loop;frequency;ex_amp;ex_amp_std;phase;phase_std\n\n#Number;Hz;m/s^2;m/s^2;deg;deg\n";
-  if (!file.flush()) {
+  std::ofstream(table, std::ios::binary)
+      << "loop;frequency;ex_amp;ex_amp_std;phase;phase_std\n\n#Number;Hz;m/s^2;m/s^2;deg;deg\n";
+  std::ofstream file(table, std::ios::binary | std::ios::app); // whoever else writes into it
+  if (!file || std::filesystem::file_size(table) == 0) {
     return fail(ErrorCode::bad_file, table.string() + ": the table cannot be written");
   }
   return EvaluatingAcs(acs, std::move(file));
@@ -59,7 +60,7 @@ void EvaluatingAcs::write_row() {
   });
   const auto left_out = static_cast<std::size_t>(steady - stamps_ns_.begin());
   const auto frequency = analysis::Frequency::parse(fmt::format("{:.9g}", drive_.frequency_hz));
-  if (steady == stamps_ns_.end() || !frequency ||
+  if (!drive_.lines.empty() || steady == stamps_ns_.end() || !frequency ||
       static_cast<double>(stamps_ns_.back() - *steady) < 1e9 * least_s) {
     return;
   }

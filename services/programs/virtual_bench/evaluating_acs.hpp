@@ -3,8 +3,8 @@
 // of every excitation, with sync less reference as its phase.
 //
 // A row is of all samples from `settling_s` after the output was switched on, or set anew, to when
-// it is switched off; shorter excitations than `least_s` have none. The rows of a loop end where a
-// frequency comes again. Belongs to the bench's thread.
+// it is switched off; shorter excitations than `least_s`, and those of several lines, have none.
+// The rows of a loop end where a frequency comes again. Belongs to the bench's thread.
 #pragma once
 
 #include <cstdint>

@@ -73,6 +73,21 @@ TEST(MultisineDrive, RefusesWhatTheLinesTogetherWouldPass) {
   EXPECT_THAT(MultisineDrive(bench).check().error().message, HasSubstr("maximum_voltage_v"));
 }
 
+// Not of the sums of all lines, which never meet.
+TEST(MultisineDrive, RefusesNothingThatItsPeaksDoNotReach) {
+  const std::vector<std::string> lines{"25", "31", "35", "41", "47", "53"};
+  BenchFile bench = bench_of(lines, std::vector<double>(lines.size(), 10.0));
+  double sum_mm = 0.0;
+  for (const std::string& line : lines) {
+    sum_mm += 1e3 * 10.0 / std::pow(2.0 * std::numbers::pi * std::stod(line), 2.0);
+  }
+  bench.generator.maximum_displacement_mm = 0.95 * sum_mm;
+  bench.generator.maximum_level_m_s2 = 50.0; // of 60
+  bench.generator.maximum_voltage_v = 1.0;   // of 1.2
+  const auto checked = MultisineDrive(bench).check();
+  EXPECT_TRUE(checked) << checked.error().message;
+}
+
 TEST(MultisineDrive, DoesNotDriveByAReferenceThatShowsNoExcitation) {
   const BenchFile bench = bench_of({"25", "31", "41"}, {10.0, 10.0, 10.0});
   MultisineDrive drive(bench);

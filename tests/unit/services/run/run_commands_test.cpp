@@ -87,6 +87,18 @@ TEST_F(RunCommandsTest, SayWhyTheyAreNotObeyed) {
   EXPECT_TRUE(commands_.aborted_by());
 }
 
+// Of a run against a table.
+TEST_F(RunCommandsTest, RepeatNoStepWhereNoneMayBeExcitedAgain) {
+  commands_ =
+      RunCommands::open(runner_, clock_, "b", "r1", {}, std::make_shared<bus::WakeUp>()).value();
+  command(wire::COMMAND_REPEAT, 7, 1);
+  EXPECT_THAT(answer_to(7), testing::HasSubstr("rows of the reference's table"));
+  EXPECT_TRUE(commands_.take_repeats().empty());
+  command(wire::COMMAND_PAUSE, 8);
+  EXPECT_EQ(answer_to(8), "");
+  EXPECT_TRUE(commands_.paused_by());
+}
+
 TEST_F(RunCommandsTest, OfProgramsWithoutIdsAreObeyedWithoutAnAnswer) {
   command(wire::COMMAND_PAUSE);
   EXPECT_TRUE(commands_.paused_by());

@@ -73,6 +73,19 @@ dut = ["acs/sensor"]
               HasSubstr("can be \"multisine\" with method.kind"));
 }
 
+TEST(MultisineKeys, NeedAnInstrumentThatTakesAWaveformOrNone) {
+  const std::string multisine = std::string("kind = \"multisine\"\n") + lines;
+  EXPECT_THAT(refusal(multisine + "[generator]\ndriver = \"by-hand\"\nlevel_per_volt = 50.0\n"),
+              HasSubstr("cannot excite a multi-sine"));
+  EXPECT_EQ(refusal(multisine + "[generator]\ndriver = \"scpi\"\naddress = \"127.0.0.1:9\"\n"
+                                "level_per_volt = 50.0\nlevel_tolerance_rel = 0.02\n"),
+            "");
+  EXPECT_EQ(refusal(multisine + "[generator]\ndriver = \"none\"\n"), "");
+  EXPECT_EQ(refusal(std::string(lines) +
+                    "duration_s = 2.0\n[generator]\ndriver = \"by-hand\"\nlevel_per_volt = 50.0\n"),
+            "");
+}
+
 TEST(MultisineKeys, NameTheLinesThatCollide) {
   const std::string text = refusal(R"(kind = "multisine"
 frequencies_hz = ["10.1", "12.3", "20.2", "30.3", "22.4"]

@@ -80,5 +80,13 @@ TEST(TableSource, IsTheReferenceAlone) {
               HasSubstr("reference' must be left out: reference_table takes its place"));
 }
 
+TEST(TableSource, SetsNoLevel) {
+  const std::string generator = "[generator]\ndriver = \"scpi\"\naddress = \"127.0.0.1:9\"\n"
+                                "level_per_volt = 50.0\n";
+  EXPECT_EQ(problem_of(keys + generator), "none");
+  EXPECT_THAT(problem_of(keys + generator + "level_tolerance_rel = 0.02\n"),
+              HasSubstr("source 'acs' is a table; leave it out"));
+}
+
 } // namespace
 } // namespace dyncal::inline bench

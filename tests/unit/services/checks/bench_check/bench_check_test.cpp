@@ -167,6 +167,25 @@ TEST(BenchCheck, LevelsAboveTheLimits) {
   EXPECT_THAT(errors[0].sentence, HasSubstr("needs 10 V, above generator.maximum_voltage_v = 5"));
 }
 
+TEST(BenchCheck, WhatTheLinesOfAMultisineComeToTogether) {
+  const std::string lines =
+      with(with(with(smartup_bench, "[excitation]", "[excitation]\nkind = \"multisine\""),
+                "[\"10\", \"80\", \"250\"]", "[\"10.1\", \"80.3\", \"248.3\"]"),
+           "duration_s = 3.0", "duration_s = 10.0");
+  const std::string multisine =
+      with(lines, "maximum_level_m_s2 = 20.0", "maximum_level_m_s2 = 30.0");
+  const Findings within = check_text(multisine);
+  EXPECT_EQ(of(within, Severity::error).size(), 0U) << all_of(within);
+  EXPECT_THAT(all_of(within), HasSubstr("has 2 multi-sines of 3 lines"));
+  EXPECT_THAT(all_of(within), HasSubstr("the peak of all together is "));
+  // 10 m/s^2 is 1 V of each line, and more than 1.5 V of all.
+  const auto errors =
+      of(check_text(with(multisine, "maximum_voltage_v = 5.0", "maximum_voltage_v = 1.5")),
+         Severity::error);
+  ASSERT_EQ(errors.size(), 1U) << all_of(errors);
+  EXPECT_THAT(errors[0].sentence, HasSubstr("the 3 lines of the multi-sine together come to"));
+}
+
 TEST(BenchCheck, GeneratorWithoutLimits) {
   expect_one(check_text(with(smartup_bench, "maximum_voltage_v = 5.0\n", "")), Severity::warning, 7,
              "generator", "has no maximum_voltage_v");

@@ -50,6 +50,14 @@ protected:
     measurement.state(state);
     session_->update(measurement);
   }
+  void announce(wire::ExcitationState state) {
+    wire::Excitation excitation;
+    excitation.bench(tests::played_bench);
+    excitation.run(tests::played_run);
+    excitation.step(1);
+    excitation.state(state);
+    session_->announce(excitation);
+  }
   void work() { session_->work(sources_); }
   // As a service that runs: it works at least every 500 ms.
   void pass(std::chrono::nanoseconds time) {

@@ -31,14 +31,6 @@ protected:
     blocks.back().end_of_stream(false);
     return blocks;
   }
-  void excite(wire::ExcitationState state) {
-    wire::Excitation excitation;
-    excitation.bench(tests::played_bench);
-    excitation.run(tests::played_run);
-    excitation.step(1);
-    excitation.state(state);
-    session_->announce(excitation);
-  }
   // Another service takes the run over.
   void start_by_catching_up() {
     wire::Measurement running = synthetic_plan_;
@@ -57,7 +49,7 @@ protected:
     dau_.answer_requests();
   }
   void finish() {
-    excite(wire::EXCITATION_DONE);
+    announce(wire::EXCITATION_DONE);
     set_state(wire::MEASUREMENT_DONE);
     for (int i = 0; i < 20 && !session_->finished(); ++i) {
       pass(100ms);
@@ -68,7 +60,7 @@ protected:
   }
   // At the end of the run, no more samples coming.
   void expect_the_step_without_value() {
-    excite(wire::EXCITATION_DONE);
+    announce(wire::EXCITATION_DONE);
     set_state(wire::MEASUREMENT_DONE);
     for (int i = 0; i < 200 && !session_->finished(); ++i) {
       pass(100ms);
@@ -86,7 +78,7 @@ public:
   void TestBody() override {}
   std::vector<std::string> results() {
     arm_and_run();
-    excite(wire::EXCITATION_SETTLING);
+    announce(wire::EXCITATION_SETTLING);
     acs_.send(synthetic_.acs_blocks());
     dau_.send(synthetic_.dau_blocks());
     finish();
@@ -99,7 +91,7 @@ TEST_F(RunSessionCatchUp, GivesTheSameResultWithBlocksThatHadToBeAskedFor) {
   ASSERT_EQ(expected.size(), 1U);
   ASSERT_EQ(expected[0].substr(0, 4), "true");
   arm_and_run();
-  excite(wire::EXCITATION_SETTLING);
+  announce(wire::EXCITATION_SETTLING);
   acs_.send(synthetic_.acs_blocks());
   const auto blocks = synthetic_.dau_blocks();
   for (std::size_t i = 0; i < blocks.size(); ++i) {
@@ -118,12 +110,12 @@ TEST_F(RunSessionCatchUp, GivesTheSameResultWithBlocksThatHadToBeAskedFor) {
 TEST_F(RunSessionCatchUp, GivesTheSameResultAfterALinkThatWasDownUntilTheEnd) {
   const auto expected = UndisturbedRun().results();
   arm_and_run();
-  excite(wire::EXCITATION_SETTLING);
+  announce(wire::EXCITATION_SETTLING);
   acs_.send(synthetic_.acs_blocks());
   for (const wire::SampleBlock& block : synthetic_.dau_blocks()) {
     dau_.lose(block);
   }
-  excite(wire::EXCITATION_DONE);
+  announce(wire::EXCITATION_DONE);
   run_for(60s, {}); // the step has long been over, but its samples are on the way
   EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_WAITING);
   EXPECT_TRUE(published_.results().empty());
@@ -137,7 +129,7 @@ TEST_F(RunSessionCatchUp, GivesTheSameResultAfterALinkThatWasDownUntilTheEnd) {
 TEST_F(RunSessionCatchUp, TakesNoStepForOverInASourceThatIsSilent) {
   const auto blocks = synthetic_.dau_blocks();
   arm_and_run();
-  excite(wire::EXCITATION_SETTLING);
+  announce(wire::EXCITATION_SETTLING);
   acs_.send(synthetic_.acs_blocks());
   wire::SampleBlock early = blocks.front();
   for (std::int64_t& stamp_ns : early.stamps_ns()) {
@@ -149,7 +141,7 @@ TEST_F(RunSessionCatchUp, TakesNoStepForOverInASourceThatIsSilent) {
   describe(dau_);
   EXPECT_EQ(dau_.answer_requests().size(), 1U); // with nothing
   run_for(100ms, {});
-  excite(wire::EXCITATION_DONE);
+  announce(wire::EXCITATION_DONE);
   run_for(500ms, {});
   for (const wire::SampleBlock& block : blocks) {
     dau_.send({block});
@@ -170,7 +162,7 @@ TEST_F(RunSessionCatchUp, WaitsForASourceThatComesBackWithOtherChannels) {
     channel.name("data_" + channel.name());
   }
   arm_and_run();
-  excite(wire::EXCITATION_SETTLING);
+  announce(wire::EXCITATION_SETTLING);
   dau_.restart(nameless);
   describe(dau_);
   acs_.send(endless(synthetic_.acs_blocks()));
@@ -179,7 +171,7 @@ TEST_F(RunSessionCatchUp, WaitsForASourceThatComesBackWithOtherChannels) {
   EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_WAITING);
   EXPECT_THAT(published_.newest_status().message(),
               testing::StartsWith("source 'dau' has no channel "));
-  excite(wire::EXCITATION_DONE);
+  announce(wire::EXCITATION_DONE);
   run_for(10s, {&acs_, &dau_});
   EXPECT_TRUE(published_.results().empty());
   sources_[dau_.name()].description->channels(whole.channels()); // of the same session
@@ -197,7 +189,7 @@ TEST_F(RunSessionCatchUp, TakesNothingOfASourceThatComesBackWithAnotherBenchFile
   measurement.sources().push_back(planned);
   session_ = create(measurement);
   arm_and_run();
-  excite(wire::EXCITATION_SETTLING);
+  announce(wire::EXCITATION_SETTLING);
   acs_.send(endless(synthetic_.acs_blocks()));
   const wire::SourceDescription before = dau_.description();
   wire::SourceDescription other = before;
@@ -223,7 +215,7 @@ TEST_F(RunSessionCatchUp, TakesNothingOfAnotherInstrument) {
   before.serial("1");
   dau_.restart(before);
   arm_and_run();
-  excite(wire::EXCITATION_SETTLING);
+  announce(wire::EXCITATION_SETTLING);
   acs_.send(endless(synthetic_.acs_blocks()));
   for (const bool same_session : {false, true}) {
     wire::SourceDescription other = before;
@@ -253,7 +245,7 @@ TEST_F(RunSessionCatchUp, TakesNothingOfAnotherInstrument) {
 TEST_F(RunSessionCatchUp, LeavesOutASessionThatIsNotDescribedAndNamesIt) {
   const wire::SourceDescription before = dau_.description();
   arm_and_run();
-  excite(wire::EXCITATION_SETTLING);
+  announce(wire::EXCITATION_SETTLING);
   acs_.send(endless(synthetic_.acs_blocks()));
   dau_.restart(before);
   dau_.send(endless(synthetic_.dau_blocks()));
@@ -275,7 +267,7 @@ TEST_F(RunSessionCatchUp, WaitsForADescriptionThatComesLate) {
   const auto expected = UndisturbedRun().results();
   const wire::SourceDescription before = dau_.description();
   arm_and_run();
-  excite(wire::EXCITATION_SETTLING);
+  announce(wire::EXCITATION_SETTLING);
   acs_.send(endless(synthetic_.acs_blocks()));
   dau_.restart(before);
   dau_.send(endless(synthetic_.dau_blocks()));
@@ -283,7 +275,7 @@ TEST_F(RunSessionCatchUp, WaitsForADescriptionThatComesLate) {
   describe(dau_);
   run_for(1s, {&acs_, &dau_});
   EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_OK);
-  excite(wire::EXCITATION_DONE);
+  announce(wire::EXCITATION_DONE);
   run_for(1s, {&acs_, &dau_});
   finish();
   EXPECT_EQ(bits_of(published_.results()), expected);

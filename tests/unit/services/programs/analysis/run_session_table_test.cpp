@@ -29,22 +29,17 @@ protected:
   // All of the DAU, and the end of the excitation.
   void excite() {
     dau_.send(synthetic_.dau_blocks());
-    wire::Excitation excitation;
-    excitation.bench(tests::played_bench);
-    excitation.run(tests::played_run);
-    excitation.step(1);
-    excitation.state(wire::EXCITATION_DONE);
-    session_->announce(excitation);
+    announce(wire::EXCITATION_DONE);
     session_->update(measurement(wire::MEASUREMENT_DONE));
     work();
   }
   // Both sources are there, the table is not written.
-  void wait(std::chrono::seconds time) {
+  void wait(std::chrono::seconds time, wire::MeasurementState state = wire::MEASUREMENT_DONE) {
     for (auto passed = 0ms; passed < time; passed += 500ms) {
       clock_.advance(500ms);
       acs_.send_nothing();
       dau_.send_nothing();
-      session_->update(measurement(wire::MEASUREMENT_DONE));
+      session_->update(measurement(state));
       work();
     }
   }
@@ -111,6 +106,38 @@ TEST_F(TableSessionTest, EndsWithoutAStepThatNeverComes) {
   EXPECT_EQ(arm_state(), wire::ARM_FINISHED);
   EXPECT_FALSE(result().valid());
   EXPECT_THAT(result().problem(), HasSubstr("source 'acs' gave no row of its table"));
+}
+
+// Nobody announces steps, as where the system excites them itself.
+TEST_F(TableSessionTest, WaitsForAStepThatTheDauHasShown) {
+  arm_with_table();
+  dau_.send(synthetic_.dau_blocks());
+  work();
+  wait(RunSession::silence_limit + 1s, wire::MEASUREMENT_RUNNING);
+  EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_WAITING);
+  hand_out(acs_.description().session());
+  wait(RunSession::announcement_limit + 2s, wire::MEASUREMENT_RUNNING);
+  EXPECT_TRUE(result().valid()) << result().problem();
+  EXPECT_EQ(arm_state(), wire::ARM_FINISHED);
+}
+
+TEST_F(TableSessionTest, DoesNotWaitForAStepThatIsStillToBeExcited) {
+  arm_with_table();
+  const auto blocks = synthetic_.dau_blocks();
+  dau_.send({blocks.front()});
+  wait(RunSession::patience + 20s, wire::MEASUREMENT_RUNNING);
+  EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_OK);
+  EXPECT_EQ(arm_state(), wire::ARM_ARMED);
+}
+
+TEST_F(TableSessionTest, EndsWithoutAStepThatTheDauHasShownAndThatNeverComes) {
+  arm_with_table();
+  dau_.send(synthetic_.dau_blocks());
+  work();
+  wait(RunSession::silence_limit + RunSession::patience + 5s, wire::MEASUREMENT_RUNNING);
+  EXPECT_EQ(published_.newest_status().health(), wire::HEALTH_FAILED);
+  EXPECT_EQ(arm_state(), wire::ARM_FINISHED);
+  EXPECT_THAT(result().problem(), HasSubstr("gave no row of its table"));
 }
 
 TEST_F(TableSessionTest, TakesNoStepOfASessionThatTheSourceDoesNotHave) {

@@ -507,12 +507,7 @@ protected:
   wire::HealthState excite_at(double level_m_s2) {
     const tests::SyntheticRun excited{.steps = {{"40", level_m_s2}}};
     arm_and_run();
-    wire::Excitation excitation;
-    excitation.bench(tests::played_bench);
-    excitation.run(tests::played_run);
-    excitation.step(1);
-    excitation.state(wire::EXCITATION_SETTLING);
-    session_->announce(excitation);
+    announce(wire::EXCITATION_SETTLING);
     for (const wire::SampleBlock& block : excited.acs_blocks()) {
       if (block.end_of_stream()) {
         break;

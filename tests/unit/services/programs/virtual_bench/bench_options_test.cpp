@@ -47,5 +47,32 @@ TEST(BenchOptions, RefusesWhatAnInterferometerCannotShow) {
   EXPECT_TRUE(parse({"--interferometer", "632.82", "--fault", "loss=0.01,at=acs"}));
 }
 
+TEST(BenchOptions, RefusesATableOfWhatIsNoReferenceOrIsRecorded) {
+  EXPECT_TRUE(parse({"--acs-table", "t.csv"}));
+  const auto laser = parse({"--acs-table", "t.csv", "--interferometer", "632.82"});
+  ASSERT_FALSE(laser);
+  EXPECT_THAT(laser.error().message, HasSubstr("signals of an interferometer"));
+  const auto recorded = parse({"--acs-table", "t.csv", "--record-csv", "folder"});
+  ASSERT_FALSE(recorded);
+  EXPECT_THAT(recorded.error().message, HasSubstr("not for --record-csv"));
+}
+
+TEST(BenchOptions, HasPulsesBesideAReferenceAlone) {
+  const auto options = parse({"--acs-pulses"});
+  ASSERT_TRUE(options && *options);
+  EXPECT_TRUE((*options)->bench.acs_pulses);
+  const auto laser = parse({"--acs-pulses", "--interferometer", "632.82"});
+  ASSERT_FALSE(laser);
+  EXPECT_THAT(laser.error().message, HasSubstr("records no pulses"));
+}
+
+// The ranges of a multi-sine are for its peak, which is above each level and below their sum.
+TEST(BenchOptions, HasRangesForThePeakOfAMultisine) {
+  const auto options = parse({"--multisine", "2", "--frequencies", "20.5,31.5,63.5,80.5"});
+  ASSERT_TRUE(options && *options) << options.error().message;
+  EXPECT_GT((*options)->bench.highest_level_m_s2, 20.0);
+  EXPECT_LT((*options)->bench.highest_level_m_s2, 56.0); // 1.4 times the sum
+}
+
 } // namespace
 } // namespace dyncal::inline programs::virtual_bench
