@@ -158,6 +158,11 @@ class FalseDocuments(DocumentsOfRun):
         for make in (self.certify, self.issue):
             self.assert_refused("lacks samples of", make(run))
             self.assert_refused("nothing is signed or issued", make(run, "--force"))
+        shutil.copy(self.runs / "dyncal.sqlite", run.parents[1])
+        made, file = self.certify(run)
+        self.assertEqual(made.returncode, 0, made.stderr)
+        self.assertIn("single results with deviations of at most", file.read_text())
+        self.assertNotIn("to the last digit", file.read_text())
         run = self.copy("no-recording", store=False)
         (run / "recording.mcap").unlink()
         self.assert_refused("nothing shows that result.json is what was measured",

@@ -22,13 +22,20 @@ bool has_no_flag(const nlohmann::json& point) {
 
 class LaserDemo : public testing::TestWithParam<const char*> {};
 
-// Of magnitude or phase, in standard uncertainties.
-double largest_deviation(const nlohmann::json& point, const nlohmann::json& truth) {
+// Of magnitude or phase, the larger, as a part of what may be: 4 standard uncertainties of the axis
+// that is excited. Of two repetitions of a transverse axis u has few degrees of freedom, so that
+// chance exceeds 4 u in one demo of ten; there it is twice U, which knows of them.
+double deviation_to_limit(const nlohmann::json& point, const nlohmann::json& truth) {
+  const bool is_excited = point["channel"] == "dau/acceleration_z";
+  const auto limit = [&](const std::string& what) {
+    return is_excited ? 4.0 * point["u_" + what].get<double>()
+                      : 2.0 * point["U_" + what].get<double>();
+  };
   const double magnitude = point["magnitude"].get<double>() - truth["magnitude"].get<double>();
   const double phase_rad = std::remainder(
       point["phase_rad"].get<double>() - truth["phase_rad"].get<double>(), 2.0 * std::numbers::pi);
-  return std::max(std::abs(magnitude) / point["u_magnitude"].get<double>(),
-                  std::abs(phase_rad) / point["u_phase_rad"].get<double>());
+  return std::max(std::abs(magnitude) / limit("magnitude"),
+                  std::abs(phase_rad) / limit("phase_rad"));
 }
 
 TEST_P(LaserDemo, AgreesWithTheTruthWithoutAFlag) {
@@ -46,7 +53,7 @@ TEST_P(LaserDemo, AgreesWithTheTruthWithoutAFlag) {
     for (const auto& point : result["transfer_function"]) {
       if (point["channel"] == "dau/" + expected["channel"].get<std::string>() &&
           point["frequency_hz"] == expected["frequency_hz"]) {
-        EXPECT_LT(largest_deviation(point, expected), 4.0) << point;
+        EXPECT_LT(deviation_to_limit(point, expected), 1.0) << point;
         EXPECT_TRUE(has_no_flag(point)) << point["flags"];
         ++compared;
       }

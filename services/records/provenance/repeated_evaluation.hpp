@@ -6,7 +6,9 @@
 // differs by up to 0.1 u, in values, in U and in the group delay; a flag, or a closure that is
 // open, must be in the file as well. A value for which the recording has fewer samples than the
 // analysis had cannot be held against it: it is missing, and means are then held against the single
-// results alone (views/report/mean_check.hpp).
+// results alone (views/report/mean_check.hpp). The values that are there are then held within 0.1
+// u, for their clocks are known from less, and their U not at all: what all steps show goes into
+// each.
 //
 // Fails (no_result) where the two differ, naming the first difference, or where the recording is of
 // other runs; (bad_file) where it cannot be read; (interrupted). Evaluates in threads of its own.
@@ -26,7 +28,7 @@ struct RepeatedEvaluation {
   std::size_t values = 0;  // single ones of the file
   std::size_t missing = 0; // of them, see above
   bool is_same_version = false;
-  double largest_deviation_u = 0.0; // of another version; in u
+  double largest_deviation_u = 0.0; // of another version, or where some are missing; in u
 };
 
 [[nodiscard]] Expected<RepeatedEvaluation> repeat_evaluation(const StoredResult& result,

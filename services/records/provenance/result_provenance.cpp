@@ -99,12 +99,16 @@ TranslatedText said_of_mountings(const StoredResult& result) {
 }
 
 TranslatedText said_of(const RepeatedEvaluation& repeated, const StoredResult& result) {
-  if (repeated.is_same_version) {
+  if (repeated.is_same_version && repeated.missing == 0) {
     return sentences::same_digits.translated();
   }
   return in_all_languages([&](Language language) {
     const std::string largest =
         decimal(language, fmt::format("{:.2g}", repeated.largest_deviation_u));
+    if (repeated.missing > 0) {
+      return sentences::same_part(language, repeated.values - repeated.missing, repeated.values,
+                                  largest);
+    }
     return sentences::by_another_version(language, result.analysis_software,
                                          repeated.largest_deviation_u == 0.0
                                              ? sentences::same_values(language)

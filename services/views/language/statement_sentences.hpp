@@ -97,6 +97,12 @@ inline constexpr Sentence by_another_version{
     "gives {}.",
     "Die Aufzeichnung des Messlaufs, mit einer anderen Version der Software als {} noch einmal "
     "ausgewertet, ergibt {}."};
+inline constexpr Sentence same_part{
+    "The recording of the run, evaluated once more, gives {} of {} single results with deviations "
+    "of at most {} u.",
+    "Die Aufzeichnung des Messlaufs, noch einmal ausgewertet, ergibt {} der {} Einzelergebnisse "
+    "mit "
+    "Abweichungen von höchstens {} u."};
 inline constexpr Sentence recording_lacks{
     "The recording of the run lacks samples of {} of {} single results.",
     "In der Aufzeichnung des Messlaufs fehlen Abtastwerte von {} der {} Einzelergebnisse."};

@@ -1,6 +1,7 @@
 // Commands come more than once and late; each is obeyed once, and answered.
 #include "services/run/run_commands.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "services/bus/memory/memory_network.hpp"

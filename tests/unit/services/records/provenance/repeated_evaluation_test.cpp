@@ -150,5 +150,30 @@ TEST_F(RepeatedEvaluationTest, CountsWhatTheRecordingLacks) {
   EXPECT_GT(held->values, 0U);
 }
 
+// A cut recording knows its clocks from less, and what all steps show: the values before the cut
+// come out by last bits otherwise, and U by more, which is no reason to say that somebody changed
+// them.
+TEST_F(RepeatedEvaluationTest, HoldsOfACutRecordingTheValuesThatItHas) {
+  again_.points.front().of_magnitude = {.u = 0.01, .k = 2.0, .expanded = 0.02};
+  again_.points.push_back(again_.points.front());
+  again_.points.back().step = 3;
+  const StoredResult whole = again_;
+  StoredPoint& point = again_.points.front();
+  const auto by_u = [&](double times) {
+    point.magnitude = whole.points.front().magnitude + times * 0.01;
+    return hold_against(whole, again_);
+  };
+  EXPECT_TRUE(by_u(0.0));
+  EXPECT_FALSE(by_u(1e-9)); // nothing is missing yet
+  again_.points.back().valid = false;
+  point.of_magnitude.expanded = 0.03;
+  const auto held = by_u(1e-9);
+  ASSERT_TRUE(held) << held.error().message;
+  EXPECT_EQ(held->missing, 1U);
+  EXPECT_EQ(held->values, 2U);
+  EXPECT_TRUE(by_u(-0.09));
+  EXPECT_THAT(by_u(0.2).error().message, HasSubstr("value or U differ by 0.2 u"));
+}
+
 } // namespace
 } // namespace dyncal::inline records
