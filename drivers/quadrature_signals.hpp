@@ -29,6 +29,9 @@ struct QuadratureSignals {
   std::vector<double> periodic_error_rad;
   double detector_bandwidth_hz = 0.0; // 0: fast enough not to matter
   double u_skew_s = 0.0;
+  // By how much the radius differs from its mean after the correction, in equal parts of the turn
+  // from phase 0 on; empty: the phase has not gone round since the ellipse is in use.
+  std::vector<double> radius_deviation_rel;
   bool operator==(const QuadratureSignals&) const = default;
 };
 

@@ -73,4 +73,28 @@ std::optional<RadiusHarmonics> RadiusOverPhase::harmonics() const {
   return result;
 }
 
+std::vector<double> RadiusOverPhase::deviations() const {
+  constexpr std::size_t sectors_per_part = radius_sectors / radius_parts;
+  const auto circle = harmonics();
+  if (!circle) {
+    return {};
+  }
+  std::vector<double> deviations;
+  for (std::size_t part = 0; part < radius_parts; ++part) {
+    Sector sum;
+    for (std::size_t i = 0; i < sectors_per_part; ++i) { // the first sector begins at half a turn
+      const Sector& one =
+          sectors_[(part * sectors_per_part + i + radius_sectors / 2) % radius_sectors];
+      sum.squares += one.squares;
+      sum.samples += one.samples;
+    }
+    if (sum.samples == 0) {
+      return {};
+    }
+    deviations.push_back(std::sqrt(sum.squares / static_cast<double>(sum.samples)) / circle->mean -
+                         1.0);
+  }
+  return deviations;
+}
+
 } // namespace dyncal::analysis

@@ -15,11 +15,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 namespace dyncal::analysis {
 
 inline constexpr std::size_t radius_sectors = 256;
 inline constexpr std::size_t radius_orders = 4;
+inline constexpr std::size_t radius_parts = 64; // of the turn, for a picture
 
 struct RadiusHarmonics {
   double mean = 0.0;                             // rho_0
@@ -41,6 +43,8 @@ public:
   // where no sample was.
   [[nodiscard]] std::optional<double> radius(std::size_t sector) const;
   [[nodiscard]] std::optional<RadiusHarmonics> harmonics() const;
+  // Of 64 parts of the turn from phase 0 on, relative to rho_0. Empty: one has not been visited.
+  [[nodiscard]] std::vector<double> deviations() const;
 
 private:
   struct Sector {

@@ -64,7 +64,7 @@ QuadratureDemodulator::QuadratureDemodulator(const InterferometerSettings& setti
     if (stated.periodic_error_rad) {
       described_.periodic_error_rad.assign(stated.periodic_error_rad->begin(),
                                            stated.periodic_error_rad->end());
-      radius_known_ = true;
+      periodic_error_stated_ = true;
     }
   }
 }
@@ -219,6 +219,7 @@ void QuadratureDemodulator::take(const FoundEllipse& found) {
   }
   since_radius_ = 0;
   radius_known_ = false;
+  described_.radius_deviation_rel.clear();
   describe_ellipse(ellipse_, described_);
   described_.turns_covered = found.turns_covered;
   described_.ellipse_from = "the running signals, " + std::string(to_string(found.method));
@@ -234,7 +235,10 @@ void QuadratureDemodulator::look_at_radius() {
   }
   since_radius_ = 0;
   if (const auto radius = phase_->radius_over_phase().harmonics()) {
-    described_.periodic_error_rad = relative(*radius);
+    if (!periodic_error_stated_) {
+      described_.periodic_error_rad = relative(*radius);
+    }
+    described_.radius_deviation_rel = phase_->radius_over_phase().deviations();
     radius_known_ = true;
   }
 }

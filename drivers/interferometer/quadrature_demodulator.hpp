@@ -60,7 +60,7 @@ public:
   [[nodiscard]] std::optional<double> radius_ratio() const;
   [[nodiscard]] std::optional<double> radius_over_stated() const;
   void forget_radius();
-  // As it is now; changes with the ellipse, and when the residual periodic error is known.
+  // As it is now; changes with the ellipse, and when the phase has gone round with it.
   [[nodiscard]] const QuadratureSignals& described() const { return described_; }
 
 private:
@@ -82,7 +82,8 @@ private:
   std::optional<analysis::QuadraturePhase> phase_;
   std::uint64_t since_radius_ = 0; // samples since the harmonics were looked at
   bool radius_known_ = false;      // of this ellipse
-  double before_ = 0.0;            // the last two unwrapped phases, NaN where there is none
+  bool periodic_error_stated_ = false;
+  double before_ = 0.0; // the last two unwrapped phases, NaN where there is none
   double last_ = 0.0;
   double min_radius_squared_;
   double max_radius_squared_;

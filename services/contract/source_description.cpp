@@ -65,6 +65,7 @@ void message_members(auto& visit, Either<drivers::QuadratureSignals> auto& signa
   visit(signals.periodic_error_rad, message.periodic_error_rad());
   visit(signals.detector_bandwidth_hz, message.detector_bandwidth_hz());
   visit(signals.u_skew_s, message.u_skew_s());
+  visit(signals.radius_deviation_rel, message.radius_deviation_rel());
 }
 
 void message_members(auto& visit, Either<drivers::SourceDescription> auto& description,

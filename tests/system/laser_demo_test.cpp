@@ -2,6 +2,8 @@
 // TCP, a displacement over DDS, the result against the truth.
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <numbers>
 #include <string>
 
@@ -71,6 +73,9 @@ TEST_P(LaserDemo, AgreesWithTheTruthWithoutAFlag) {
     ASSERT_TRUE(std::filesystem::exists(path)) << path << "\n" << demo.output();
     EXPECT_GT(std::filesystem::file_size(path), 3000U) << path;
   }
+  std::ifstream curves(files / "ellipse-acs-displacement.csv");
+  const std::string curve_text(std::istreambuf_iterator<char>(curves), {});
+  EXPECT_THAT(curve_text, testing::HasSubstr(",measured_radius_deviation_m\n"));
   EXPECT_TRUE(truth.contains("interferometer"));
 }
 

@@ -71,6 +71,17 @@ Panel ellipse_panel(const QuadratureEllipseData& data) {
   return panel;
 }
 
+// At the middle of each part of the turn.
+Series measured_radius(const QuadratureEllipseData& data) {
+  Series series{.label = "radius, measured", .marker = Marker::dot, .radius = 2.2};
+  const double parts = static_cast<double>(data.radius_deviation_rel.size());
+  for (const double deviation_rel : data.radius_deviation_rel) {
+    const double part = static_cast<double>(series.points.size()) + 0.5;
+    series.points.push_back({360.0 * part / parts, error_nm(data, deviation_rel)});
+  }
+  return series;
+}
+
 Panel error_panel(const QuadratureEllipseData& data) {
   Panel panel;
   panel.x_label = "phase in degrees";
@@ -95,7 +106,17 @@ Panel error_panel(const QuadratureEllipseData& data) {
     }
     panel.series.push_back(std::move(series));
   }
+  if (!data.radius_deviation_rel.empty()) {
+    panel.series.push_back(measured_radius(data));
+  }
   return panel;
+}
+
+// Of the part of the turn that this phase is in.
+double measured_radius_m(const QuadratureEllipseData& data, int point) {
+  const std::size_t parts = data.radius_deviation_rel.size();
+  const std::size_t part = static_cast<std::size_t>(point) * parts / points_per_turn % parts;
+  return error_nm(data, data.radius_deviation_rel[part]) / nm;
 }
 
 std::string csv_of(const QuadratureEllipseData& data) {
@@ -112,7 +133,7 @@ std::string csv_of(const QuadratureEllipseData& data) {
   for (std::size_t i = 0; i < data.periodic_error_rad.size(); ++i) {
     fmt::format_to(std::back_inserter(csv), ",error_order_{}_m", i + 1);
   }
-  csv += '\n';
+  csv += data.radius_deviation_rel.empty() ? "\n" : ",measured_radius_deviation_m\n";
   for (int point = 0; point <= points_per_turn; ++point) {
     const double phase_rad = phase_of(point);
     const Pair raw = raw_pair(ellipse, phase_rad);
@@ -123,6 +144,9 @@ std::string csv_of(const QuadratureEllipseData& data) {
     for (std::size_t i = 0; i < data.periodic_error_rad.size(); ++i) {
       csv += ',' + csv_number(error_nm(data, data.periodic_error_rad[i]) / nm *
                               std::sin(static_cast<double>(i + 1) * phase_rad));
+    }
+    if (!data.radius_deviation_rel.empty()) {
+      csv += ',' + csv_number(measured_radius_m(data, point));
     }
     csv += '\n';
   }
@@ -140,6 +164,10 @@ Figure quadrature_ellipse_figure(const QuadratureEllipseData& data, const std::s
   if (!data.periodic_error_rad.empty()) {
     picture.below.emplace_back("Each order is drawn from phase 0: how they lie to each other is "
                                "not known.");
+  }
+  if (!data.radius_deviation_rel.empty()) {
+    picture.below.emplace_back("Dots: by how much the radius of the corrected signals differs from "
+                               "its mean, measured, as the displacement of the same angle.");
   }
   return {name, std::move(picture), csv_of(data)};
 }

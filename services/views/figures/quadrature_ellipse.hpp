@@ -6,6 +6,9 @@
 //   corrected  X = R cos(phi), Y = R sin(phi)
 //   remains    +- u of the ellipse as a band; for the orders k = 1..4 the amplitude e_k that is
 //              stated, as e_k sin(k phi): how the orders lie to each other is not known
+//   measured   (rho - rho_0) / rho_0 of the corrected radius, in parts of the turn, as dots: what
+//              is left of the signals themselves. A radius that changes goes with a phase error of
+//              the same order and amplitude, a quarter of a period of it aside
 //
 // Errors are in nm: e of a turn of the displacement. The CSV holds the curves.
 #pragma once
@@ -24,7 +27,9 @@ struct QuadratureEllipseData {
   double displacement_per_turn_m = 0.0;
   std::vector<double> u_ellipse_rad{};      // orders 1 and 2; empty: not stated
   std::vector<double> periodic_error_rad{}; // orders 1 to 4, amplitudes; empty: not stated
-  std::string below{};                      // a paragraph; may be empty
+  // In equal parts of the turn from phase 0 on; empty: not measured.
+  std::vector<double> radius_deviation_rel{};
+  std::string below{}; // a paragraph; may be empty
 };
 
 [[nodiscard]] Figure quadrature_ellipse_figure(const QuadratureEllipseData& data,

@@ -67,6 +67,7 @@ std::vector<figures::Figure> interferometer_figures(const RunOutcome& outcome,
         .displacement_per_turn_m = signals.displacement_per_turn_m,
         .u_ellipse_rad = signals.u_ellipse_rad,
         .periodic_error_rad = signals.periodic_error_rad,
+        .radius_deviation_rel = signals.radius_deviation_rel,
         .below = fmt::format("Ellipse: {}, {:.3g} turns of phase.", signals.ellipse_from,
                              signals.turns_covered)};
     drawn.push_back(figures::quadrature_ellipse_figure(data, file_name("ellipse", channel)));

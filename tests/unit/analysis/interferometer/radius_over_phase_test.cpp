@@ -34,10 +34,24 @@ TEST(RadiusOverPhase, GivesTheHarmonicsOfTheRadius) {
   EXPECT_NEAR(harmonics->amplitude[3], 1.5, 2e-3);
 }
 
+TEST(RadiusOverPhase, GivesItsDeviationsFromPhaseZeroOn) {
+  RadiusOverPhase radii;
+  visit(radii, -0.5, 0.5);
+  const std::vector<double> deviations = radii.deviations();
+  ASSERT_EQ(deviations.size(), radius_parts);
+  for (std::size_t i = 0; i < deviations.size(); ++i) {
+    const double phi = 2.0 * std::numbers::pi * (static_cast<double>(i) + 0.5) / radius_parts;
+    const double expected =
+        3.0 * std::cos(phi - 0.3) + 2.0 * std::cos(2.0 * phi) + 1.5 * std::sin(4.0 * phi + 0.2);
+    EXPECT_NEAR(500.0 * deviations[i], expected, 0.02) << i; // the mean of a part
+  }
+}
+
 TEST(RadiusOverPhase, AShortArcHasNone) {
   RadiusOverPhase radii;
   visit(radii, -0.4, 0.4);
   EXPECT_FALSE(radii.harmonics());
+  EXPECT_TRUE(radii.deviations().empty());
   EXPECT_TRUE(radii.radius(radius_sectors / 2));
   EXPECT_FALSE(radii.radius(0));
   EXPECT_FALSE(RadiusOverPhase().harmonics());

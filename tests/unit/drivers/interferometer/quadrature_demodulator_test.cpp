@@ -1,6 +1,8 @@
 #include "drivers/interferometer/quadrature_demodulator.hpp"
 
+#include <array>
 #include <cmath>
+#include <complex>
 #include <numbers>
 #include <random>
 
@@ -93,6 +95,34 @@ TEST(QuadratureDemodulator, LearnsTheResidualPeriodicError) {
   ASSERT_EQ(errors.size(), 4U);
   EXPECT_GT(errors[3], 0.01);
   EXPECT_LT(errors[3], 0.04);
+  // Radius over phase, as measured: the fourth order of it is that error.
+  const std::vector<double>& deviations = demodulator.described().radius_deviation_rel;
+  ASSERT_EQ(deviations.size(), analysis::radius_parts);
+  std::complex<double> fourth;
+  for (std::size_t i = 0; i < deviations.size(); ++i) {
+    fourth += std::polar(2.0 * deviations[i] / static_cast<double>(deviations.size()),
+                         -8.0 * std::numbers::pi * (static_cast<double>(i) + 0.5) /
+                             static_cast<double>(deviations.size()));
+  }
+  EXPECT_NEAR(std::abs(fourth), errors[3], 0.05 * errors[3]);
+}
+
+// Of a stated ellipse, too, whose periodic error is not replaced.
+TEST(QuadratureDemodulator, ShowsTheRadiusOfAStatedEllipse) {
+  DeviceSettings device;
+  device.seconds = 0.5;
+  InterferometerSettings settings{.u1 = "u1", .u2 = "u2"};
+  const std::array<double, 4> stated{0.0, 0.0, 0.0, 0.006};
+  analysis::Ellipse moved = device.ellipse;
+  moved.p += 0.01 * device.ellipse.radius;
+  settings.ellipse = StatedEllipse{.ellipse = moved, .periodic_error_rad = stated};
+  QuadratureDemodulator demodulator(settings, {}, device.rate_hz);
+  turns_of(demodulator, record_of(device), 34);
+  const drivers::QuadratureSignals& described = demodulator.described();
+  EXPECT_EQ(described.periodic_error_rad, std::vector<double>(stated.begin(), stated.end()));
+  ASSERT_EQ(described.radius_deviation_rel.size(), analysis::radius_parts);
+  EXPECT_NEAR(described.radius_deviation_rel.front(), -0.01, 0.002); // the centre is too far right
+  EXPECT_NEAR(described.radius_deviation_rel[analysis::radius_parts / 2], 0.01, 0.002);
 }
 
 TEST(QuadratureDemodulator, CountsByCause) {

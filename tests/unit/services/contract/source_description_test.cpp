@@ -61,7 +61,8 @@ TEST(SourceDescription, ComesBackFromItsMessageAsItWasSent) {
                               .u_ellipse_rad = {1e-3, 2e-3},
                               .periodic_error_rad = {0.0, 0.1, 0.2, 0.3},
                               .detector_bandwidth_hz = 1e6,
-                              .u_skew_s = 1e-9}};
+                              .u_skew_s = 1e-9,
+                              .radius_deviation_rel = {1e-4, -1e-4}}};
   std::set<wire::StampInstant> instants;
   for (int i = 0; i <= static_cast<int>(drivers::StampInstant::frame_end); ++i) {
     sent.stamp_instant = static_cast<drivers::StampInstant>(i);

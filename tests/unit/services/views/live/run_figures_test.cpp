@@ -147,7 +147,8 @@ TEST_F(RunFigures, HaveTheEllipseOfTheCurrentRun) {
                                     .radius_u1 = 0.64,
                                     .ellipse_from = "the running signals",
                                     .u_ellipse_rad = {1e-4, 1e-4},
-                                    .periodic_error_rad = {1e-4, 1e-4, 1e-4, 1e-3}});
+                                    .periodic_error_rad = {1e-4, 1e-4, 1e-4, 1e-3},
+                                    .radius_deviation_rel = {1e-3, -1e-3}});
   wire::SourceDescription message = to_message(acs);
   message.bench("acc-1");
   message.source("acs");
@@ -157,6 +158,7 @@ TEST_F(RunFigures, HaveTheEllipseOfTheCurrentRun) {
   EXPECT_EQ(drawn.back().name, "ellipse-acs-displacement");
   EXPECT_EQ(drawn.back().picture.title.title, "Interferometer of acs/displacement");
   EXPECT_EQ(drawn.back().picture.panels.at(0).series.size(), 4U);
+  EXPECT_EQ(drawn.back().picture.panels.at(1).series.back().points.size(), 2U);
   const network::Bench& bench = *laboratory_.bench("acc-1");
   const network::Run earlier = bench.runs.at("r1");
   EXPECT_EQ(run_figures(bench, earlier, channel, ErrorBars::standard).size(), 5U);
