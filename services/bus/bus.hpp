@@ -49,8 +49,12 @@ namespace dyncal::bus {
 // A DDS implementation, as parse_vendor() gives it.
 enum class Vendor : std::uint8_t;
 
+// Whose implementations the programs of the laboratory have (packet_size.hpp).
+enum class LaboratoryVendors : bool { mixed, same };
+
 struct ParticipantOptions {
   Vendor vendor{}; // the one that parse_vendor() knows first
+  LaboratoryVendors laboratory = LaboratoryVendors::mixed;
   int domain = 0;
   std::string name;               // shown by discovery tools
   std::vector<std::string> peers; // addresses to find others at when multicast cannot be used

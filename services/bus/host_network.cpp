@@ -2,12 +2,14 @@
 
 #include <arpa/inet.h>
 #include <array>
+#include <cstring>
 #include <filesystem>
 #include <ifaddrs.h>
 #include <memory>
 #include <net/if.h>
 #include <netdb.h>
 #include <netinet/in.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -72,6 +74,18 @@ base::Expected<std::string> interface_address(const std::string& name_or_address
               "network interface \"" + name_or_address +
                   "\" is not one that is up with an IPv4 address on this machine, which has " +
                   known);
+}
+
+std::optional<int> interface_mtu(const std::string& name) {
+  const int socket_fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (socket_fd < 0) {
+    return std::nullopt;
+  }
+  ifreq request{};
+  std::strncpy(request.ifr_name, name.c_str(), sizeof request.ifr_name - 1);
+  const bool is_known = ioctl(socket_fd, SIOCGIFMTU, &request) == 0;
+  close(socket_fd);
+  return is_known ? std::optional(request.ifr_mtu) : std::nullopt;
 }
 
 base::Expected<std::vector<std::string>> resolve_peers(const std::vector<std::string>& hosts) {

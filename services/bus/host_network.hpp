@@ -5,6 +5,7 @@
 // thread. resolve_peers() may wait for a name server.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,9 @@ struct HostAddress {
 // IPv4 address of an interface given by name ("eth0") or by one of this machine's addresses. Fails
 // (network) naming those there are.
 [[nodiscard]] base::Expected<std::string> interface_address(const std::string& name_or_address);
+
+// Longest packet that an interface sends whole, headers of IP included; empty: not known.
+[[nodiscard]] std::optional<int> interface_mtu(const std::string& name);
 
 // IPv4 addresses of hosts given by address or name. Fails (network) naming the first that has none.
 [[nodiscard]] base::Expected<std::vector<std::string>>

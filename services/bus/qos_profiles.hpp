@@ -57,6 +57,10 @@ struct EndpointQos {
   int for_late_joiners; // of a writer, kept when everybody has them; Fast DDS keeps all of the
                         // above
   bool reliable = true; // what is lost comes again; otherwise nobody waits, and it stays lost
+  // Of a writer: write() sends, not a thread of the implementation, where up to 1500 blocks may
+  // wait. A reader that joins late and asks for what was written before (ours ask for none) may
+  // then get a new block before those: never where order is all that it has.
+  bool sent_by_write = false;
 };
 
 [[nodiscard]] constexpr EndpointQos qos_of_writer(Profile profile, bool secured = false) {
@@ -65,11 +69,11 @@ struct EndpointQos {
   case Profile::samples:
     return {true, true, late_joiner_blocks, late_joiner_blocks};
   case Profile::live_samples:
-    return {true, false, blocks * repair_blocks, live_late_joiner_blocks};
+    return {true, false, blocks * repair_blocks, live_late_joiner_blocks, true, true};
   case Profile::live_records:
-    return {true, false, repair_records, repair_records};
+    return {true, false, repair_records, repair_records, true, true};
   case Profile::paced_samples:
-    return {true, true, late_joiner_blocks, paced_late_joiner_blocks};
+    return {true, true, late_joiner_blocks, paced_late_joiner_blocks, true, true};
   case Profile::command:
     return {false, true, untaken_commands, 0};
   case Profile::catch_up:

@@ -1,7 +1,9 @@
 // Load of dyncal-dau: units send real datagrams over UDP at their real pace to a running dyncal-dau
 // while one subscriber reads all of it. Reports lost samples, the processor time of dyncal-dau, as
 // a fraction of one core and for each block, and the latency from datagram to reader.
-//   dau_load [--dds V] [--units 16] [--sensors 4] [--rate 1000] [--channels 13] [--seconds 20]
+//   dau_load [--dds V] [--vendors mixed|same] [--units 16] [--sensors 4] [--rate 1000]
+//            [--channels 13] [--seconds 20]
+// Each unit is a bench.
 // With `--against PROGRAM [--rounds 5]` an older dyncal-dau takes turns with this one. Printed is
 // the ratio of what a block costs them, each in its quickest round: others disturb, and never help.
 // Exit status 1 when a sample was lost, or the ratio is above --max-ratio.
@@ -42,6 +44,7 @@ using Clock = std::chrono::steady_clock;
 
 struct Load {
   std::string dds = "fastdds";
+  std::string vendors = "mixed";
   int domain = tests::own_dds_domain();
   std::string program = DYNCAL_DAU;
   std::string against; // another one; empty: none
@@ -275,6 +278,8 @@ struct Outcome {
 Outcome run(const Load& load) {
   bus::ParticipantOptions options;
   options.vendor = *bus::parse_vendor(load.dds);
+  options.laboratory =
+      load.vendors == "same" ? bus::LaboratoryVendors::same : bus::LaboratoryVendors::mixed;
   options.domain = load.domain;
   auto network = bus::Participant::create(options);
   if (!network) {
@@ -285,6 +290,9 @@ Outcome run(const Load& load) {
   const tests::TemporaryFolder folder;
   const std::uint16_t port = tests::own_udp_port();
   std::vector<std::string> arguments{"--dds", load.dds, "--domain", std::to_string(load.domain)};
+  if (load.vendors != "mixed") { // an older one has no such option
+    arguments.insert(arguments.end(), {"--vendors", load.vendors});
+  }
   for (auto& file : write_benches(load, folder, port)) {
     arguments.push_back(std::move(file));
   }
@@ -317,8 +325,8 @@ Outcome run(const Load& load) {
   program.send(SIGTERM);
   const auto exit = program.wait(tests::patience);
 
-  fmt::print("{}: {} units x {} sensors x {} S/s x {} channels for {} s\n", load.dds, load.units,
-             load.sensors, load.rate_hz, load.channels, load.seconds);
+  fmt::print("{}, {}: {} units x {} sensors x {} S/s x {} channels for {} s\n", load.dds,
+             load.vendors, load.units, load.sensors, load.rate_hz, load.channels, load.seconds);
   subscriber.report(sent);
   if (exit) {
     fmt::print("CPU of dyncal-dau, start and end included: {:.3f} of one core\n",
@@ -358,6 +366,7 @@ int main(int argc, char** argv) {
   Load load;
   CLI::App app{"Load of dyncal-dau"};
   app.add_option("--dds", load.dds);
+  app.add_option("--vendors", load.vendors)->check(CLI::IsMember({"mixed", "same"}));
   app.add_option("--domain", load.domain);
   app.add_option("--program", load.program);
   app.add_option("--against", load.against);

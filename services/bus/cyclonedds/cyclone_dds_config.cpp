@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include "services/bus/host_network.hpp"
+#include "services/bus/packet_size.hpp"
 #include "services/bus/qos_profiles.hpp"
 
 namespace dyncal::bus {
@@ -12,6 +13,18 @@ std::string element(const std::string& name, const std::string& text) {
   return "<" + name + ">" + text + "</" + name + ">";
 }
 
+// Packets with headers, and repairs, stay below the payload; a fragment leaves room for both.
+constexpr int repair_bytes = 72;
+constexpr int fragment_headers_bytes = 100;
+// Of a secured participant (decisions/25-secured-blocks.md).
+constexpr int secured_message_bytes = 65'000;
+constexpr int secured_fragment_bytes = 64'000;
+
+std::string packets(int message_bytes, int fragment_bytes) {
+  return element("MaxMessageSize", std::to_string(message_bytes) + "B") +
+         element("FragmentSize", std::to_string(fragment_bytes) + "B");
+}
+
 std::string general(const ParticipantOptions& options, const std::string& address, bool secured) {
   std::string text;
   if (!address.empty()) {
@@ -19,10 +32,9 @@ std::string general(const ParticipantOptions& options, const std::string& addres
   }
   // Multicast finds others; samples always travel to each reader by itself, as Fast DDS does it.
   text += element("AllowMulticast", options.multicast ? "spdp" : "false");
-  // Packets with headers stay below max_udp_payload_bytes, which is the most that Fast DDS receives
-  // here.
-  text += secured ? element("MaxMessageSize", "65000B") + element("FragmentSize", "64000B")
-                  : element("MaxMessageSize", "1400B") + element("FragmentSize", "1300B");
+  const int message_bytes = packet_payload_bytes(options) - repair_bytes;
+  text += secured ? packets(secured_message_bytes, secured_fragment_bytes)
+                  : packets(message_bytes, message_bytes - fragment_headers_bytes);
   return element("General", text);
 }
 

@@ -20,10 +20,12 @@
 #include "services/bus/adapters.hpp"
 #include "services/bus/default_partition.hpp"
 #include "services/bus/fastdds/fast_dds_discovery.hpp"
+#include "services/bus/fastdds/fast_dds_endpoint_qos.hpp"
 #include "services/bus/fastdds/fast_dds_names.hpp"
 #include "services/bus/fastdds/fast_dds_participant_qos.hpp"
 #include "services/bus/fastdds/fast_dds_type.hpp"
 #include "services/bus/host_network.hpp"
+#include "services/bus/packet_size.hpp"
 #include "services/bus/qos_profiles.hpp"
 #include "services/bus/write_within.hpp"
 #include "services/bus/writer_instance.hpp"
@@ -32,61 +34,6 @@ namespace dyncal::bus {
 namespace {
 
 namespace dds = eprosima::fastdds::dds;
-
-template <class Rep, class Period>
-fast_dds::Duration duration(std::chrono::duration<Rep, Period> time) {
-  const auto seconds = std::chrono::floor<std::chrono::seconds>(time);
-  const auto rest = std::chrono::duration_cast<std::chrono::nanoseconds>(time - seconds);
-  return {static_cast<std::int32_t>(seconds.count()), static_cast<std::uint32_t>(rest.count())};
-}
-
-template <class Qos>
-void set_common(const EndpointQos& wanted, Qos& qos) {
-  qos.reliability().kind =
-      wanted.reliable ? dds::RELIABLE_RELIABILITY_QOS : dds::BEST_EFFORT_RELIABILITY_QOS;
-  qos.durability().kind =
-      wanted.transient_local ? dds::TRANSIENT_LOCAL_DURABILITY_QOS : dds::VOLATILE_DURABILITY_QOS;
-  qos.history().kind = wanted.keep_all ? dds::KEEP_ALL_HISTORY_QOS : dds::KEEP_LAST_HISTORY_QOS;
-  qos.history().depth = wanted.keep_all ? 1 : wanted.samples_per_key;
-  // 0 is unlimited. With the defaults (5000, 10, 400) the eleventh key is never written, or is
-  // received, acknowledged and dropped.
-  qos.resource_limits().max_samples = 0;
-  qos.resource_limits().max_instances = 0;
-  qos.resource_limits().max_samples_per_instance = wanted.samples_per_key;
-  qos.resource_limits().allocated_samples = 0;
-  // The mode DYNAMIC_REUSABLE cannot deliver the end of an instance.
-  qos.endpoint().history_memory_policy = fast_dds::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
-  qos.data_sharing().off();
-#ifdef DYNCAL_FAST_DDS_3
-  qos.representation().m_value = {dds::XCDR_DATA_REPRESENTATION};
-#endif
-}
-
-dds::DataWriterQos writer_qos(const EndpointQos& wanted, bool secured) {
-  dds::DataWriterQos qos;
-  set_common(wanted, qos);
-  qos.reliability().max_blocking_time = duration(write_attempt);
-  qos.writer_data_lifecycle().autodispose_unregistered_instances = false;
-  qos.publish_mode().kind = dds::ASYNCHRONOUS_PUBLISH_MODE;
-  auto& times = qos.reliable_writer_qos().times;
-  // 3 s by default: so long a lost last packet would stay unnoticed.
-  fast_dds::heartbeat_period(times) =
-      duration(secured ? fast_dds_secured_heartbeat : fast_dds_heartbeat);
-  fast_dds::nack_response_delay(times) = duration(std::chrono::seconds(0));
-  // With one in every packet, a Fast DDS reader asks hundreds of times a second for every sample
-  // that is on the way: a link of 10 Mbit/s is then full of requests and of what they ask for.
-  qos.reliable_writer_qos().disable_heartbeat_piggyback = true;
-  return qos;
-}
-
-dds::DataReaderQos reader_qos(const EndpointQos& wanted) {
-  dds::DataReaderQos qos;
-  set_common(wanted, qos);
-  // The default of 5 ms divides the rate from a Cyclone DDS writer by twenty.
-  auto& times = qos.reliable_reader_qos().times;
-  fast_dds::heartbeat_response_delay(times) = duration(std::chrono::seconds(0));
-  return qos;
-}
 
 // The lowest number that no participant of this process has. It gives the ports to listen at, and
 // those of the first 32 are where peers without multicast look; by itself Fast DDS counts on for
@@ -205,7 +152,7 @@ public:
   }
 
   bool wait_for_acknowledgments(std::chrono::nanoseconds limit) override {
-    return writer_->wait_for_acknowledgments(duration(limit)) == fast_dds::ok;
+    return writer_->wait_for_acknowledgments(fast_dds::duration(limit)) == fast_dds::ok;
   }
 
 private:
@@ -285,8 +232,8 @@ private:
 class FastDdsParticipant : public UntypedParticipant {
 public:
   FastDdsParticipant(std::shared_ptr<FastDdsParticipantHandle> participant, bool secured,
-                     std::vector<std::string> addresses)
-      : participant_(std::move(participant)), secured_(secured) {
+                     int packet_bytes, std::vector<std::string> addresses)
+      : participant_(std::move(participant)), secured_(secured), packet_bytes_(packet_bytes) {
     addresses_->set(std::move(addresses));
   }
 
@@ -308,7 +255,8 @@ public:
                   "Fast DDS refuses to publish in partition " + partitions.front());
     }
     dds::DataWriter* fast_writer = publisher->create_datawriter(
-        fast_topic, writer_qos(qos_of_writer(profile, secured_), secured_));
+        fast_topic, secured_ ? fast_dds_secured_writer_qos(qos_of_writer(profile, true))
+                             : fast_dds_writer_qos(qos_of_writer(profile), packet_bytes_));
     if (fast_writer == nullptr) {
       participant_->get()->delete_publisher(publisher);
       return fail(base::ErrorCode::network, "Fast DDS refuses a writer of topic " + topic);
@@ -335,7 +283,7 @@ public:
     auto listener = wake_up ? std::make_unique<RingOnData>(wake_up) : nullptr;
     auto fast_reader =
         std::make_unique<FastDdsReader>(participant_, subscriber, type, std::move(listener));
-    if (!fast_reader->open(fast_topic, reader_qos(qos_of_reader(profile, secured_)))) {
+    if (!fast_reader->open(fast_topic, fast_dds_reader_qos(qos_of_reader(profile, secured_)))) {
       return fail(base::ErrorCode::network, "Fast DDS refuses a reader of topic " + topic);
     }
     if (wake_up) {
@@ -361,6 +309,7 @@ public:
 private:
   std::shared_ptr<FastDdsParticipantHandle> participant_;
   bool secured_;
+  int packet_bytes_;
   std::shared_ptr<OwnAddresses> addresses_ = std::make_shared<OwnAddresses>();
 };
 
@@ -382,8 +331,9 @@ std::vector<std::string> announced_addresses(const std::string& interface_name) 
 
 base::Expected<std::unique_ptr<UntypedParticipant>>
 create_fast_dds_participant(const ParticipantOptions& options, const SecurityFiles* security) {
-  auto transports =
-      std::make_shared<TransportState>(std::make_shared<RefusedPackets>(options.warn));
+  auto transports = std::make_shared<TransportState>(
+      std::make_shared<RefusedPackets>(options.warn),
+      security == nullptr ? packet_payload_bytes(options) : max_udp_payload_bytes);
   DYNCAL_TRY(auto qos, fast_dds_participant_qos(options, security, transports));
   auto addresses = announced_addresses(options.interface_name);
   auto number = std::make_unique<ParticipantNumber>();
@@ -403,7 +353,7 @@ create_fast_dds_participant(const ParticipantOptions& options, const SecurityFil
       std::make_shared<FastDdsParticipantHandle>(
           std::move(number), std::move(discovery), participant,
           std::make_shared<MalformedMessages>(options.warn), transports->refused),
-      security != nullptr, std::move(addresses));
+      security != nullptr, transports->packet_bytes, std::move(addresses));
 }
 
 } // namespace dyncal::bus

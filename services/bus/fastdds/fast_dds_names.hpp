@@ -2,6 +2,9 @@
 // name stand where they are, behind DYNCAL_FAST_DDS_3.
 #pragma once
 
+#include <chrono>
+#include <cstdint>
+
 #if __has_include(<fastdds/LibrarySettings.hpp>)
 #define DYNCAL_FAST_DDS_3
 
@@ -64,3 +67,14 @@ inline Duration& heartbeat_response_delay(rtps::ReaderTimes& times) {
 } // namespace dyncal::bus::fast_dds
 
 #endif
+
+namespace dyncal::bus::fast_dds {
+
+template <class Rep, class Period>
+Duration duration(std::chrono::duration<Rep, Period> time) {
+  const auto seconds = std::chrono::floor<std::chrono::seconds>(time);
+  const auto rest = std::chrono::duration_cast<std::chrono::nanoseconds>(time - seconds);
+  return {static_cast<std::int32_t>(seconds.count()), static_cast<std::uint32_t>(rest.count())};
+}
+
+} // namespace dyncal::bus::fast_dds

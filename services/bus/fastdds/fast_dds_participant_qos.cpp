@@ -17,6 +17,7 @@
 #include "services/bus/fastdds/screened_transport.hpp"
 #include "services/bus/host_network.hpp"
 #include "services/bus/line_limit.hpp"
+#include "services/bus/packet_size.hpp"
 #include "services/bus/qos_profiles.hpp"
 
 namespace dyncal::bus {
@@ -31,9 +32,6 @@ constexpr std::uint32_t discovery_port(int domain) {
 }
 constexpr std::uint32_t locators_per_participant =
     16; // hosts with containers easily have more than the default of 4
-
-// The most that UDP carries, as a multiple of four (participant_security.hpp).
-constexpr int max_secured_message_bytes = 65500;
 
 bool is_loopback(const std::string& address) {
   return address.starts_with("127.");
@@ -86,14 +84,14 @@ void deliver_through_sockets_only() {
 #endif
 }
 
-void set_transport(const std::string& address, bool secured,
+void set_transport(const std::string& address, int message_bytes,
                    const std::shared_ptr<TransportState>& state, dds::DomainParticipantQos& qos) {
   auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
   udp->sendBufferSize = wanted_receive_buffer_bytes;
   udp->receiveBufferSize = wanted_receive_buffer_bytes;
   // Of what is sent. A screened transport receives longer ones, too; without the screen it also
   // caps what can be received, and Cyclone DDS repairs with packets of up to 1456 bytes.
-  udp->maxMessageSize = secured ? max_secured_message_bytes : max_udp_payload_bytes;
+  udp->maxMessageSize = static_cast<std::uint32_t>(message_bytes);
   udp->maxInitialPeersRange = participants_per_host;
   // With the loopback interface in this list Fast DDS sends nothing at all; the locators keep to
   // it.
@@ -208,7 +206,8 @@ fast_dds_participant_qos(const ParticipantOptions& options, const SecurityFiles*
   }
   DYNCAL_TRY(const auto peers, resolve_peers(options.peers));
 
-  set_transport(address, security != nullptr, options.screened ? state : nullptr, qos);
+  set_transport(address, security == nullptr ? state->packet_bytes : longest_payload_bytes,
+                options.screened ? state : nullptr, qos);
   const bool multicast = options.multicast && !is_loopback(address);
   set_locators(options.domain, multicast, address, qos);
   set_discovery(options.domain, multicast, address.empty() ? "127.0.0.1" : address, peers, qos);

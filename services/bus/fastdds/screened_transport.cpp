@@ -112,7 +112,7 @@ public:
       return true;
     }
     progress_.sent({bytes, count});
-    if (count > max_udp_payload_bytes) {
+    if (count > static_cast<std::uint32_t>(state_->packet_bytes)) {
       return send_split({bytes, count}, *below, *destinations_begin, *destinations_end, timeout);
     }
     const auto now = std::chrono::steady_clock::now();
@@ -222,15 +222,16 @@ private:
   }
 
   // Of a secured participant, whose messages may be longer than a packet.
-  static bool send_split(std::span<const unsigned char> message, rtps::SenderResource& below,
-                         vendor::LocatorsIterator& begin, vendor::LocatorsIterator& end,
-                         const std::chrono::steady_clock::time_point& timeout) {
+  bool send_split(std::span<const unsigned char> message, rtps::SenderResource& below,
+                  vendor::LocatorsIterator& begin, vendor::LocatorsIterator& end,
+                  const std::chrono::steady_clock::time_point& timeout) const {
     rtps::LocatorList_t destinations;
     for (; begin != end; ++begin) {
       destinations.push_back(*begin);
     }
     bool sent = true;
-    for (const auto& part : split_message(message, max_udp_payload_bytes)) {
+    for (const auto& part :
+         split_message(message, static_cast<std::size_t>(state_->packet_bytes))) {
       vendor::Locators first(destinations.begin());
       vendor::Locators last(destinations.end());
       sent = below.send(part.data(), static_cast<std::uint32_t>(part.size()), &first, &last,

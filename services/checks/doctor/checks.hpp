@@ -1,5 +1,6 @@
-// The judges: what was observed becomes findings. Each looks at one thing and always gives at least
-// one finding, so that a report shows what was looked at. Plain functions, any thread.
+// The judges: what was observed becomes findings. Each looks at one thing and gives at least one
+// finding unless it says otherwise, so that a report shows what was looked at. Plain functions, any
+// thread.
 #pragma once
 
 #include <optional>
@@ -38,6 +39,10 @@ struct LaboratoryView;
 // What the network between the hosts lets through, as far as it shows: multicast, unicast of
 // discovery, samples.
 [[nodiscard]] Findings check_network(const LaboratoryView& view);
+
+// Whether all participants have the implementation of this program, and what that means for
+// --vendors. Nothing where others are there and may be.
+[[nodiscard]] Findings check_vendors(const LaboratoryView& view, bool is_said_to_be_one);
 
 // What is lost on the way to every program that answers, and back.
 [[nodiscard]] Findings check_loss(const LaboratoryView& view);

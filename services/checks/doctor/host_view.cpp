@@ -4,7 +4,6 @@
 #include <ifaddrs.h>
 #include <net/if.h>
 #include <poll.h>
-#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -82,13 +81,6 @@ std::optional<bool> multicast_comes_back() {
   return sender.send(trial_group, port) && receiver.receive();
 }
 
-int mtu_of(const std::string& name) {
-  ifreq request{};
-  std::strncpy(request.ifr_name, name.c_str(), sizeof(request.ifr_name) - 1);
-  const drivers::FileDescriptor any(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
-  return ioctl(any.number(), SIOCGIFMTU, &request) == 0 ? request.ifr_mtu : 0;
-}
-
 // Up, not loopback, and with an address of its own, but of IPv6 alone.
 std::vector<std::string> interfaces_without_ipv4() {
   std::set<std::string> ipv4;
@@ -137,7 +129,7 @@ std::vector<HostInterface> interfaces_of_host() {
     inet_ntop(AF_INET, &address.sin_addr, text.data(), text.size());
     interfaces.push_back({.name = one->ifa_name,
                           .address = text.data(),
-                          .mtu = mtu_of(one->ifa_name),
+                          .mtu = bus::interface_mtu(one->ifa_name).value_or(0),
                           .loopback = (one->ifa_flags & IFF_LOOPBACK) != 0,
                           .prefix_bits = prefix_bits_of(one->ifa_netmask),
                           .multicast = (one->ifa_flags & IFF_MULTICAST) != 0,

@@ -48,6 +48,12 @@ void add_network_options(CLI::App& app, NetworkOptions& options) {
   app.add_option("--dds", options.dds, "DDS implementation that carries the messages")
       ->check(vendor_validator())
       ->capture_default_str();
+  app.add_option("--vendors", options.vendors,
+                 "same: every program of the laboratory, of other tools as well, has the "
+                 "implementation of --dds, and packets are as long as the network carries")
+      ->envname("DYNCAL_VENDORS")
+      ->check(CLI::IsMember({"mixed", "same"}))
+      ->capture_default_str();
   app.add_option("--domain", options.domain, "DDS domain: one per laboratory")
       ->envname("DYNCAL_DOMAIN")
       ->check(CLI::Range(0, 232))

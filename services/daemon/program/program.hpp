@@ -17,7 +17,8 @@ class App;
 namespace dyncal::inline daemon {
 
 struct NetworkOptions {
-  std::string dds; // as parse_vendor() takes it
+  std::string dds;               // as parse_vendor() takes it
+  std::string vendors = "mixed"; // "mixed" or "same"
   int domain = 0;
   std::vector<std::string> peers;
   bool no_multicast = false;
@@ -25,7 +26,7 @@ struct NetworkOptions {
   std::string security; // folder (services/security/identity_folder.hpp); empty: not secured
 };
 
-// --dds, --domain, --peer, --no-multicast, --interface, --security
+// --dds, --vendors, --domain, --peer, --no-multicast, --interface, --security
 void add_network_options(CLI::App& app, NetworkOptions& options);
 
 // --metrics ADDRESS:PORT, for programs that run for long; empty: not given.

@@ -21,6 +21,8 @@ Expected<bus::ParticipantOptions> participant_options(const NetworkOptions& opti
   DYNCAL_TRY(const auto vendor, bus::parse_vendor(options.dds));
   bus::ParticipantOptions participant;
   participant.vendor = vendor;
+  participant.laboratory =
+      options.vendors == "same" ? bus::LaboratoryVendors::same : bus::LaboratoryVendors::mixed;
   participant.domain = options.domain;
   participant.name = program;
   participant.peers = options.peers;

@@ -132,6 +132,7 @@ Findings judge(const LaboratoryLook& look, const NetworkOptions& network,
                                                        : std::vector<std::string>()));
   append(findings, look.about_multicast);
   append(findings, doctor::check_network(view));
+  append(findings, doctor::check_vendors(view, network.vendors == "same"));
   append(findings, doctor::check_loss(view));
   append(findings, about_security(network, strangers, look.host));
   append(findings, doctor::check_variables(view, look.host));

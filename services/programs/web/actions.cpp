@@ -87,8 +87,9 @@ Expected<std::vector<std::string>> stated_arguments(const Json& body, const std:
 std::vector<std::string> run_arguments(const ActionOptions& options, const std::string& name) {
   const NetworkOptions& network = options.network;
   const fs::path file = options.benches_folder / name;
-  std::vector<std::string> arguments{"run",       file.string(), "--dds",
-                                     network.dds, "--domain",    std::to_string(network.domain)};
+  std::vector<std::string> arguments{
+      "run",       file.string(),   "--dds",    network.dds,
+      "--vendors", network.vendors, "--domain", std::to_string(network.domain)};
   if (!options.runs_folder.empty()) {
     arguments.insert(arguments.end(), {"--folder", options.runs_folder.string()});
   }

@@ -9,9 +9,11 @@
 namespace dyncal::bus {
 
 struct TransportState {
-  explicit TransportState(std::shared_ptr<RefusedPackets> counter) : refused(std::move(counter)) {}
+  TransportState(std::shared_ptr<RefusedPackets> counter, int packet)
+      : refused(std::move(counter)), packet_bytes(packet) {}
 
   std::shared_ptr<RefusedPackets> refused; // counts what is dropped
+  int packet_bytes;                        // no packet that is sent is longer
   std::atomic<bool> listens{false};        // set when the participant is there
 };
 
