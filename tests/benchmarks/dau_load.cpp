@@ -325,8 +325,9 @@ Outcome run(const Load& load) {
   program.send(SIGTERM);
   const auto exit = program.wait(tests::patience);
 
-  fmt::print("{}, {}: {} units x {} sensors x {} S/s x {} channels for {} s\n", load.dds,
-             load.vendors, load.units, load.sensors, load.rate_hz, load.channels, load.seconds);
+  fmt::print("{}, {}: {} units x {} sensors x {} S/s x {} channels for {} s, in {:.1f} s\n",
+             load.dds, load.vendors, load.units, load.sensors, load.rate_hz, load.channels,
+             load.seconds, elapsed_s);
   subscriber.report(sent);
   if (exit) {
     fmt::print("CPU of dyncal-dau, start and end included: {:.3f} of one core\n",
