@@ -14,7 +14,10 @@
 #include <array>
 #include <atomic>
 #include <csignal>
+#include <cstdio>
+#include <exception>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <memory>
@@ -150,7 +153,7 @@ public:
                                                    "*", wake_up_)),
         status_(*network.reader<wire::SourceStatus>(bus::topics::source_status, bus::Profile::state,
                                                     "*", wake_up_)),
-        sources_(load.units * load.sensors) {}
+        sources_(std::size_t{load.units} * load.sensors) {}
 
   void take() {
     wake_up_->wait_until(Clock::now() + std::chrono::milliseconds(100));
@@ -245,6 +248,15 @@ std::vector<std::string> write_benches(const Load& load, const tests::TemporaryF
   return files;
 }
 
+std::vector<std::string> arguments_of(const Load& load, std::vector<std::string> benches) {
+  std::vector<std::string> arguments{"--dds", load.dds, "--domain", std::to_string(load.domain)};
+  if (load.vendors != "mixed") { // an older one has no such option
+    arguments.insert(arguments.end(), {"--vendors", load.vendors});
+  }
+  std::ranges::move(benches, std::back_inserter(arguments));
+  return arguments;
+}
+
 // Processor time of the only program that this thread has started.
 double cpu_of_child_s() {
   pid_t child = 0;
@@ -289,14 +301,8 @@ Outcome run(const Load& load) {
   Subscriber subscriber(load, *network);
   const tests::TemporaryFolder folder;
   const std::uint16_t port = tests::own_udp_port();
-  std::vector<std::string> arguments{"--dds", load.dds, "--domain", std::to_string(load.domain)};
-  if (load.vendors != "mixed") { // an older one has no such option
-    arguments.insert(arguments.end(), {"--vendors", load.vendors});
-  }
-  for (auto& file : write_benches(load, folder, port)) {
-    arguments.push_back(std::move(file));
-  }
-  tests::ProgramRun program(load.program, arguments, folder.path());
+  tests::ProgramRun program(load.program, arguments_of(load, write_benches(load, folder, port)),
+                            folder.path());
   if (!wait_until_ready(subscriber)) {
     fmt::print(stderr, "dyncal-dau is not there:\n{}", program.errors());
     return {};
@@ -363,7 +369,7 @@ int compare(Load load) {
 
 } // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
   Load load;
   CLI::App app{"Load of dyncal-dau"};
   app.add_option("--dds", load.dds);
@@ -380,4 +386,7 @@ int main(int argc, char** argv) {
   app.add_option("--seconds", load.seconds);
   CLI11_PARSE(app, argc, argv);
   return load.against.empty() ? run(load).status : compare(load);
+} catch (const std::exception& problem) {
+  std::fprintf(stderr, "dau_load: %s\n", problem.what());
+  return 2;
 }

@@ -18,7 +18,7 @@ static dds_entity_t checked(dds_entity_t entity, const char* what) {
   return entity;
 }
 
-static int write_blocks(const struct speed_options* options, dds_entity_t writer) {
+static int write_blocks(const struct SpeedOptions* options, dds_entity_t writer) {
   dds_publication_matched_status_t matched = {0};
   while (matched.current_count == 0) {
     dds_sleepfor(DDS_MSECS(5));
@@ -41,12 +41,12 @@ static int write_blocks(const struct speed_options* options, dds_entity_t writer
   return report_writing();
 }
 
-static int read_blocks(const struct speed_options* options, dds_entity_t participant,
+static int read_blocks(const struct SpeedOptions* options, dds_entity_t participant,
                        dds_entity_t reader) {
   const dds_entity_t waitset = dds_create_waitset(participant);
   dds_set_status_mask(reader, DDS_DATA_AVAILABLE_STATUS);
   dds_waitset_attach(waitset, reader, 0);
-  struct arrivals arrivals = await_arrivals(options);
+  struct Arrivals arrivals = await_arrivals(options);
   while (is_awaited(&arrivals)) {
     dds_waitset_wait(waitset, NULL, 0, DDS_SECS(1));
     void* samples[most_taken] = {NULL};
@@ -65,7 +65,7 @@ static int read_blocks(const struct speed_options* options, dds_entity_t partici
 }
 
 int main(int argc, char** argv) {
-  const struct speed_options options = speed_options_of(argc, argv);
+  const struct SpeedOptions options = speed_options_of(argc, argv);
   const dds_entity_t participant =
       checked(dds_create_participant((dds_domainid_t)options.domain, NULL, NULL), "participant");
   const dds_entity_t topic =

@@ -16,7 +16,7 @@ namespace {
 
 using namespace dyncal;
 
-bus::Participant join(const speed_options& options, int argc, char** argv) {
+bus::Participant join(const SpeedOptions& options, int argc, char** argv) {
   bus::ParticipantOptions participant;
   participant.vendor = bus::parse_vendor(argc > 5 ? argv[5] : "").value();
   participant.laboratory = argc > 6 && std::string_view(argv[6]) == "same"
@@ -28,7 +28,7 @@ bus::Participant join(const speed_options& options, int argc, char** argv) {
   return bus::Participant::create(participant).value();
 }
 
-int write_blocks(const speed_options& options, bus::Participant& participant) {
+int write_blocks(const SpeedOptions& options, bus::Participant& participant) {
   auto writer =
       participant
           .writer<wire::SampleBlock>(SPEED_TOPIC, bus::Profile::paced_samples, SPEED_PARTITION)
@@ -51,13 +51,13 @@ int write_blocks(const speed_options& options, bus::Participant& participant) {
   return report_writing();
 }
 
-int read_blocks(const speed_options& options, bus::Participant& participant) {
+int read_blocks(const SpeedOptions& options, bus::Participant& participant) {
   const auto bell = std::make_shared<bus::WakeUp>();
   auto reader =
       participant
           .reader<wire::SampleBlock>(SPEED_TOPIC, bus::Profile::live_samples, SPEED_PARTITION, bell)
           .value();
-  arrivals arrivals = await_arrivals(&options);
+  Arrivals arrivals = await_arrivals(&options);
   while (is_awaited(&arrivals)) {
     bell->wait_until(std::chrono::steady_clock::now() + std::chrono::seconds(1));
     reader.take(
@@ -69,7 +69,7 @@ int read_blocks(const speed_options& options, bus::Participant& participant) {
 } // namespace
 
 int main(int argc, char** argv) try {
-  const speed_options options = speed_options_of(argc, argv);
+  const SpeedOptions options = speed_options_of(argc, argv);
   bus::Participant participant = join(options, argc, argv);
   return options.writes ? write_blocks(options, participant) : read_blocks(options, participant);
 } catch (const std::exception& problem) {

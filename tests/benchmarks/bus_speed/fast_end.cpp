@@ -84,7 +84,7 @@ Qos every_block() {
   return qos;
 }
 
-int write_blocks(const speed_options& options) {
+int write_blocks(const SpeedOptions& options) {
   DomainParticipant* participant = join(options.domain);
   PublisherQos publishing;
   publishing.partition().push_back(SPEED_PARTITION);
@@ -111,7 +111,7 @@ int write_blocks(const speed_options& options) {
   return report_writing();
 }
 
-int read_blocks(const speed_options& options) {
+int read_blocks(const SpeedOptions& options) {
   DomainParticipant* participant = join(options.domain);
   SubscriberQos subscribing;
   subscribing.partition().push_back(SPEED_PARTITION);
@@ -119,7 +119,7 @@ int read_blocks(const speed_options& options) {
       checked(checked(participant->create_subscriber(subscribing), "subscriber")
                   ->create_datareader(topic_of(participant), every_block<DataReaderQos>()),
               "reader");
-  arrivals arrivals = await_arrivals(&options);
+  Arrivals arrivals = await_arrivals(&options);
   Block block;
   SampleInfo info;
   while (is_awaited(&arrivals)) {
@@ -136,7 +136,7 @@ int read_blocks(const speed_options& options) {
 } // namespace
 
 int main(int argc, char** argv) {
-  const speed_options options = speed_options_of(argc, argv);
+  const SpeedOptions options = speed_options_of(argc, argv);
   const int status = options.writes ? write_blocks(options) : read_blocks(options);
   std::_Exit(status); // what Fast DDS takes down is not measured
 }

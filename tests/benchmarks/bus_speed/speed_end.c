@@ -14,30 +14,30 @@ int64_t monotonic_ns(void) {
   return (int64_t)now.tv_sec * second_ns + now.tv_nsec;
 }
 
-struct speed_options speed_options_of(int argc, char** argv) {
+struct SpeedOptions speed_options_of(int argc, char** argv) {
   if (argc < 5) {
     fprintf(stderr, "usage: %s write|read DOMAIN BYTES BLOCKS\n", argv[0]);
     exit(2);
   }
-  return (struct speed_options){.writes = strcmp(argv[1], "write") == 0,
-                                .domain = atoi(argv[2]),
-                                .bytes = strtoull(argv[3], NULL, 10),
-                                .blocks = strtoull(argv[4], NULL, 10)};
+  return (struct SpeedOptions){.writes = strcmp(argv[1], "write") == 0,
+                               .domain = atoi(argv[2]),
+                               .bytes = strtoull(argv[3], NULL, 10),
+                               .blocks = strtoull(argv[4], NULL, 10)};
 }
 
-struct arrivals await_arrivals(const struct speed_options* options) {
-  return (struct arrivals){.wanted = options->blocks,
+struct Arrivals await_arrivals(const struct SpeedOptions* options) {
+  return (struct Arrivals){.wanted = options->blocks,
                            .last_ns = monotonic_ns(),
                            .latency_ns = calloc(options->blocks, sizeof(int64_t))};
 }
 
-bool is_awaited(const struct arrivals* arrivals) {
+bool is_awaited(const struct Arrivals* arrivals) {
   const int64_t patience_s = (arrivals->blocks == 0 ? 6 : 1) * LONGEST_SILENCE_S;
   return arrivals->blocks < arrivals->wanted &&
          monotonic_ns() - arrivals->last_ns < patience_s * second_ns;
 }
 
-void note_arrival(struct arrivals* arrivals, int64_t written_ns) {
+void note_arrival(struct Arrivals* arrivals, int64_t written_ns) {
   const int64_t now_ns = monotonic_ns();
   if (arrivals->blocks == 0) {
     arrivals->first_ns = now_ns;
@@ -61,7 +61,7 @@ static double cpu_s(void) {
          1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
 }
 
-int report_arrivals(struct arrivals* arrivals) {
+int report_arrivals(struct Arrivals* arrivals) {
   const size_t n = arrivals->blocks;
   qsort(arrivals->latency_ns, n, sizeof(int64_t), by_size);
   const int64_t p50_ns = n == 0 ? 0 : arrivals->latency_ns[n / 2];

@@ -27,14 +27,14 @@ extern "C" {
 #define SPEED_TOPIC "DauSamples"
 #define LONGEST_SILENCE_S 10
 
-struct speed_options {
+struct SpeedOptions {
   bool writes;
   int domain;
   size_t bytes;
   size_t blocks;
 };
 
-struct arrivals {
+struct Arrivals {
   size_t blocks;
   size_t wanted;
   int64_t first_ns;
@@ -45,15 +45,15 @@ struct arrivals {
 int64_t monotonic_ns(void);
 
 /* Ends the process where there are too few. */
-struct speed_options speed_options_of(int argc, char** argv);
+struct SpeedOptions speed_options_of(int argc, char** argv);
 
-struct arrivals await_arrivals(const struct speed_options* options);
-bool is_awaited(const struct arrivals* arrivals);
+struct Arrivals await_arrivals(const struct SpeedOptions* options);
+bool is_awaited(const struct Arrivals* arrivals);
 /* Blocks come in order; one beyond those wanted is left out. */
-void note_arrival(struct arrivals* arrivals, int64_t written_ns);
+void note_arrival(struct Arrivals* arrivals, int64_t written_ns);
 
 /* Print the line of an end; return its exit status: 1 where blocks are missing. */
-int report_arrivals(struct arrivals* arrivals);
+int report_arrivals(struct Arrivals* arrivals);
 int report_writing(void);
 
 #ifdef __cplusplus
