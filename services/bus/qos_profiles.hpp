@@ -13,6 +13,10 @@ namespace dyncal::bus {
 // the oldest that everybody has.
 inline constexpr int late_joiner_blocks = 1500;
 
+// The same in Fast DDS where packets are long, and so many blocks are on their way: a reader's
+// socket then holds no more of them than it reads in some milliseconds, and none is dropped.
+inline constexpr int fast_dds_window_blocks = 64;
+
 // Blocks of one source that a writer that never waits keeps for repairs, dropping the oldest
 // whether everybody has it or not: 5 s of blocks of 20 ms. Bounds its memory to 16 MB a source.
 inline constexpr int repair_blocks = 250;
@@ -138,5 +142,9 @@ inline constexpr int participants_per_host = 32;
 inline constexpr std::uint32_t max_sample_bytes = 64U << 20U;
 
 inline constexpr int wanted_receive_buffer_bytes = 4 << 20;
+
+// After so many bytes Fast DDS asks its readers what they have, where a block is a packet; it is
+// the size of its socket's buffer.
+inline constexpr int fast_dds_long_packets_bytes = 256 << 10;
 
 } // namespace dyncal::bus

@@ -49,11 +49,15 @@ dds::DataWriterQos common_writer_qos(const EndpointQos& wanted,
 
 dds::DataWriterQos fast_dds_writer_qos(const EndpointQos& wanted, int packet_bytes) {
   dds::DataWriterQos qos = common_writer_qos(wanted, fast_dds_heartbeat);
+  const bool has_long_packets = packet_bytes > max_udp_payload_bytes;
   qos.publish_mode().kind =
       wanted.sent_by_write ? dds::SYNCHRONOUS_PUBLISH_MODE : dds::ASYNCHRONOUS_PUBLISH_MODE;
   // A block that is one packet is there or lost, and on no narrow link: to ask at once shortens the
   // wait for what did not fit into the buffer of a socket.
-  qos.reliable_writer_qos().disable_heartbeat_piggyback = packet_bytes <= max_udp_payload_bytes;
+  qos.reliable_writer_qos().disable_heartbeat_piggyback = !has_long_packets;
+  if (has_long_packets && wanted.keep_all && wanted.sent_by_write) {
+    qos.resource_limits().max_samples_per_instance = fast_dds_window_blocks;
+  }
   return qos;
 }
 

@@ -84,10 +84,10 @@ void deliver_through_sockets_only() {
 #endif
 }
 
-void set_transport(const std::string& address, int message_bytes,
+void set_transport(const std::string& address, int message_bytes, int send_buffer_bytes,
                    const std::shared_ptr<TransportState>& state, dds::DomainParticipantQos& qos) {
   auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
-  udp->sendBufferSize = wanted_receive_buffer_bytes;
+  udp->sendBufferSize = static_cast<std::uint32_t>(send_buffer_bytes);
   udp->receiveBufferSize = wanted_receive_buffer_bytes;
   // Of what is sent. A screened transport receives longer ones, too; without the screen it also
   // caps what can be received, and Cyclone DDS repairs with packets of up to 1456 bytes.
@@ -206,7 +206,10 @@ fast_dds_participant_qos(const ParticipantOptions& options, const SecurityFiles*
   }
   DYNCAL_TRY(const auto peers, resolve_peers(options.peers));
 
-  set_transport(address, security == nullptr ? state->packet_bytes : longest_payload_bytes,
+  const bool secured = security != nullptr;
+  const bool has_long_packets = !secured && state->packet_bytes > max_udp_payload_bytes;
+  set_transport(address, secured ? longest_payload_bytes : state->packet_bytes,
+                has_long_packets ? fast_dds_long_packets_bytes : wanted_receive_buffer_bytes,
                 options.screened ? state : nullptr, qos);
   const bool multicast = options.multicast && !is_loopback(address);
   set_locators(options.domain, multicast, address, qos);
