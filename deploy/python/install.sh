@@ -57,7 +57,7 @@ export PIP_DISABLE_PIP_VERSION_CHECK=1
 # Wheels of dyncal and of the bridge, into $work.
 build_own_wheels() {
   local settings=()
-  [[ -z ${DYNCAL_BUILT:-} ]] || settings=("-Ccmake.define.DYNCAL_BUILT=$DYNCAL_BUILT")
+  [[ -z ${DYNCAL_BUILT:-} ]] || settings=("--config-settings=cmake.define.DYNCAL_BUILT=$DYNCAL_BUILT")
   echo "building the packages dyncal and dyncal-bridge"
   "$1" -m pip wheel -q --no-deps -w "$work" "${settings[@]}" "$top/deploy/python" ||
     fail "the package dyncal cannot be built: it needs a compiler, CMake, Eigen and tl-expected" \
@@ -127,4 +127,15 @@ if ! cmp -s "$work/unit" "$unit"; then
   echo "$unit: installed"
 fi
 "$program" --help >/dev/null || fail "$program does not start"
+# The unit's user has no way into somebody's home, where Pythons of pyenv and conda are.
+for place in "$environment" "$(readlink -f "$environment/bin/python3")"; do
+  while [[ $place != / && $(stat -c %A "$place") == *[xt] ]]; do
+    place=$(dirname "$place")
+  done
+  [[ $place == / ]] || {
+    echo "install.sh: systemd cannot start it, since only $(stat -c %U "$place") may use $place;" \
+      "take another --prefix, or Debian's Python by PYTHON=/usr/bin/python3" >&2
+    exit 0
+  }
+done
 echo "next: write /etc/dyncal/bridge.toml, then: systemctl enable --now dyncal-bridge"

@@ -2,5 +2,6 @@
 
 raise ImportError(
     "dyncal.models: this wheel of dyncal was built without Ceres; build one with "
-    "-Ccmake.define.DYNCAL_MODELS=ON where Ceres is installed (Debian: libceres-dev)"
+    "--config-settings=cmake.define.DYNCAL_MODELS=ON where Ceres is installed "
+    "(Debian: libceres-dev)"
 )

@@ -1,18 +1,28 @@
-"""deploy/python/install.sh: bridge_install_test.py BUILD FOLDER
+"""deploy/python/install.sh: bridge_install_test.py BUILD FOLDER [CMAKE]
 
 A folder of wheels is filled once, from PyPI and this tree (with the analysis library of BUILD);
-from it the bridge is installed without a network, twice, and starts; its unit is right. Skips where
-the wheels cannot be had.
+from it the bridge is installed without a network, twice, and starts; its unit is right. The same
+on a host with systemd and without a network: nothing runs unless it is configured, the results of a
+run come to the broker, a bridge that is killed or hangs is started again by systemd, wrong settings
+are not tried again, and it stops with success. Skips where the wheels, or such a host, cannot be
+had.
 """
 
+import json
 import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import sys
+import tempfile
 import unittest
 
 TOP = pathlib.Path(__file__).resolve().parents[2]
+sys.path.append(str(TOP / "tests/systemd"))
+from bridge_peers import messages_in, wait_until  # noqa: E402
+from systemd_host import Failure, SystemdHost, why_not  # noqa: E402
+
 INSTALL = TOP / "deploy/python/install.sh"
 SKIPPED = 77
 PATIENCE_S = 1500
@@ -45,7 +55,21 @@ class Installation(unittest.TestCase):
         self.assertIn("is as it should be", again.stdout)
         self.assertNotIn("installed", again.stdout)
         self.check_program(prefix / "bin/dyncal-bridge")
+        self.check_closed_python(prefix, again)
         self.check_unit(prefix)
+
+    def check_closed_python(self, prefix, last):
+        """Who may go on to the unit is told so, who may not is told why."""
+        places = (prefix / "bin", pathlib.Path(sys.executable))
+        closed = [
+            above
+            for one in places
+            for above in one.resolve().parents
+            if not above.stat().st_mode & 1
+        ]
+        self.assertEqual("next: " in last.stdout, not closed, last.stdout)
+        if closed:
+            self.assertIn("systemd cannot start it, since only", last.stderr)
 
     def check_program(self, program):
         settings = FOLDER / "bridge.toml"
@@ -82,6 +106,105 @@ class Installation(unittest.TestCase):
             self.assertIn(sentence, done.stderr)
 
 
+UNIT = "dyncal-bridge"
+DOMAIN = 7  # the host's network is its own
+# The unit allows 30 s to a bridge that does not turn.
+IMPATIENT = "[Service]\nWatchdogSec=6\nTimeoutStopSec=4\n"
+BROKER = "/run/broker.conf"
+
+
+class Service(unittest.TestCase):
+    """The unit under a systemd of its own, with Debian's mosquitto beside it."""
+
+    @classmethod
+    def setUpClass(cls):
+        # Of the version that the wheels are for, and not in a home.
+        python = shutil.which(f"python3.{sys.version_info.minor}", path="/usr/bin:/usr/local/bin")
+        missing = "" if python else "no Python of this version is in /usr/bin"
+        if not shutil.which("mosquitto_sub"):
+            missing = "there is no mosquitto"
+        if reason := why_not() or missing:
+            print(f"SKIPPED: the unit is not tried: {reason}")
+            raise unittest.SkipTest(reason)
+        folder = pathlib.Path(tempfile.mkdtemp(prefix="dyncal-bridge-unit-"))
+        cls.addClassCleanup(shutil.rmtree, folder, ignore_errors=True)
+        try:
+            cls.host = SystemdHost(folder, BUILD, CMAKE)
+        except Failure as failure:
+            print(f"SKIPPED: systemd does not start here: {failure}")
+            raise unittest.SkipTest("no systemd") from failure
+        cls.addClassCleanup(cls.host.close)
+        cls.shared = cls.host.shared
+        done = cls.host.call("env", f"PYTHON={python}", INSTALL, "--wheels", WHEELS)
+        if done.returncode != 0 or "next: " not in done.stdout:
+            raise AssertionError(f"install.sh on the host: {done.stdout}{done.stderr}")
+
+    def test_the_unit(self):
+        host = self.host
+        host.write("etc/dyncal/options", f"DYNCAL_OPTIONS=--domain {DOMAIN}\n")
+        host.write(f"etc/systemd/system/{UNIT}.service.d/impatient.conf", IMPATIENT)
+        host.systemctl("daemon-reload")
+        host.systemctl("start", UNIT)
+        self.assertEqual(self.state(), "inactive")
+        self.assertEqual(host.show(UNIT, "ConditionResult"), "no")
+        host.write(BROKER, "listener 1883 127.0.0.1\nallow_anonymous true\n")
+        broker = subprocess.Popen(host.command("mosquitto", "-c", BROKER))
+        self.addCleanup(broker.wait)
+        self.addCleanup(broker.kill)
+        settings = '[mqtt]\nbroker = "127.0.0.1:1883"\n[foxglove]\n[opcua]\n'
+        host.write("etc/dyncal/bridge.toml", settings)
+        if host.call("systemctl", "start", UNIT).returncode != 0:
+            self.fail(f"{UNIT} does not start: {host.journal(UNIT)[-3000:]}")
+        self.assertEqual(self.state(), "active")
+        print(f"{UNIT}: {host.show(UNIT, 'StatusText')}")
+        self.wait_for_journal("connected to 127.0.0.1")
+        self.a_run_comes_to_the_broker()
+        self.is_started_again_after(signal.SIGKILL)
+        self.is_started_again_after(signal.SIGSTOP)
+        host.systemctl("stop", UNIT)
+        self.assertEqual((self.state(), host.show(UNIT, "Result")), ("inactive", "success"))
+        host.write("etc/dyncal/bridge.toml", "[smoke]\n")
+        self.assertNotEqual(host.call("systemctl", "start", UNIT).returncode, 0)
+        self.assertEqual((self.state(), self.restarts()), ("failed", 0))
+        self.assertIn("smoke", host.journal(UNIT))
+
+    def a_run_comes_to_the_broker(self):
+        demo = ["dyncal", "demo", "--domain", DOMAIN, "--output", self.shared / "demo"]
+        done = self.host.call(*demo, "--repetitions", 1)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        (result,) = self.shared.rglob("result.json")
+        stated = {
+            (point["channel"], point["step"]): point["magnitude"]
+            for point in json.loads(result.read_text())["points"]
+        }
+        self.assertGreater(len(stated), 10)
+        wait_until(lambda: self.points().keys() == stated.keys(), "all points at the broker")
+        self.assertEqual(self.points(), stated)
+
+    def points(self):
+        """What is retained of them."""
+        words = ["mosquitto_sub", "-v", "-t", "dyncal/benches/+/points/#", "--retained-only"]
+        seen = self.host.call(*words, "-W", 2).stdout
+        return {(m["channel"], m["step"]): m["magnitude"] for _, m in messages_in(seen)}
+
+    def is_started_again_after(self, number):
+        before = self.restarts()
+        self.host.signal_unit(UNIT, number)
+        wait_until(
+            lambda: self.restarts() == before + 1 and self.state() == "active",
+            f"systemd to start the bridge again after {number.name}",
+        )
+
+    def wait_for_journal(self, text):
+        wait_until(lambda: text in self.host.journal(UNIT), f"'{text}' in the journal")
+
+    def state(self):
+        return self.host.show(UNIT, "ActiveState")
+
+    def restarts(self):
+        return int(self.host.show(UNIT, "NRestarts"))
+
+
 def make_wheels():
     if list(WHEELS.glob("dyncal_bridge-*.whl")):
         shutil.rmtree(WHEELS)  # of an earlier tree
@@ -97,4 +220,5 @@ if __name__ == "__main__":
     FOLDER.mkdir(parents=True, exist_ok=True)
     WHEELS = FOLDER / "wheels"
     make_wheels()
-    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
+    CMAKE = sys.argv[3] if len(sys.argv) > 3 else "cmake"
+    unittest.main(argv=[sys.argv[0], *sys.argv[4:]])

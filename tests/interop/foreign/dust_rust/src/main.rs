@@ -10,6 +10,7 @@ use dust_dds::{
         domain_participant_factory::DomainParticipantFactory,
     },
     infrastructure::{
+        domain::DomainId,
         listener::NO_LISTENER,
         qos::{DataReaderQos, DataWriterQos, PublisherQos, QosKind, SubscriberQos},
         qos_policy::{
@@ -25,6 +26,7 @@ use dust_dds::{
     subscription::{data_reader::DataReader, subscriber::Subscriber},
     xtypes::type_support::TypeSupport,
 };
+use std::collections::HashSet;
 use std::time::Instant;
 
 #[allow(dead_code)]
@@ -35,6 +37,7 @@ mod wire {
 
 const SAMPLES_A_BLOCK: u64 = 20;
 const BLOCK: std::time::Duration = std::time::Duration::from_millis(20);
+const LONGEST_DISCOVERY: std::time::Duration = std::time::Duration::from_secs(4);
 
 macro_rules! topic {
     ($participant:expr, $name:literal, $message:ident) => {
@@ -149,21 +152,56 @@ fn taken<T: TypeSupport + 'static>(reader: &DataReader<T>) -> Vec<T> {
         .unwrap_or_default() // nothing there
 }
 
-fn read(participant: &DomainParticipant, subscriber: &Subscriber, bench: &str, counts: &[String]) {
+/// Prints what was not printed before, until it has all or there are no writers.
+///
+/// dust_dds 0.16 takes the end of any reader or writer of a participant of Cyclone DDS for the end of
+/// that participant, and does not find it again: at the end of a run, say, when its readers go. What
+/// was on its way is then lost, and who joins anew gets it.
+fn read_until_left(subscriber: &Subscriber, participant: &DomainParticipant, wanted: &mut Wanted) {
     let points = reader!(participant, subscriber, "CalibrationResult", CalibrationResult);
     let curves = reader!(participant, subscriber, "TransferFunction", TransferFunction);
-    let (mut results, mut functions) =
-        (counts[0].parse::<usize>().unwrap(), counts[1].parse::<usize>().unwrap());
-    while results > 0 || functions > 0 {
-        for one in taken(&points).iter().filter(|one| one.bench == bench) {
-            print_result(one);
-            results = results.saturating_sub(1);
+    let joined = Instant::now();
+    let mut was_matched = false;
+    while wanted.results > 0 || wanted.functions > 0 {
+        for one in taken(&points).iter().filter(|one| one.bench == wanted.bench) {
+            let key = format!("{} {} {} {}", one.run, one.channel, one.step, one.repetition);
+            if wanted.printed.insert(key) {
+                print_result(one);
+                wanted.results = wanted.results.saturating_sub(1);
+            }
         }
-        for one in taken(&curves).iter().filter(|one| one.bench == bench) {
-            print_function(one);
-            functions = functions.saturating_sub(1);
+        for one in taken(&curves).iter().filter(|one| one.bench == wanted.bench) {
+            if wanted.printed.insert(format!("{} {}", one.run, one.channel)) {
+                print_function(one);
+                wanted.functions = wanted.functions.saturating_sub(1);
+            }
         }
+        let matched = !curves.get_matched_publications().unwrap().is_empty();
+        let is_another = curves.get_subscription_matched_status().unwrap().total_count > 1;
+        if is_another || !matched && (was_matched || joined.elapsed() > LONGEST_DISCOVERY) {
+            return;
+        }
+        was_matched = matched;
         std::thread::sleep(BLOCK);
+    }
+}
+
+struct Wanted {
+    bench: String,
+    results: usize,
+    functions: usize,
+    printed: HashSet<String>,
+}
+
+fn read(domain: DomainId, partition: &PartitionQosPolicy, mut wanted: Wanted) {
+    while wanted.results > 0 || wanted.functions > 0 {
+        let participant = join(domain);
+        let qos = SubscriberQos { partition: partition.clone(), ..Default::default() };
+        let subscriber =
+            participant.create_subscriber(QosKind::Specific(qos), NO_LISTENER, NO_STATUS).unwrap();
+        read_until_left(&subscriber, &participant, &mut wanted);
+        participant.delete_contained_entities().unwrap();
+        DomainParticipantFactory::get_instance().delete_participant(&participant).unwrap();
     }
 }
 
@@ -229,21 +267,29 @@ fn write(participant: &DomainParticipant, publisher: &Publisher, bench: &str, se
     std::thread::sleep(std::time::Duration::from_secs(3)); // repairs of the last blocks
 }
 
+fn join(domain: DomainId) -> DomainParticipant {
+    DomainParticipantFactory::get_instance()
+        .create_participant(domain, QosKind::Default, NO_LISTENER, NO_STATUS)
+        .unwrap()
+}
+
 fn main() {
     let words: Vec<String> = std::env::args().collect();
+    let domain = words[2].parse().unwrap();
     let partition = PartitionQosPolicy { name: vec![words[3].clone()] };
-    let participant = DomainParticipantFactory::get_instance()
-        .create_participant(words[2].parse().unwrap(), QosKind::Default, NO_LISTENER, NO_STATUS)
-        .unwrap();
     if words[1] == "write" {
+        let participant = join(domain);
         let qos = PublisherQos { partition, ..Default::default() };
         let publisher =
             participant.create_publisher(QosKind::Specific(qos), NO_LISTENER, NO_STATUS).unwrap();
         write(&participant, &publisher, &words[4], words[5].parse().unwrap());
     } else {
-        let qos = SubscriberQos { partition, ..Default::default() };
-        let subscriber =
-            participant.create_subscriber(QosKind::Specific(qos), NO_LISTENER, NO_STATUS).unwrap();
-        read(&participant, &subscriber, &words[4], &words[5..]);
+        let wanted = Wanted {
+            bench: words[4].clone(),
+            results: words[5].parse().unwrap(),
+            functions: words[6].parse().unwrap(),
+            printed: HashSet::new(),
+        };
+        read(domain, &partition, wanted);
     }
 }
