@@ -1,14 +1,20 @@
 #!/usr/bin/env bash
 # Installs dyncal-bridge into a Python environment of its own, with its unit:
 #
-#   deploy/python/install.sh [--prefix DIR] [--plugs foxglove,mqtt,opcua] [--wheels FOLDER]
-#   deploy/python/install.sh --make-wheels FOLDER [--plugs ...]
+#   deploy/python/install.sh [--prefix DIR] [--plugs foxglove,mqtt,opcua] [--secured]
+#                            [--wheels FOLDER]
+#   deploy/python/install.sh --make-wheels FOLDER [--plugs ...] [--secured]
 #
 # The environment is DIR/lib/dyncal-bridge, the program DIR/bin/dyncal-bridge, the unit
 # DIR/lib/systemd/system/dyncal-bridge.service; DIR is /usr/local unless given. Packages come from
 # PyPI, and the package dyncal is compiled from this tree; --wheels takes all from a folder that
 # --make-wheels has filled on another computer (of the same Python and architecture), and needs
 # neither network nor compiler. Called again, it does what is missing, and says what it did.
+#
+# --secured: for a secured laboratory. The package cyclonedds, 0.10, is then compiled on Debian's
+# library (its packages cyclonedds-dev and python3-dev), which has the plug-ins that those of PyPI
+# lack; where the bridge runs it needs libddsc0debian. A folder that --make-wheels --secured has
+# filled needs no word more.
 #
 # PYTHON names another interpreter than python3; DYNCAL_BUILT a build folder whose analysis library
 # is taken instead of compiling one.
@@ -20,6 +26,7 @@ prefix=/usr/local
 plugs=foxglove,mqtt,opcua
 wheels=
 make_wheels=
+secured=
 
 fail() {
   echo "install.sh: $*" >&2
@@ -34,8 +41,12 @@ while [[ $# -gt 0 ]]; do
       printf -v "${name//-/_}" %s "$2"
       shift 2
       ;;
+    --secured)
+      secured=secured
+      shift
+      ;;
     *)
-      echo "install.sh: '$1' is none of --prefix, --plugs, --wheels, --make-wheels" >&2
+      echo "install.sh: '$1' is none of --prefix, --plugs, --secured, --wheels, --make-wheels" >&2
       exit 2
       ;;
   esac
@@ -54,24 +65,49 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 export PIP_DISABLE_PIP_VERSION_CHECK=1
 
-# Wheels of dyncal and of the bridge, into $work.
-build_own_wheels() {
+# Wheels of dyncal and of the bridge, into $work, and where it is to be secured that of cyclonedds.
+build_wheels() {
   local settings=()
-  [[ -z ${DYNCAL_BUILT:-} ]] || settings=("--config-settings=cmake.define.DYNCAL_BUILT=$DYNCAL_BUILT")
+  [[ -z ${DYNCAL_BUILT:-} ]] ||
+    settings=("--config-settings=cmake.define.DYNCAL_BUILT=$DYNCAL_BUILT")
   echo "building the packages dyncal and dyncal-bridge"
   "$1" -m pip wheel -q --no-deps -w "$work" "${settings[@]}" "$top/deploy/python" ||
     fail "the package dyncal cannot be built: it needs a compiler, CMake, Eigen and tl-expected" \
       "(deploy/install-packages.sh build), or --wheels"
   cp -r "$top/deploy/python/bridge" "$work/bridge" # setuptools writes beside its sources
   "$1" -m pip wheel -q --no-deps -w "$work" "$work/bridge" || fail "dyncal-bridge cannot be built"
+  [[ -z $secured ]] || build_secured_cyclonedds "$1"
+}
+
+# That of PyPI, compiled, into $work: from its cache pip would take one that was compiled before,
+# perhaps on another library.
+build_secured_cyclonedds() {
+  local library
+  library=$(find /usr/lib -name libddsc.so -print -quit)
+  [[ -n $library ]] || fail "--secured needs Debian's Cyclone DDS: apt-get install cyclonedds-dev"
+  mkdir "$work/cyclonedds"
+  ln -s /usr/include "$work/cyclonedds/include"
+  ln -s /usr/bin "$work/cyclonedds/bin"
+  ln -s "$(dirname "$library")" "$work/cyclonedds/lib"
+  echo "building the package cyclonedds on $library"
+  CYCLONEDDS_HOME=$work/cyclonedds "$1" -m pip wheel -qq --no-deps --no-cache-dir -w "$work" \
+    --no-binary cyclonedds cyclonedds==0.10.5 ||
+    fail "the package cyclonedds cannot be built: it needs PyPI, a compiler and python3-dev"
+}
+
+# Wheels of a folder, as pip takes them, with what they need of packages for $plugs.
+own=()
+find_own_wheels() {
+  own=("$(echo "$1"/dyncal-*.whl)[dds]" "$(echo "$1"/dyncal_bridge-*.whl)[$plugs]")
+  ! compgen -G "$1/cyclonedds-0.10.5-*.whl" >/dev/null || own+=("$1"/cyclonedds-0.10.5-*.whl)
 }
 
 if [[ -n $make_wheels ]]; then
   "$python" -m venv "$work/environment"
-  build_own_wheels "$work/environment/bin/python3"
+  build_wheels "$work/environment/bin/python3"
+  find_own_wheels "$work"
   mkdir -p "$make_wheels"
-  "$work/environment/bin/python3" -m pip wheel -q -w "$make_wheels" \
-    "$(echo "$work"/dyncal-*.whl)[dds]" "$(echo "$work"/dyncal_bridge-*.whl)[$plugs]" ||
+  "$work/environment/bin/python3" -m pip wheel -q -w "$make_wheels" "${own[@]}" ||
     fail "the packages of $plugs cannot be had from PyPI"
   echo "$make_wheels: $(find "$make_wheels" -name '*.whl' | wc -l) wheels for $plugs;" \
     "elsewhere: deploy/python/install.sh --wheels FOLDER"
@@ -80,7 +116,7 @@ fi
 
 # What the environment is made of; the same once more is left as it is.
 contents() {
-  echo "$plugs $("$python" -c 'import sys; print(sys.version)')"
+  echo "$plugs $secured $("$python" -c 'import sys; print(sys.version)')"
   if [[ -n $wheels ]]; then
     find "$wheels" -name '*.whl' -exec sha256sum {} +
   else
@@ -100,15 +136,13 @@ else
   rm -f "$environment/contents"
   mkdir -p "$prefix/lib"
   "$python" -m venv --clear "$environment" || fail "$environment cannot be made"
-  own=$wheels
   offline=(--no-index --find-links "$wheels")
   if [[ -z $wheels ]]; then
-    build_own_wheels "$environment/bin/python3"
-    own=$work
+    build_wheels "$environment/bin/python3"
     offline=()
   fi
-  "$environment/bin/python3" -m pip install -q "${offline[@]}" \
-    "$(echo "$own"/dyncal-*.whl)[dds]" "$(echo "$own"/dyncal_bridge-*.whl)[$plugs]" ||
+  find_own_wheels "${wheels:-$work}"
+  "$environment/bin/python3" -m pip install -q "${offline[@]}" "${own[@]}" ||
     fail "the packages of $plugs cannot be installed from ${wheels:-PyPI}"
   echo "$wanted" >"$environment/contents"
   echo "$environment: environment for $plugs"

@@ -93,6 +93,30 @@ class Installation(unittest.TestCase):
         )
         self.assertEqual((done.returncode, done.stderr), (0, ""))
 
+    def test_one_for_a_secured_laboratory(self):
+        if not any(pathlib.Path("/usr/lib").rglob("libddsc.so")):
+            print("SKIPPED: nothing is secured without Debian's cyclonedds-dev")
+            self.skipTest("no cyclonedds-dev")
+        wheels, prefix = FOLDER / "secured-wheels", FOLDER / "secured"
+        for folder in (wheels, prefix):
+            shutil.rmtree(folder, ignore_errors=True)
+        made = install("--make-wheels", wheels, "--secured", "--plugs", "mqtt")
+        self.assertEqual(made.returncode, 0, made.stderr)
+        done = install("--prefix", prefix, "--wheels", wheels, "--plugs", "mqtt")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        settings, authority = FOLDER / "bridge.toml", FOLDER / "authority"
+        settings.write_text("[mqtt]\n")
+        shutil.rmtree(authority, ignore_errors=True)
+        folder = prefix / "watcher"
+        dyncal = [BUILD / "bin/dyncal", "security"]
+        subprocess.run([*dyncal, "init", authority, "--laboratory", "Test"], check=True)
+        issue = ["issue", authority, "watcher", "--output", folder]
+        subprocess.run([*dyncal, *issue], check=True)
+        words = [prefix / "bin/dyncal-bridge", settings, "--check", "--security", folder]
+        checked = subprocess.run(words, capture_output=True, text=True)
+        self.assertEqual((checked.returncode, checked.stderr), (0, ""))
+        self.assertIn(f"hands on to mqtt, secured by {folder}", checked.stdout)
+
     def test_wrong_options_are_refused(self):
         cases = {
             ("--plugs", "smoke"): (1, "'smoke' is none of foxglove, mqtt, opcua"),

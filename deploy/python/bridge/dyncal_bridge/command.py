@@ -12,10 +12,12 @@ import threading
 import time
 from collections.abc import Sequence
 
+from dyncal.dds.security import revoked_list
+
 from dyncal_bridge.document import BridgeError
 from dyncal_bridge.laboratory import Laboratory
 from dyncal_bridge.options import arguments
-from dyncal_bridge.participant import NetworkOptions, join, refuse_security
+from dyncal_bridge.participant import NetworkOptions, check_security, join
 from dyncal_bridge.plug import Plug
 from dyncal_bridge.service_manager import notify
 from dyncal_bridge.settings import Settings, read_settings
@@ -76,7 +78,13 @@ def report(plugs: Sequence[Plug], laboratory: Laboratory, said: dict[str, str]) 
         said[name] = line
 
 
-def serve(plugs: Sequence[Plug], laboratory: Laboratory, ending: threading.Event) -> None:
+def serve(
+    plugs: Sequence[Plug],
+    laboratory: Laboratory,
+    ending: threading.Event,
+    revoked: RevokedCertificates,
+) -> None:
+    """Until it is to end, or the list of revoked certificates is another one."""
     for plug in plugs:
         plug.start()
     laboratory.start()
@@ -85,7 +93,7 @@ def serve(plugs: Sequence[Plug], laboratory: Laboratory, ending: threading.Event
     said: dict[str, str] = {}
     report(plugs, laboratory, said)
     next_report_s = time.monotonic() + REPORT_S
-    while not ending.wait(LOOK_S):
+    while not ending.wait(LOOK_S) and not revoked.have_changed():
         now_s = time.monotonic()
         if now_s - laboratory.turned_s < MAX_TURN_S:
             notify("WATCHDOG=1")
@@ -97,7 +105,6 @@ def serve(plugs: Sequence[Plug], laboratory: Laboratory, ending: threading.Event
 
 def stop(plugs: Sequence[Plug], laboratory: Laboratory) -> None:
     """Asks all at once, and waits for none of them longer than STOP_WITHIN_S together."""
-    notify("STOPPING=1")
     deadline_s = time.monotonic() + STOP_WITHIN_S
     for plug in plugs:
         plug.stop()
@@ -109,23 +116,53 @@ def stop(plugs: Sequence[Plug], laboratory: Laboratory) -> None:
         log.warning("ended without waiting for %s", ", ".join(late))
 
 
+class RevokedCertificates:
+    """The list as it was when this program joined; Cyclone DDS looks at it then, and never again.
+
+    folder: that of a secured program, or "".
+    """
+
+    def __init__(self, folder: str) -> None:
+        self._file = revoked_list(folder) if folder else None
+        self._joined_with = self._state()
+
+    def have_changed(self) -> bool:
+        return self._state() not in (None, self._joined_with)
+
+    def _state(self) -> tuple[int, int, int] | None:
+        try:
+            found = self._file.stat() if self._file else None
+        except OSError:
+            return None  # it is being renewed
+        return (found.st_ino, found.st_mtime_ns, found.st_size) if found else None
+
+
 def run(options: argparse.Namespace) -> int:
     settings = read_settings(options.settings)
     network = network_options(options)
-    refuse_security(network.security)
+    check_security(network.security)
     plugs = plugs_of(settings)
     if options.check:
-        print(f"ok: {options.settings} hands on to {', '.join(plug.name for plug in plugs)}")
+        secured = f", secured by {network.security}" if network.security else ""
+        names = ", ".join(plug.name for plug in plugs)
+        print(f"ok: {options.settings} hands on to {names}{secured}")
         return 0
     ending = threading.Event()
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: ending.set())
     benches = settings.benches or ("*",)
+    revoked = RevokedCertificates(network.security)
     laboratory = Laboratory(join(network), network.domain, benches, plugs)
-    serve(plugs, laboratory, ending)
+    serve(plugs, laboratory, ending, revoked)
+    if ending.is_set():
+        notify("STOPPING=1")
+    else:
+        log.info("the list of revoked certificates is another one: joining anew")
     stop(plugs, laboratory)
     logging.shutdown()
     sys.stdout.flush()
+    if not ending.is_set():
+        os.execv(sys.executable, sys.orig_argv)
     os._exit(0)  # threads of libraries that still wait for a peer do not hold it up
 
 

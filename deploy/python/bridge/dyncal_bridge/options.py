@@ -42,6 +42,8 @@ def arguments() -> argparse.ArgumentParser:
     parser.add_argument(
         "--security",
         default=os.environ.get("DYNCAL_SECURITY", ""),
-        help="refused: the public cyclonedds package cannot be secured",
+        metavar="FOLDER",
+        help="folder with the identity of this program in a secured laboratory, role watcher (or "
+        "DYNCAL_SECURITY); needs the bridge of 'install.sh --secured'",
     )
     return parser

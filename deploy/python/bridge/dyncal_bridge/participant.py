@@ -1,7 +1,8 @@
 """Joins the laboratory's network as the programs of dyncal do, to read and never to write.
 
 The settings are those of services/bus/cyclonedds/cyclone_dds_config.cpp: packets that Fast DDS
-receives, and a lease of 3 s, after which writers do not wait for a bridge that hangs or was killed.
+receives (longer ones where it is secured, services/decisions/25-secured-blocks.md), and a lease of
+3 s, after which writers do not wait for a bridge that hangs or was killed.
 Call `join` before anything else uses dyncal.dds in this process.
 """
 
@@ -15,6 +16,7 @@ from xml.sax.saxutils import quoteattr
 from cyclonedds.core import DDSException
 from cyclonedds.domain import Domain, DomainParticipant
 from dyncal import dds
+from dyncal.dds import security
 
 from dyncal_bridge.document import BridgeError
 
@@ -41,11 +43,13 @@ def configuration(options: NetworkOptions) -> str:
         f"<Peer address={quoteattr(address)}/>"
         for address in ["127.0.0.1", *map(address_of, options.peers)]
     )
+    packets = (65_000, 64_000) if options.security else (1400, 1300)
     own = (
         '<CycloneDDS><Domain Id="any"><General>'
         f"{interfaces}"
         f"<AllowMulticast>{'spdp' if options.multicast else 'false'}</AllowMulticast>"
-        "<MaxMessageSize>1400B</MaxMessageSize><FragmentSize>1300B</FragmentSize></General>"
+        f"<MaxMessageSize>{packets[0]}B</MaxMessageSize>"
+        f"<FragmentSize>{packets[1]}B</FragmentSize></General>"
         "<Discovery><ParticipantIndex>auto</ParticipantIndex>"
         "<MaxAutoParticipantIndex>32</MaxAutoParticipantIndex>"
         "<LeaseDuration>3 s</LeaseDuration><SPDPInterval>1 s</SPDPInterval>"
@@ -70,27 +74,27 @@ def address_of(peer: str) -> str:
         ) from None
 
 
-def refuse_security(folder: str) -> None:
-    """The public package has DDS, but none of the plug-ins that secure it."""
-    if folder:
-        raise BridgeError(
-            f"--security {folder}: the public cyclonedds package for Python comes without the "
-            "plug-ins of DDS Security (libdds_security_auth.so, _ac.so and _crypto.so), so the "
-            "bridge cannot join a secured laboratory; take dyncal-web there, which can"
-        )
+def check_security(folder: str) -> None:
+    """Whether the files and plug-ins are there, before anything is started."""
+    try:
+        if folder:
+            security.identity(folder)
+    except security.SecurityError as problem:
+        raise BridgeError(f"--security {folder}: {problem}") from None
 
 
 def join(options: NetworkOptions) -> DomainParticipant:
     """The participant of dyncal.dds for this domain. Raises BridgeError: why it cannot."""
-    refuse_security(options.security)
+    check_security(options.security)
     try:
         domain = Domain(options.domain, configuration(options))
-        joined = dds.participant(options.domain)
+        joined = dds.participant(options.domain, options.security)
     except (DDSException, UnicodeEncodeError) as problem:
+        secured = f", 'dyncal security check {options.security}'" if options.security else ""
         raise BridgeError(
             f"cannot join DDS domain {options.domain}"
             + (f" at interface {options.interface}" if options.interface else "")
-            + f": {problem}; look at --interface and at CYCLONEDDS_URI"
+            + f": {problem}; look at --interface, at CYCLONEDDS_URI{secured}"
         ) from None
     _kept.append(domain)
     return joined

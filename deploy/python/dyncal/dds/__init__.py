@@ -7,7 +7,8 @@
 `dyncal.dds.types` has the messages as dataclasses; idl/README.md explains every member with its
 unit and time base. Here are topics, their types and QoS profiles as that page states them. One
 participant a domain serves the whole process. A domain is that of the laboratory: DYNCAL_DOMAIN
-where it is set, else 0. Needs the package, version 0.10 or 11: pip install dyncal[dds].
+where it is set, else 0. Where DYNCAL_SECURITY names a folder, it is secured (`dyncal.dds.security`).
+Needs the package, version 0.10 or 11: pip install dyncal[dds].
 """
 
 from __future__ import annotations
@@ -34,6 +35,7 @@ from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
 from . import types
+from .security import identity
 
 # Topic, its type and its QoS profile, as in idl/README.md.
 TOPICS: dict[str, tuple[type[Any], str]] = {
@@ -72,11 +74,17 @@ def laboratory_domain() -> int:
     return int(os.environ.get("DYNCAL_DOMAIN", "0"))
 
 
-def participant(domain: int | None = None) -> DomainParticipant:
-    """That of this process, made once for each domain."""
+def participant(domain: int | None = None, folder: str | None = None) -> DomainParticipant:
+    """That of this process, made once for each domain.
+
+    folder: that of a secured laboratory; None: DYNCAL_SECURITY, "": not secured. Raises
+    dyncal.dds.security.SecurityError, or what the package raises where it cannot join.
+    """
     number = laboratory_domain() if domain is None else domain
     if number not in _participants:
-        _participants[number] = DomainParticipant(number)
+        secured = os.environ.get("DYNCAL_SECURITY", "") if folder is None else folder
+        who = identity(secured) if secured else None
+        _participants[number] = DomainParticipant(number, who)
     return _participants[number]
 
 
