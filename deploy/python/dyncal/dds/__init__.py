@@ -7,7 +7,7 @@
 `dyncal.dds.types` has the messages as dataclasses; idl/README.md explains every member with its
 unit and time base. Here are topics, their types and QoS profiles as that page states them. One
 participant a domain serves the whole process. A domain is that of the laboratory: DYNCAL_DOMAIN
-where it is set, else 0. Where DYNCAL_SECURITY names a folder, it is secured (`dyncal.dds.security`).
+where it is set, else 0. DYNCAL_SECURITY names a folder where it is secured (`dyncal.dds.security`).
 Needs the package, version 0.10 or 11: pip install dyncal[dds].
 """
 
