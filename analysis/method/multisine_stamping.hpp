@@ -37,6 +37,7 @@
 #include "analysis/method/step_findings.hpp"
 #include "analysis/method/transfer_point.hpp"
 #include "analysis/method/waveform_clock.hpp"
+#include "analysis/method/waveform_link.hpp"
 
 namespace dyncal::analysis {
 

@@ -6,9 +6,8 @@
 #include <utility>
 
 #include <Eigen/Core>
-#include <ceres/jet.h>
 
-#include "analysis/base/phasor.hpp"
+#include "analysis/response/response_residuals.hpp"
 #include "analysis/response/response_start.hpp"
 #include "analysis/response/response_weights.hpp"
 
@@ -16,120 +15,9 @@ namespace dyncal::analysis {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr std::size_t max_parameters = 5;
 constexpr double max_log_u = 0.5; // of a frequency that counts as determined; of zeta if below 1
 constexpr double other_delay_chi_squared = 9.0; // above the lowest
 constexpr double alike_chi_squared = 1.0;       // the smaller delay is taken
-
-// Free parameters: ln|g|, then tau / scale, ln fc, ln f0, zeta as far as the kind has them.
-// Logarithms keep frequencies positive; zeta may come out below 0, as chance has it, when it is
-// nearly 0.
-struct Layout {
-  ResponseKind kind;
-  double delay_scale_s;
-
-  [[nodiscard]] std::size_t size() const { return parameter_count(kind); }
-  [[nodiscard]] std::size_t first() const { return has_delay(kind) ? 2 : 1; }
-  [[nodiscard]] std::size_t second() const { return first() + (has_first_order(kind) ? 1 : 0); }
-};
-
-template <class T>
-struct LogResponse {
-  T log_magnitude;
-  T phase_rad; // without polarity, not wrapped
-};
-
-// Constant beyond what a double can square twice, so that the search finds a value wherever it
-// looks: a parameter that ran away is then found not to be determined.
-template <class T>
-T bounded_exp(const T& exponent) {
-  using std::exp;
-  constexpr double bound = 40.0;
-  if (exponent < -bound) {
-    return T(std::exp(-bound));
-  }
-  return exponent > bound ? T(std::exp(bound)) : exp(exponent);
-}
-
-template <class T>
-LogResponse<T> log_response(const Layout& layout, const T* x, double frequency_hz) {
-  using std::atan2, std::log;
-  LogResponse<T> result{x[0], T(0.0)};
-  if (has_delay(layout.kind)) {
-    result.phase_rad = T(-2.0 * pi * frequency_hz * layout.delay_scale_s) * x[1];
-  }
-  if (has_first_order(layout.kind)) {
-    const T ratio = bounded_exp(T(std::log(frequency_hz)) - x[layout.first()]);
-    result.log_magnitude -= T(0.5) * log(T(1.0) + ratio * ratio);
-    result.phase_rad -= atan2(ratio, T(1.0));
-  }
-  if (has_second_order(layout.kind)) {
-    const T ratio = bounded_exp(T(std::log(frequency_hz)) - x[layout.second()]);
-    const T real = T(1.0) - ratio * ratio;
-    const T imaginary = T(2.0) * x[layout.second() + 1] * ratio;
-    result.log_magnitude -= T(0.5) * log(real * real + imaginary * imaginary);
-    result.phase_rad -= atan2(imaginary, real);
-  }
-  return result;
-}
-
-class ResponseResiduals {
-public:
-  ResponseResiduals(Layout layout, bool inverted, std::span<const ResponsePoint> points,
-                    Eigen::MatrixXd whitening)
-      : layout_(layout), inverted_(inverted), points_(points), whitening_(std::move(whitening)) {}
-
-  bool operator()(std::span<const double> x, std::span<double> residuals,
-                  std::span<double> jacobian) const {
-    using Jet = ceres::Jet<double, static_cast<int>(max_parameters)>;
-    const auto n = static_cast<Eigen::Index>(points_.size());
-    const auto p = static_cast<Eigen::Index>(layout_.size());
-    std::vector<Jet> jets;
-    for (std::size_t k = 0; k < x.size(); ++k) {
-      jets.emplace_back(x[k], static_cast<int>(k));
-    }
-    Eigen::VectorXd raw(2 * n);
-    Eigen::MatrixXd slopes(2 * n, p);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const ResponsePoint& point = points_[static_cast<std::size_t>(i)];
-      const LogResponse<Jet> model = log_response(layout_, jets.data(), point.frequency_hz);
-      raw(i) = model.log_magnitude.a - std::log(std::abs(point.h));
-      raw(n + i) = wrap_phase(model.phase_rad.a + (inverted_ ? pi : 0.0) - std::arg(point.h));
-      slopes.row(i) = model.log_magnitude.v.head(p).transpose();
-      slopes.row(n + i) = model.phase_rad.v.head(p).transpose();
-    }
-    if (!raw.allFinite()) {
-      return false;
-    }
-    Eigen::Map<Eigen::VectorXd>(residuals.data(), 2 * n) = whitening_ * raw;
-    if (!jacobian.empty()) {
-      Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
-          jacobian.data(), 2 * n, p) = whitening_ * slopes;
-    }
-    return true;
-  }
-
-private:
-  Layout layout_;
-  bool inverted_;
-  std::span<const ResponsePoint> points_;
-  Eigen::MatrixXd whitening_;
-};
-
-std::vector<double> free_parameters(const Layout& layout, const ResponseParameters& start) {
-  std::vector<double> x{std::log(std::abs(start.gain))};
-  if (has_delay(layout.kind)) {
-    x.push_back(start.delay_s / layout.delay_scale_s);
-  }
-  if (has_first_order(layout.kind)) {
-    x.push_back(std::log(start.corner_hz));
-  }
-  if (has_second_order(layout.kind)) {
-    x.push_back(std::log(start.resonance_hz));
-    x.push_back(start.damping);
-  }
-  return x;
-}
 
 // One end of the search.
 struct Minimum {
@@ -141,7 +29,7 @@ struct Minimum {
 
 class ResponseSearch {
 public:
-  ResponseSearch(Layout layout, std::span<const ResponsePoint> points,
+  ResponseSearch(ResponseLayout layout, std::span<const ResponsePoint> points,
                  const ResponseWeights& weights, Loss loss)
       : layout_(layout), points_(points), weights_(weights), loss_(loss) {}
 
@@ -215,7 +103,7 @@ private:
     });
   }
 
-  Layout layout_;
+  ResponseLayout layout_;
   std::span<const ResponsePoint> points_;
   const ResponseWeights& weights_;
   Loss loss_;
@@ -301,7 +189,7 @@ std::vector<CombinedUncertainty> uncertainties_of(const FittedResponse& fit,
   return all;
 }
 
-void find_undetermined(const Layout& layout, const LeastSquaresSolution& solution,
+void find_undetermined(const ResponseLayout& layout, const LeastSquaresSolution& solution,
                        FittedResponse& result) {
   for (std::size_t k = layout.first(); k < layout.size(); ++k) {
     const bool is_damping = has_second_order(layout.kind) && k + 1 == layout.size();
@@ -312,7 +200,8 @@ void find_undetermined(const Layout& layout, const LeastSquaresSolution& solutio
   }
 }
 
-FittedResponse describe(const Layout& layout, bool inverted, const LeastSquaresSolution& solution) {
+FittedResponse describe(const ResponseLayout& layout, bool inverted,
+                        const LeastSquaresSolution& solution) {
   FittedResponse result;
   result.kind = layout.kind;
   const std::vector<double>& x = solution.parameters;
@@ -393,7 +282,7 @@ Expected<FittedResponse> fit_response(ResponseKind kind, std::span<const Respons
   std::stable_sort(rising.begin(), rising.end(),
                    [](const auto& a, const auto& b) { return a.frequency_hz < b.frequency_hz; });
   DYNCAL_TRY(const auto weights, response_weights(rising, common));
-  const Layout layout{kind, 1.0 / (2.0 * pi * rising.back().frequency_hz)};
+  const ResponseLayout layout{kind, 1.0 / (2.0 * pi * rising.back().frequency_hz)};
   DYNCAL_TRY(const auto minima, ResponseSearch(layout, rising, weights, loss).minima());
   const std::size_t chosen = preferred(minima);
   const Minimum& best = minima[chosen];

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <iterator>
 #include <numbers>
 #include <utility>
 
@@ -17,28 +16,12 @@ namespace dyncal::analysis {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr std::int64_t max_frame_ns = 100'000'000;
-constexpr double max_periods = 50.0;   // more, and a frequency 1e-3 off would fade within the frame
-constexpr std::size_t min_samples = 8; // of a frame that can be judged
+constexpr std::size_t min_samples = 8;     // of a frame that can be judged
 constexpr double max_residual_power = 0.1; // of the power of the sine: 10 dB
 constexpr double louder_than_hum = 1.3;    // in amplitude
 constexpr double off_phase = 0.5;          // likewise: ten decibels of noise are 0.32
 constexpr double phase_margin_rad = 0.15;
-constexpr double turns_between_lines = 2.0;      // in a frame, of the nearest lines of a multi-sine
 constexpr double steady_phase_margin_rad = 0.02; // of frames that the sine fills from end to end
-
-std::int64_t frame_length_ns(const Frequency& frequency, const std::vector<Frequency>& beside) {
-  const double period_ns = 1e9 / frequency.hz();
-  double frame_ns =
-      std::max(period_ns, std::min(static_cast<double>(max_frame_ns), max_periods * period_ns));
-  std::vector<double> hz{frequency.hz()};
-  std::ranges::transform(beside, std::back_inserter(hz), &Frequency::hz);
-  std::ranges::sort(hz);
-  for (std::size_t i = 1; i < hz.size(); ++i) {
-    frame_ns = std::max(frame_ns, 1e9 * turns_between_lines / (hz[i] - hz[i - 1]));
-  }
-  return std::llround(frame_ns);
-}
 
 std::int64_t floor_divide(std::int64_t value, std::int64_t divisor) {
   const std::int64_t quotient = value / divisor;

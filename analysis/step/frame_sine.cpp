@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <memory>
 
 #include "analysis/sine/sine_values.hpp"
@@ -9,6 +10,9 @@
 namespace dyncal::analysis {
 namespace {
 
+constexpr std::int64_t max_frame_ns = 100'000'000;
+constexpr double max_periods = 50.0; // more, and a frequency 1e-3 off would fade within the frame
+constexpr double turns_between_lines = 2.0; // in a frame, of the nearest lines of a multi-sine
 constexpr double slice_s = 0.05;
 
 struct Design { // of one frame: sine and cosine of every sample, and their means
@@ -112,6 +116,19 @@ Residuals residuals_of(const Parameters& fit, const Design& design,
 }
 
 } // namespace
+
+std::int64_t frame_length_ns(const Frequency& frequency, const std::vector<Frequency>& beside) {
+  const double period_ns = 1e9 / frequency.hz();
+  double frame_ns =
+      std::max(period_ns, std::min(static_cast<double>(max_frame_ns), max_periods * period_ns));
+  std::vector<double> hz{frequency.hz()};
+  std::ranges::transform(beside, std::back_inserter(hz), &Frequency::hz);
+  std::ranges::sort(hz);
+  for (std::size_t i = 1; i < hz.size(); ++i) {
+    frame_ns = std::max(frame_ns, 1e9 * turns_between_lines / (hz[i] - hz[i - 1]));
+  }
+  return std::llround(frame_ns);
+}
 
 std::optional<FrameSine> fit_frame(const Frequency& frequency, std::int64_t begin_ns,
                                    std::int64_t frame_ns, std::span<const std::int64_t> stamps_ns,

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "analysis/base/frequency.hpp"
 
@@ -26,6 +27,11 @@ struct FrameSine {
   double max_residual = 0.0;
   double max_neighbours_rms = 0.0; // the larger of each two adjacent slices' smaller one
 };
+
+// A frame long enough to tell the frequency from those beside it: a period at least, 50 of them or
+// 0.1 s as a rule, and two turns of the nearest lines of a multi-sine against each other.
+[[nodiscard]] std::int64_t frame_length_ns(const Frequency& frequency,
+                                           const std::vector<Frequency>& beside);
 
 [[nodiscard]] std::optional<FrameSine> fit_frame(const Frequency& frequency, std::int64_t begin_ns,
                                                  std::int64_t frame_ns,

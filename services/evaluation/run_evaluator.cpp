@@ -7,9 +7,8 @@
 
 #include "services/contract/excitation_quantity.hpp"
 #include "services/evaluation/closures/closures.hpp"
-#include "services/evaluation/method/channel_responses.hpp"
+#include "services/evaluation/method/completed_results.hpp"
 #include "services/evaluation/method/monte_carlo_check.hpp"
-#include "services/evaluation/method/transverse_motion.hpp"
 #include "services/evaluation/record/described_source.hpp"
 #include "services/evaluation/record/step_temperature.hpp"
 
@@ -216,12 +215,6 @@ void RunEvaluator::keep(const StepResult& result) {
   }
 }
 
-std::optional<double> RunEvaluator::temperature_of_step(std::size_t step) const {
-  return recipe_->roles.temperature
-             ? step_temperature_degc(records_, *recipe_->roles.temperature, step)
-             : std::nullopt;
-}
-
 bool RunEvaluator::evaluate_next_steps(EvaluationOutput& output) {
   bool has_room = true;
   while (next_step_ < records_.excitation().steps_expected() && records_.is_searched(next_step_) &&
@@ -234,9 +227,7 @@ bool RunEvaluator::evaluate_next_steps(EvaluationOutput& output) {
     if (is_given_up()) {
       return true;
     }
-    const std::uint32_t attempt = records_.excitation().order().attempt(next_step_);
-    evaluations_.begin(
-        completed(evaluation_of_next_step(), attempt, temperature_of_step(next_step_)));
+    evaluations_.begin(completed(evaluation_of_next_step()));
     ++next_step_;
   }
   take_results(evaluations_.take_finished(), output);
@@ -244,23 +235,18 @@ bool RunEvaluator::evaluate_next_steps(EvaluationOutput& output) {
 }
 
 // With what the evaluation of a step by itself does not know.
-Evaluation RunEvaluator::completed(Evaluation evaluation, std::uint32_t attempt,
-                                   std::optional<double> degc) const {
-  return [evaluation = std::move(evaluation), attempt, degc, recipe = recipe_, count = count_,
+Evaluation RunEvaluator::completed(Evaluation evaluation) const {
+  return [evaluation = std::move(evaluation), recipe = recipe_, count = count_,
+          attempt = records_.excitation().order().attempt(next_step_),
+          degc = recipe_->roles.temperature
+                     ? step_temperature_degc(records_, *recipe_->roles.temperature, next_step_)
+                     : std::nullopt,
           given_up = given_up_.get_token()](const std::stop_token& stop) {
     if (given_up.stop_requested()) {
       return std::vector<StepResult>{};
     }
     std::vector<StepResult> results = evaluation(stop);
-    const std::vector<bool> has_other = take_channel_responses(*recipe, results);
-    const std::vector<bool> has_more = add_transverse_motion(*recipe, results);
-    for (std::size_t i = 0; i < results.size(); ++i) {
-      results[i].attempt = attempt;
-      results[i].temperature_degc = degc;
-      if (has_other[i] || has_more[i]) {
-        redo_monte_carlo_check(recipe->monte_carlo_trials, stop, results[i]);
-      }
-    }
+    complete(*recipe, attempt, degc, stop, results);
     add_done(count);
     return results;
   };

@@ -172,12 +172,10 @@ public:
 private:
   [[nodiscard]] bool is_evaluated(const TriggeredRecord& record) const;
   [[nodiscard]] bool has_all_steps() const;
-  [[nodiscard]] std::optional<double> temperature_of_step(std::size_t step) const;
   // Returns false if steps that could be evaluated wait for room.
   bool evaluate_next_steps(EvaluationOutput& output);
   [[nodiscard]] Evaluation evaluation_of_next_step();
-  [[nodiscard]] Evaluation completed(Evaluation evaluation, std::uint32_t attempt,
-                                     std::optional<double> degc) const;
+  [[nodiscard]] Evaluation completed(Evaluation evaluation) const;
   void evaluate_ahead();
   void keep(const StepResult& result);
   void take_results(std::vector<StepResult> results, EvaluationOutput& output);

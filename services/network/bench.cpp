@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "services/base/per_enumerator.hpp"
+#include "services/base/printable_text.hpp"
 
 namespace dyncal::network {
 namespace {
@@ -86,6 +87,24 @@ void raise_severity_by_guard(const Service& guard, bus::Clock::Instant now, Cond
 }
 
 } // namespace
+
+void Service::take(const wire::ServiceStatus& report) {
+  name = report.service().to_string();
+  run = report.run().to_string();
+  health = report.health() == wire::HEALTH_OK       ? Health::ok
+           : report.health() == wire::HEALTH_FAILED ? Health::failed
+                                                    : Health::waiting;
+  message = one_line(report.message());
+  software = one_line(report.software());
+  dds = one_line(report.dds());
+  host = one_line(report.host());
+  process_id = report.process_id();
+  contract_version = report.contract_version();
+  recording = one_line(report.recording());
+  messages_stored = report.messages_stored();
+  messages_not_stored = report.messages_not_stored();
+  guarded_generator = one_line(report.guarded_generator());
+}
 
 const char* to_string(BenchState state) {
   return per_enumerator(

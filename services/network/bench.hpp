@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "idl/dyncal.h"
 #include "services/bus/clock.hpp"
 #include "services/network/condition.hpp"
 #include "services/network/run.hpp"
@@ -34,6 +35,8 @@ struct Service {
   bus::Clock::Instant heard{};
   std::int64_t heard_utc_ns = 0;
 
+  // Its report, which has just come; when is for the caller to note.
+  void take(const wire::ServiceStatus& report);
   [[nodiscard]] bool is_recorder() const { return !recording.empty(); }
   [[nodiscard]] bool is_guard() const { return !guarded_generator.empty(); }
   // The run that a guard names is one that it does not hear.

@@ -293,23 +293,9 @@ void BusState::take_service(Bench& bench, const wire::ServiceStatus& message) {
   }
   Service& service = bench.services[name];
   const std::string message_before = service.message;
-  service = {.name = name,
-             .run = message.run().to_string(),
-             .health = message.health() == wire::HEALTH_OK       ? Health::ok
-                       : message.health() == wire::HEALTH_FAILED ? Health::failed
-                                                                 : Health::waiting,
-             .message = one_line(message.message()),
-             .software = one_line(message.software()),
-             .dds = one_line(message.dds()),
-             .host = one_line(message.host()),
-             .process_id = message.process_id(),
-             .contract_version = message.contract_version(),
-             .recording = one_line(message.recording()),
-             .messages_stored = message.messages_stored(),
-             .messages_not_stored = message.messages_not_stored(),
-             .guarded_generator = one_line(message.guarded_generator()),
-             .heard = clock_.now(),
-             .heard_utc_ns = clock_.utc_now_ns()};
+  service.take(message);
+  service.heard = clock_.now();
+  service.heard_utc_ns = clock_.utc_now_ns();
   if (service.is_recorder() && !service.message.empty() && service.message != message_before) {
     note(bench, Severity::error, "recorder: " + service.message);
   }

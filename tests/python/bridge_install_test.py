@@ -97,12 +97,12 @@ class Installation(unittest.TestCase):
         if not any(pathlib.Path("/usr/lib").rglob("libddsc.so")):
             print("SKIPPED: nothing is secured without Debian's cyclonedds-dev")
             self.skipTest("no cyclonedds-dev")
-        wheels, prefix = FOLDER / "secured-wheels", FOLDER / "secured"
-        for folder in (wheels, prefix):
+        prefix = FOLDER / "secured"
+        for folder in (SECURED_WHEELS, prefix):
             shutil.rmtree(folder, ignore_errors=True)
-        made = install("--make-wheels", wheels, "--secured", "--plugs", "mqtt")
+        made = install("--make-wheels", SECURED_WHEELS, "--secured", "--plugs", "mqtt")
         self.assertEqual(made.returncode, 0, made.stderr)
-        done = install("--prefix", prefix, "--wheels", wheels, "--plugs", "mqtt")
+        done = install("--prefix", prefix, "--wheels", SECURED_WHEELS, "--plugs", "mqtt")
         self.assertEqual(done.returncode, 0, done.stderr)
         settings, authority = FOLDER / "bridge.toml", FOLDER / "authority"
         settings.write_text("[mqtt]\n")
@@ -130,6 +130,7 @@ class Installation(unittest.TestCase):
             self.assertIn(sentence, done.stderr)
 
 
+SYSTEM_USER = TOP / "deploy/debian/dyncal-daemons.sysusers"
 UNIT = "dyncal-bridge"
 DOMAIN = 7  # the host's network is its own
 # The unit allows 30 s to a bridge that does not turn.
@@ -137,14 +138,24 @@ IMPATIENT = "[Service]\nWatchdogSec=6\nTimeoutStopSec=4\n"
 BROKER = "/run/broker.conf"
 
 
+def python_of_host():
+    """Of the version that the wheels are for, and not in a home."""
+    return shutil.which(f"python3.{sys.version_info.minor}", path="/usr/bin:/usr/local/bin")
+
+
+def install_on(host, wheels, *more):
+    python = f"PYTHON={python_of_host()}"
+    done = host.call("env", python, INSTALL, "--wheels", wheels, *more)
+    if done.returncode != 0 or "next: " not in done.stdout:
+        raise AssertionError(f"install.sh on the host: {done.stdout}{done.stderr}")
+
+
 class Service(unittest.TestCase):
     """The unit under a systemd of its own, with Debian's mosquitto beside it."""
 
     @classmethod
     def setUpClass(cls):
-        # Of the version that the wheels are for, and not in a home.
-        python = shutil.which(f"python3.{sys.version_info.minor}", path="/usr/bin:/usr/local/bin")
-        missing = "" if python else "no Python of this version is in /usr/bin"
+        missing = "" if python_of_host() else "no Python of this version is in /usr/bin"
         if not shutil.which("mosquitto_sub"):
             missing = "there is no mosquitto"
         if reason := why_not() or missing:
@@ -159,9 +170,7 @@ class Service(unittest.TestCase):
             raise unittest.SkipTest("no systemd") from failure
         cls.addClassCleanup(cls.host.close)
         cls.shared = cls.host.shared
-        done = cls.host.call("env", f"PYTHON={python}", INSTALL, "--wheels", WHEELS)
-        if done.returncode != 0 or "next: " not in done.stdout:
-            raise AssertionError(f"install.sh on the host: {done.stdout}{done.stderr}")
+        install_on(cls.host, WHEELS)
 
     def test_the_unit(self):
         host = self.host
@@ -191,6 +200,38 @@ class Service(unittest.TestCase):
         self.assertNotEqual(host.call("systemctl", "start", UNIT).returncode, 0)
         self.assertEqual((self.state(), self.restarts()), ("failed", 0))
         self.assertIn("smoke", host.journal(UNIT))
+
+    def test_the_unit_of_a_secured_laboratory(self):
+        """Its folder belongs to the user of the unit: such a host hands on no credentials."""
+        if not SECURED_WHEELS.exists():
+            self.skipTest("there are no wheels of a secured one")
+        host, keys = self.host, "/etc/dyncal/keys"
+        authority = self.shared / "authority"
+        for words in (
+            ("init", authority, "--laboratory", "Test"),
+            ("issue", authority, "watcher", "--output", keys),
+        ):
+            done = host.call("dyncal", "security", *words)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        host.write("etc/sysusers.d/dyncal.conf", SYSTEM_USER.read_text(encoding="utf-8"))
+        host.call("systemd-sysusers")
+        host.call("chown", "-R", "dyncal", keys)
+        drop_in = f"/etc/systemd/system/{UNIT}.service.d/security.conf"
+        host.write(drop_in, f"[Service]\nEnvironment=DYNCAL_SECURITY={keys}\n")
+        host.write("etc/dyncal/bridge.toml", "[mqtt]\n")
+        host.write("etc/dyncal/options", f"DYNCAL_OPTIONS=--domain {DOMAIN + 1}\n")
+        install_on(host, SECURED_WHEELS, "--plugs", "mqtt")
+        host.systemctl("daemon-reload")
+        self.addCleanup(host.call, "rm", "-r", drop_in, keys)
+        if host.call("systemctl", "start", UNIT).returncode != 0:
+            self.fail(f"{UNIT} does not start: {host.journal(UNIT)[-3000:]}")
+        self.assertEqual(self.state(), "active")
+        before = host.show(UNIT, "MainPID")
+        host.call("touch", f"{keys}/revoked.pem")
+        self.wait_for_journal("joining anew")
+        wait_until(lambda: host.journal(UNIT).count("hands on to mqtt") == 2, "it to be back")
+        self.assertEqual((host.show(UNIT, "MainPID"), self.restarts()), (before, 0))
+        host.systemctl("stop", UNIT)
 
     def a_run_comes_to_the_broker(self):
         demo = ["dyncal", "demo", "--domain", DOMAIN, "--output", self.shared / "demo"]
@@ -242,7 +283,7 @@ def make_wheels():
 if __name__ == "__main__":
     BUILD, FOLDER = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
     FOLDER.mkdir(parents=True, exist_ok=True)
-    WHEELS = FOLDER / "wheels"
+    WHEELS, SECURED_WHEELS = FOLDER / "wheels", FOLDER / "secured-wheels"
     make_wheels()
     CMAKE = sys.argv[3] if len(sys.argv) > 3 else "cmake"
     unittest.main(argv=[sys.argv[0], *sys.argv[4:]])

@@ -6,7 +6,6 @@
 #include <fmt/core.h>
 #include <spdlog/spdlog.h>
 
-#include "services/contract/run_identity.hpp"
 #include "services/evaluation/recipe/recipe_message.hpp"
 #include "services/programs/analysis/live_limits.hpp"
 #include "services/programs/analysis/session_sentences.hpp"
@@ -92,8 +91,7 @@ void RunSession::update(const wire::Measurement& measurement) {
   spdlog::info("bench {}, run {}: {}", bench_, run_, aborted ? "aborted" : "excitation done");
   announced_.end_excitation(aborted);
   if (is<Failed>() || (aborted && is<Held>())) {
-    evaluator_->end_of_excitation(aborted);
-    evaluator_->finish_now(); // a source is lost: nothing more will come, or nobody waits for it
+    end_with_what_came(aborted); // a source is lost: nothing more will come, or nobody waits for it
   }
   last_progress_ = clock_.now();
 }
@@ -190,13 +188,11 @@ void RunSession::end_takeover(Instant now) {
 void RunSession::wait_for_bench(RunSession& before, Instant now) {
   begin_arming_again(now);
   if (message_.empty()) {
-    message_ = fmt::format("waiting for run '{}' of this bench to end",
-                           RunIdentity::parse(before.run_).name);
+    message_ = waiting_for_bench_sentence(before.run_);
     publish();
   }
   if (!before.excitation_over() && before.last_heard_of_run_ > created_) {
-    refuse(fmt::format("bench '{}' is in use by {}; wait for its end, or end it there", bench_,
-                       called_of(before.run_, before.conductor_.name())));
+    refuse(bench_in_use_sentence(bench_, before.run_, before.conductor_.name()));
   } else if (now - created_ > listening_time &&
              now - (before.excitation_over() ? created_ : before.last_heard_of_run_) >
                  bench_limit) {
@@ -207,15 +203,12 @@ void RunSession::wait_for_bench(RunSession& before, Instant now) {
 void RunSession::give_way_to(const std::string& next) {
   const bool died = !excitation_over();
   if (died && health_of(state_) == wire::HEALTH_OK) {
-    enter(Failed{armed()},
-          fmt::format("nothing was heard of this run for {} s; its bench was given to run '{}'",
-                      bench_limit.count(), RunIdentity::parse(next).name));
+    enter(Failed{armed()}, bench_given_sentence(bench_limit, next));
   }
   if (died) {
     evaluator_->stop_checks(); // nobody waits for them, and the bench is wanted
   }
-  evaluator_->end_of_excitation(died);
-  evaluator_->finish_now();
+  end_with_what_came(died);
   evaluate(clock_.now());
 }
 
@@ -287,9 +280,7 @@ void RunSession::watch_sources(Instant now) {
     enter(Failed{}, std::move(lost->message));
   }
   if (is_here && is<Failed>()) { // the steps that have come are evaluated
-    evaluator_->end_of_excitation(false);
-    evaluator_->finish_now();
-    wake_up_->ring();
+    end_with_what_came(false);
   }
 }
 
@@ -382,7 +373,11 @@ void RunSession::end_overdue(Instant now) {
                  "results so far",
                  bench_, run_, runner_limit.count());
   }
-  evaluator_->end_of_excitation(runner_lost);
+  end_with_what_came(runner_lost);
+}
+
+void RunSession::end_with_what_came(bool aborted) {
+  evaluator_->end_of_excitation(aborted);
   evaluator_->finish_now();
   wake_up_->ring();
 }

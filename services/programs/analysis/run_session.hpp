@@ -119,6 +119,7 @@ private:
   void evaluate(Instant now);
   void finish();
   void end_overdue(Instant now);
+  void end_with_what_came(bool aborted);
   [[nodiscard]] bool is_played_to_its_end(Instant now) const;
   void enter(SessionState state, std::string message);
   void publish();

@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include "services/contract/run_identity.hpp"
+
 namespace dyncal::inline programs {
 
 using namespace std::chrono_literals;
@@ -24,6 +26,21 @@ std::string work_sentence(const RunEvaluator& evaluator, const SourceStreams& st
 }
 
 } // namespace
+
+std::string waiting_for_bench_sentence(const std::string& run) {
+  return fmt::format("waiting for run '{}' of this bench to end", RunIdentity::parse(run).name);
+}
+
+std::string bench_in_use_sentence(const std::string& bench, const std::string& run,
+                                  const std::string& conductor) {
+  return fmt::format("bench '{}' is in use by {}; wait for its end, or end it there", bench,
+                     called_of(run, conductor));
+}
+
+std::string bench_given_sentence(std::chrono::seconds silence, const std::string& next_run) {
+  return fmt::format("nothing was heard of this run for {} s; its bench was given to run '{}'",
+                     silence.count(), RunIdentity::parse(next_run).name);
+}
 
 std::string taking_over_sentence(const SourceStreams& streams) {
   return fmt::format("taking the run over; its sources have repeated {} messages so far",

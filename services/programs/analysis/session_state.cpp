@@ -4,7 +4,7 @@
 
 namespace dyncal::inline programs {
 
-bool Arming::is_over(const SourceStreams::Missing& missing, bus::Clock::Instant now) {
+bool Arming::is_over(const MissingSource& missing, bus::Clock::Instant now) {
   if (missing.is_there && now - since <= present_limit) {
     starting = missing.is_starting ? now : starting;
     return false;

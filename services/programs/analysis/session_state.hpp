@@ -16,7 +16,7 @@
 
 #include "idl/dyncal.h"
 #include "services/bus/clock.hpp"
-#include "services/programs/analysis/source_streams.hpp"
+#include "services/programs/analysis/source_stream.hpp"
 
 namespace dyncal::inline programs {
 
@@ -28,7 +28,7 @@ struct Arming {
   bus::Clock::Instant starting{}; // when a source had yet to describe itself, the last time
 
   // Whether what is missing is waited for no longer.
-  [[nodiscard]] bool is_over(const SourceStreams::Missing& missing, bus::Clock::Instant now);
+  [[nodiscard]] bool is_over(const MissingSource& missing, bus::Clock::Instant now);
 };
 
 struct TakingOver {

@@ -50,7 +50,7 @@ Expected<void> SourceStreams::take_descriptions(const KnownSources& known, Insta
 
 Expected<void> SourceStreams::describe(const std::string& name, Stream& stream,
                                        const wire::SourceDescription& description, Instant now) {
-  if (stream.description && has_answered(stream)) { // from then on its samples are the run's
+  if (stream.description && stream.has_answered()) { // from then on its samples are the run's
     std::string other =
         device_difference(name, from_message(*stream.description), from_message(description));
     if (!other.empty()) {
@@ -60,10 +60,10 @@ Expected<void> SourceStreams::describe(const std::string& name, Stream& stream,
   }
   const bool same_session = stream.description &&
                             stream.description->session() == description.session() &&
-                            !is_triggered(stream);
+                            !stream.is_triggered();
   if (same_session) { // what its samples mean was known from the beginning
     evaluator_.describe_signals(name, from_message(description).quadrature_signals);
-    take_description(stream, description);
+    stream.take(description);
     return {};
   }
   if (stream.description || begin_ == Begin::behind) {
@@ -74,7 +74,7 @@ Expected<void> SourceStreams::describe(const std::string& name, Stream& stream,
   } else if (auto accepted = evaluator_.describe(name, from_message(description)); !accepted) {
     return accepted;
   }
-  take_description(stream, description);
+  stream.take(description);
   DYNCAL_TRY(open_steps(name));
   const bool triggered = contract::is_triggered(from_wire(description.kind()));
   if (!stream.follower) {
@@ -97,37 +97,17 @@ std::string SourceStreams::rejection_reason(const std::string& name,
   return accepted ? "" : accepted.error().message;
 }
 
-void SourceStreams::take_description(Stream& stream, const wire::SourceDescription& description) {
-  stream.description = description;
-  stream.described.add(description.session());
-  replace_unfit(stream);
-}
-
 // A late joiner is sent the samples of a session whose description the source has replaced.
 bool SourceStreams::is_described(const Stream& stream, std::uint64_t session) const {
   return stream.described.contains(session) || (begin_ == Begin::behind && stream.description);
 }
 
-bool SourceStreams::is_unfit(const Stream& stream, std::uint64_t session) {
-  return stream.unfit && stream.unfit->description.session() == session;
-}
-
-// Samples of a session that was never described as anything else, or of another instrument, mean
-// nothing to the run.
-void SourceStreams::replace_unfit(Stream& stream) {
-  const auto unfit = std::exchange(stream.unfit, std::nullopt);
-  if (unfit &&
-      (unfit->is_other_device || unfit->description.session() != stream.description->session())) {
-    stream.waiting.leave_out_session(unfit->description.session());
-  }
-}
-
-SourceStreams::Follower SourceStreams::make_follower(const std::string& name, bool triggered) {
+SourceStream::Follower SourceStreams::make_follower(const std::string& name, bool triggered) {
   if (triggered) {
     return StreamFollower<wire::TriggeredRecord>(
         run_, asker_, [this, name](const wire::TriggeredRecord& record) {
           Stream& stream = streams_.at(name);
-          if (record.run() != run_ || is_unfit(stream, record.session())) {
+          if (record.run() != run_ || stream.is_unfit(record.session())) {
             return;
           }
           stream.is_undescribed = !is_described(stream, record.session());
@@ -143,7 +123,7 @@ SourceStreams::Follower SourceStreams::make_follower(const std::string& name, bo
 
 void SourceStreams::hand_over(const std::string& name, Stream& stream,
                               const wire::SampleBlock& block) {
-  if (!stream.waiting.empty() || is_unfit(stream, block.session()) ||
+  if (!stream.waiting.empty() || stream.is_unfit(block.session()) ||
       !is_described(stream, block.session()) || !evaluator_.is_ready_for(name, block.session())) {
     stream.waiting.add(block);
   } else {
@@ -167,12 +147,12 @@ void SourceStreams::hand_over_waiting(const std::string& name, Stream& stream, I
   while (!stream.waiting.empty()) {
     const wire::SampleBlock& block = stream.waiting.oldest();
     const bool is_undescribed = !is_described(stream, block.session());
-    if (is_undescribed && overdue && !is_unfit(stream, block.session())) {
+    if (is_undescribed && overdue && !stream.is_unfit(block.session())) {
       stream.is_undescribed = true;
       stream.waiting.leave_out_session(block.session());
       continue;
     }
-    if (is_undescribed || is_unfit(stream, block.session()) ||
+    if (is_undescribed || stream.is_unfit(block.session()) ||
         (!overdue && !evaluator_.is_ready_for(name, block.session()))) {
       return;
     }
@@ -307,36 +287,17 @@ Expected<std::vector<SourceStreams::Request>> SourceStreams::requests_due(Instan
   return due;
 }
 
-bool SourceStreams::is_triggered(const Stream& stream) {
-  return stream.follower &&
-         std::holds_alternative<StreamFollower<wire::TriggeredRecord>>(*stream.follower);
-}
-
-bool SourceStreams::has_answered(const Stream& stream) {
-  return stream.follower &&
-         std::visit([](const auto& one) { return one.answered(); }, *stream.follower);
-}
-
 bool SourceStreams::is_catching_up() const {
-  return std::any_of(streams_.begin(), streams_.end(), [](const auto& stream) {
-    const auto& follower = stream.second.follower;
-    return follower && std::visit([](const auto& one) { return one.catching_up(); }, *follower);
-  });
+  return std::ranges::any_of(streams_, [](const auto& one) { return one.second.is_catching_up(); });
 }
 
 bool SourceStreams::is_held_up(Instant now) const {
-  return std::any_of(streams_.begin(), streams_.end(), [&](const auto& one) {
-    const Stream& stream = one.second;
-    const auto silent = [&](const auto& follower) { return follower.silent(now); };
-    return !stream.follower || stream.unfit || !stream.waiting.empty() ||
-           std::visit(silent, *stream.follower);
-  });
+  return std::ranges::any_of(streams_, [&](const auto& one) { return one.second.is_held_up(now); });
 }
 
 std::string SourceStreams::lost_beginning() const {
   for (const auto& [name, stream] : streams_) {
-    if (stream.follower &&
-        std::visit([](const auto& one) { return one.lacks_beginning(); }, *stream.follower)) {
+    if (stream.lacks_beginning()) {
       return fmt::format("source '{}' of bench '{}' no longer has what it sent at the beginning of "
                          "the run, or nothing was measured, so it cannot be taken over: begin a "
                          "new run; what was measured before is kept",
@@ -349,9 +310,7 @@ std::string SourceStreams::lost_beginning() const {
 std::uint64_t SourceStreams::recovered() const {
   std::uint64_t messages = 0;
   for (const auto& [name, stream] : streams_) {
-    messages += stream.follower
-                    ? std::visit([](const auto& one) { return one.recovered(); }, *stream.follower)
-                    : 0;
+    messages += stream.recovered();
   }
   return messages;
 }
@@ -365,45 +324,19 @@ std::string SourceStreams::second_writer() const {
 std::vector<std::string> SourceStreams::unanswered() const {
   std::vector<std::string> names;
   for (const auto& [name, stream] : streams_) {
-    if (stream.follower && !has_answered(stream)) {
+    if (stream.follower && !stream.has_answered()) {
       names.push_back(name);
     }
   }
   return names;
 }
 
-std::optional<SourceStreams::Missing>
-SourceStreams::what_is_missing(const KnownSources& known) const {
+std::optional<MissingSource> SourceStreams::what_is_missing(const KnownSources& known) const {
   for (const auto& [name, stream] : streams_) {
     const auto found = known.find(name);
-    if (found == known.end()) {
-      return Missing{
-          fmt::format("source '{}' of bench '{}' is not on the network; is its service running "
-                      "with this bench file, in the same DDS domain?",
-                      name, bench_)};
-    }
-    const KnownSource& source = found->second;
-    if (source.says_that_it_is_silent()) {
-      return Missing{fmt::format("source '{}' of bench '{}' is silent{}", name, bench_,
-                                 source.reason_given())};
-    }
-    if (stream.twins.twins() || source.twins.twins()) {
-      return Missing{two_send_as(bench_, name, stream.service_before, stream.service)};
-    }
-    if (stream.unfit) {
-      return Missing{stream.unfit->why};
-    }
-    if (!stream.follower) {
-      return Missing{fmt::format("source '{}' of bench '{}' has not described its channels yet{}",
-                                 name, bench_, source.reason_given()),
-                     true, true};
-    }
-    if (!has_answered(stream)) {
-      return Missing{
-          fmt::format("source '{}' of bench '{}' does not answer in its sample stream; do "
-                      "samples get through from its host to this one?",
-                      name, bench_),
-          true};
+    const KnownSource* source = found == known.end() ? nullptr : &found->second;
+    if (auto missing = stream.what_is_missing(bench_, name, source)) {
+      return missing;
     }
   }
   return std::nullopt;
@@ -426,35 +359,10 @@ SourceStreams::settings_mismatch(const std::map<std::string, std::string>& setti
 std::optional<LostSource> SourceStreams::lost_source(Instant now, Instant watched_from,
                                                      std::chrono::seconds silence_limit,
                                                      bool may_not_end) const {
+  const Stream::Patience patience{watched_from, silence_limit, may_not_end};
   for (const auto& [name, stream] : streams_) {
-    if (is_triggered(stream) && !stream.second_writer.empty()) {
-      return LostSource{stream.second_writer, false};
-    }
-    if (stream.twins.twins()) {
-      return LostSource{two_send_as(bench_, name, stream.service_before, stream.service), false};
-    }
-    if (stream.unfit) {
-      return LostSource{stream.unfit->why, true, stream.unfit->is_other_device};
-    }
-    if (stream.is_undescribed) {
-      return LostSource{fmt::format("source '{}' of bench '{}' sends samples of a session that it "
-                                    "has not described; they are left out: start its service "
-                                    "again",
-                                    name, bench_)};
-    }
-    if (!stream.follower) {
-      return LostSource{
-          fmt::format("source '{}' of bench '{}' is not on the network", name, bench_)};
-    }
-    const bool ended = std::visit([](const auto& one) { return one.ended(); }, *stream.follower);
-    const auto heard = std::visit([](const auto& one) { return one.heard(); }, *stream.follower);
-    if (ended && may_not_end) {
-      return LostSource{
-          fmt::format("source '{}' of bench '{}' has ended before the run", name, bench_)};
-    }
-    if (!ended && !is_triggered(stream) && now - std::max(heard, watched_from) > silence_limit) {
-      return LostSource{fmt::format("source '{}' of bench '{}' has sent nothing for {} s", name,
-                                    bench_, silence_limit.count())};
+    if (auto lost = stream.loss(bench_, name, now, patience)) {
+      return lost;
     }
   }
   return std::nullopt;

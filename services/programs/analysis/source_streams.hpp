@@ -23,39 +23,20 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
-#include "services/contract/duplicate_source_detector.hpp"
 #include "services/contract/known_sources.hpp"
 #include "services/evaluation/run_evaluator.hpp"
-#include "services/programs/analysis/described_sessions.hpp"
 #include "services/programs/analysis/handed_out_steps.hpp"
 #include "services/programs/analysis/left_out_messages.hpp"
-#include "services/programs/analysis/session_writers.hpp"
-#include "services/programs/analysis/stream_follower.hpp"
-#include "services/programs/analysis/waiting_blocks.hpp"
+#include "services/programs/analysis/source_stream.hpp"
 
 namespace dyncal::inline programs {
 
-// Why a run cannot go on now.
-struct LostSource {
-  std::string message;
-  bool may_come_back = true;
-  bool is_other_device = false;
-};
-
 class SourceStreams {
 public:
-  // Why a run is not armed yet.
-  struct Missing {
-    std::string sentence;
-    bool is_there = false;    // a source that has yet to describe its channels, or to answer
-    bool is_starting = false; // that has yet to describe them
-  };
-
   using Instant = bus::Clock::Instant;
 
   static constexpr std::chrono::seconds session_limit{5};
@@ -106,7 +87,7 @@ public:
   // Sources that have described themselves and are to be asked for an answer.
   [[nodiscard]] std::vector<std::string> unanswered() const;
   // One sentence about the first source that keeps the run from being armed; empty if none does.
-  [[nodiscard]] std::optional<Missing> what_is_missing(const KnownSources& known) const;
+  [[nodiscard]] std::optional<MissingSource> what_is_missing(const KnownSources& known) const;
   // One sentence about the first source whose service has read another bench file than the run, by
   // the settings that the run has for each; empty if none has.
   [[nodiscard]] std::string
@@ -118,41 +99,15 @@ public:
                                                       bool may_not_end) const;
 
 private:
-  using Follower =
-      std::variant<StreamFollower<wire::SampleBlock>, StreamFollower<wire::TriggeredRecord>>;
-  struct UnfitDescription {
-    wire::SourceDescription description;
-    std::string why;
-    bool is_other_device = false; // whose samples are never the run's
-  };
-  struct Stream {
-    std::optional<wire::SourceDescription> description; // as the evaluator knows it
-    std::optional<UnfitDescription> unfit{};            // a newer one
-    // Of a session that the evaluator is not ready for, or whose description is unfit.
-    WaitingBlocks waiting{};
-    DescribedSessions described{}; // as the evaluator knows it
-    bool is_undescribed = false;   // what came last, and was left out
-    Instant waiting_since{};
-    std::optional<Follower> follower; // from the first description on
-    DuplicateSourceDetector twins;
-    SessionWriters writers{};
-    std::string second_writer{}; // sentence; empty: there was none
-    std::string service{};       // that described it last, host and process; empty: not known
-    std::string service_before{};
-  };
+  using Stream = SourceStream;
 
-  [[nodiscard]] static bool is_triggered(const Stream& stream);
-  [[nodiscard]] static bool has_answered(const Stream& stream);
   [[nodiscard]] bool is_described(const Stream& stream, std::uint64_t session) const;
-  [[nodiscard]] static bool is_unfit(const Stream& stream, std::uint64_t session);
-  static void take_description(Stream& stream, const wire::SourceDescription& description);
-  static void replace_unfit(Stream& stream);
   [[nodiscard]] Expected<void> describe(const std::string& name, Stream& stream,
                                         const wire::SourceDescription& description, Instant now);
   // Why the run cannot go on by this description of a source that it knows; empty: it can.
   [[nodiscard]] std::string rejection_reason(const std::string& name,
                                              const wire::SourceDescription& description);
-  [[nodiscard]] Follower make_follower(const std::string& name, bool triggered);
+  [[nodiscard]] Stream::Follower make_follower(const std::string& name, bool triggered);
   template <class Message>
   [[nodiscard]] Expected<void>
   open_reader(std::map<wire::SourceKind, bus::Reader<Message>>& readers, wire::SourceKind kind);

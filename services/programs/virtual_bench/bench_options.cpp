@@ -5,22 +5,17 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
-#include "analysis/sine/multisine_lines.hpp"
-#include "analysis/sine/schroeder_phases.hpp"
 #include "services/base/parsed_number.hpp"
 #include "services/base/version.hpp"
 #include "services/daemon/program/command_line.hpp"
 #include "services/daemon/program/options.hpp"
+#include "services/programs/virtual_bench/excitation_option.hpp"
 #include "services/programs/virtual_bench/fault_option.hpp"
 
 namespace dyncal::inline programs::virtual_bench {
 namespace {
 
 namespace device = dyncal::drivers::virtual_bench;
-
-// By which the exciter may raise the peaks of a multi-sine: it turns every line by another angle.
-constexpr double dispersion = 1.4;
-constexpr std::size_t samples_of_period = 1 << 15;
 
 // The words of the command line as they come, before they are checked against each other.
 struct Words {
@@ -41,9 +36,7 @@ struct Words {
   std::optional<double> interferometer_nm;
   device::InterferometerSettings interferometer;
   std::vector<std::string> faults;
-  std::vector<std::string> frequencies{"10", "20", "40", "80", "160"};
-  std::vector<double> levels{10.0};
-  double multisine_period_s = 0.0;
+  ExcitationWords excitation;
 };
 
 template <class... Parts>
@@ -98,9 +91,10 @@ void add_model_options(CLI::App& app, Words& words, BenchOptions& options) {
   app.add_option("--response", words.response,
                  "CSV file with the response of the sensor's z axis, in place of the preset's: "
                  "frequency_hz,magnitude,phase_rad (magnitude of m/s^2 over m/s^2; lead)");
-  app.add_option("--frequencies", words.frequencies, "in Hz, decimal text, comma separated")
+  app.add_option("--frequencies", words.excitation.frequencies,
+                 "in Hz, decimal text, comma separated")
       ->delimiter(',');
-  app.add_option("--levels", words.levels,
+  app.add_option("--levels", words.excitation.levels,
                  "in m/s^2, one or one per frequency; the highest decides the ranges")
       ->delimiter(',');
   add_checked(app, "--acs-rate", words.acs_rate_hz,
@@ -160,7 +154,7 @@ void add_recording_options(CLI::App& app, Words& words, BenchOptions& options) {
               CLI::NonNegativeNumber);
   add_checked(app, "--duration-per-step", options.programme.duration_s,
               "with --record-csv, seconds", CLI::PositiveNumber);
-  app.add_option("--multisine", words.multisine_period_s,
+  app.add_option("--multisine", words.excitation.multisine_period_s,
                  "all frequencies at once, as lines of a waveform of so many seconds: what "
                  "--record-csv excites, and what the ranges are for")
       ->check(CLI::PositiveNumber);
@@ -212,49 +206,10 @@ Expected<void> read_scope_faults(const std::vector<std::string>& texts,
   return {};
 }
 
-// Phases that keep the peaks low, and the ranges of the instruments by these peaks.
-Expected<void> read_multisine(const Words& words, BenchOptions& options) {
-  device::Programme& programme = options.programme;
-  const auto checked =
-      analysis::check_multisine_lines(programme.frequencies_hz, words.multisine_period_s);
-  if (!checked) {
-    return refuse("--frequencies: {}", checked.error().message);
-  }
-  programme.phases_rad = analysis::schroeder_phases(programme.levels_m_s2);
-  std::vector<analysis::MultisineLine> lines;
-  for (std::size_t i = 0; i < programme.phases_rad.size(); ++i) {
-    lines.push_back({*parsed_number<double>(programme.frequencies_hz[i]), programme.levels_m_s2[i],
-                     programme.phases_rad[i]});
-  }
-  const auto waveform =
-      analysis::multisine_waveform(lines, words.multisine_period_s, samples_of_period);
-  const auto [lowest, highest] = std::ranges::minmax(waveform);
-  options.bench.highest_level_m_s2 = dispersion * std::max(-lowest, highest);
-  return {};
-}
-
 Expected<void> read_programme(const Words& words, BenchOptions& options) {
-  for (const std::string& text : words.frequencies) {
-    const auto frequency_hz = parsed_number<double>(text);
-    if (!frequency_hz || !(*frequency_hz > 0.0 && *frequency_hz <= 5000.0)) {
-      return refuse("--frequencies: \"{}\" is not a frequency between 0 and 5000 Hz", text);
-    }
-  }
-  if (words.levels.size() != 1 && words.levels.size() != words.frequencies.size()) {
-    return refuse("--levels: give one level, or one for each of the {} frequencies",
-                  words.frequencies.size());
-  }
-  for (const double level : words.levels) {
-    if (!(level > 0.0 && level <= 500.0)) {
-      return refuse("--levels: {} m/s^2 is not between 0 and 500", level);
-    }
-  }
-  options.programme.frequencies_hz = words.frequencies;
-  options.programme.levels_m_s2 =
-      words.levels.size() == 1 ? std::vector<double>(words.frequencies.size(), words.levels.front())
-                               : words.levels;
-  options.bench.highest_level_m_s2 = *std::max_element(words.levels.begin(), words.levels.end());
-  return words.multisine_period_s > 0.0 ? read_multisine(words, options) : Expected<void>{};
+  DYNCAL_TRY(options.bench.highest_level_m_s2,
+             read_excitation(words.excitation, options.programme));
+  return {};
 }
 
 Expected<void> read_can(const Words& words, BenchOptions& options) {

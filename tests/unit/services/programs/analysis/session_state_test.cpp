@@ -40,8 +40,8 @@ TEST(SessionState, KnowsSinceWhenASourceIsAway) {
 
 TEST(Arming, WaitsLongerForASourceThatIsThere) {
   Arming arming{Instant{} + 100s};
-  const SourceStreams::Missing away{"", false, false};
-  const SourceStreams::Missing there{"", true, false};
+  const MissingSource away{"", false, false};
+  const MissingSource there{"", true, false};
   EXPECT_FALSE(arming.is_over(away, arming.since + Arming::limit));
   EXPECT_TRUE(arming.is_over(away, arming.since + Arming::limit + 1ms));
   EXPECT_FALSE(arming.is_over(there, arming.since + Arming::present_limit));
@@ -50,9 +50,9 @@ TEST(Arming, WaitsLongerForASourceThatIsThere) {
 
 TEST(Arming, GivesASourceThatHasStartedTimeToAnswer) {
   Arming arming{Instant{} + 100s};
-  const SourceStreams::Missing starting{"", true, true};
+  const MissingSource starting{"", true, true};
   EXPECT_FALSE(arming.is_over(starting, arming.since + 14s));
-  const SourceStreams::Missing there{"", true, false};
+  const MissingSource there{"", true, false};
   EXPECT_FALSE(arming.is_over(there, arming.since + 14s + Arming::limit));
   EXPECT_TRUE(arming.is_over(there, arming.since + 14s + Arming::limit + 1ms));
 }
