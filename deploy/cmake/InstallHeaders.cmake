@@ -10,6 +10,7 @@
 cmake_minimum_required(VERSION 3.25)
 
 set(private
+  analysis/response/response_residuals.hpp
   analysis/response/response_weights.hpp
   analysis/sine/equidistant_axis.hpp
   analysis/sine/extended_basis.hpp

@@ -95,14 +95,14 @@ void ProgramRun::check_result() const {
   const std::filesystem::path output = result_->string() + ".check";
   auto check = started(DYNCAL_PYTHON, {"-B", DYNCAL_CHECK_RESULT, schema_, result_->string()},
                        {output, output}, result_->parent_path());
-  const auto exit = check.wait_for(std::chrono::seconds(60));
+  const auto exit = check.wait_for(patience);
   if (exit && exit->status == status_not_checked) {
     std::cerr << read(output);
     return;
   }
   if (!exit || exit->status != 0) {
     throw std::runtime_error("the result does not agree with its schema, or the check ended with " +
-                             (exit ? std::to_string(exit->status) : "nothing in a minute") + ": " +
+                             (exit ? std::to_string(exit->status) : "nothing in time") + ": " +
                              read(output));
   }
 }
