@@ -84,8 +84,9 @@ def make_old_cyclonedds(pip, folder):
     for name, there in (("include", "/usr/include"), ("bin", "/usr/bin"), ("lib", library)):
         (home / name).unlink(missing_ok=True)
         (home / name).symlink_to(there)
+    own = ["--no-deps", "--no-cache-dir"]  # pip keeps what was compiled, on another library too
     return call(
-        [*pip, "--no-deps", "--target", folder / "cyclonedds-0.10", OLD_CYCLONEDDS],
+        [*pip, *own, "--target", folder / "cyclonedds-0.10", OLD_CYCLONEDDS],
         env={**os.environ, "CYCLONEDDS_HOME": str(home)},
     )
 
