@@ -13,8 +13,8 @@ namespace dyncal::bus {
 // the oldest that everybody has.
 inline constexpr int late_joiner_blocks = 1500;
 
-// The same in Fast DDS where packets are long, and so many blocks are on their way: a reader's
-// socket then holds no more of them than it reads in some milliseconds, and none is dropped.
+// The same in Fast DDS where packets are long, acknowledged or on their way: a reader's socket then
+// holds no more than it reads in some milliseconds.
 inline constexpr int fast_dds_window_blocks = 64;
 
 // Blocks of one source that a writer that never waits keeps for repairs, dropping the oldest
@@ -143,8 +143,8 @@ inline constexpr std::uint32_t max_sample_bytes = 64U << 20U;
 
 inline constexpr int wanted_receive_buffer_bytes = 4 << 20;
 
-// After so many bytes Fast DDS asks its readers what they have, where a block is a packet; it is
-// the size of its socket's buffer.
-inline constexpr int fast_dds_long_packets_bytes = 256 << 10;
+// Of a socket of Fast DDS where packets are long. After so many bytes it asks its readers what they
+// have.
+inline constexpr int long_packets_send_buffer_bytes = 256 << 10;
 
 } // namespace dyncal::bus

@@ -210,6 +210,8 @@ class Service(unittest.TestCase):
         for words in (
             ("init", authority, "--laboratory", "Test"),
             ("issue", authority, "watcher", "--output", keys),
+            ("issue", authority, "web", "--output", self.shared / "web"),
+            ("revoke", authority, "web"),
         ):
             done = host.call("dyncal", "security", *words)
             self.assertEqual(done.returncode, 0, done.stderr)
@@ -227,7 +229,7 @@ class Service(unittest.TestCase):
             self.fail(f"{UNIT} does not start: {host.journal(UNIT)[-3000:]}")
         self.assertEqual(self.state(), "active")
         before = host.show(UNIT, "MainPID")
-        host.call("touch", f"{keys}/revoked.pem")
+        host.call("cp", authority / "revoked.pem", f"{keys}/revoked.pem")
         self.wait_for_journal("joining anew")
         wait_until(lambda: host.journal(UNIT).count("hands on to mqtt") == 2, "it to be back")
         self.assertEqual((host.show(UNIT, "MainPID"), self.restarts()), (before, 0))
@@ -271,8 +273,8 @@ class Service(unittest.TestCase):
 
 
 def make_wheels():
-    if list(WHEELS.glob("dyncal_bridge-*.whl")):
-        shutil.rmtree(WHEELS)  # of an earlier tree
+    for wheels in (WHEELS, SECURED_WHEELS):
+        shutil.rmtree(wheels, ignore_errors=True)  # of an earlier tree
     done = install("--make-wheels", WHEELS)
     if done.returncode != 0:
         print(f"SKIPPED: the wheels cannot be had: {done.stderr[-1000:]}")

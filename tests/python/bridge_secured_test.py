@@ -6,6 +6,7 @@ folder, or one of another authority, hears nothing; a list of revoked certificat
 another one makes the bridge join anew.
 """
 
+import csv
 import json
 import os
 import pathlib
@@ -20,6 +21,7 @@ from bridge_peers import PACKAGE, Broker, Process, messages_in, wait_until  # no
 from played_laboratory import PlayedLaboratory  # noqa: E402
 
 BENCH = "played"
+SAMPLES = 'samples = ["*/dau/acceleration_z"]\nmax_rate_hz = 10_000\n'
 
 
 def dyncal(*words):
@@ -53,6 +55,9 @@ class Secured(unittest.TestCase):
                 ("open", ()),
             )
         }
+        broker, folder = cls.bridges["watcher"][1:]
+        cls.samples = broker.subscriber(folder / "samples.log", "dyncal/benches/+/samples/#")
+        cls.addClassCleanup(cls.samples.end)
         run = cls.laboratory.run(cls.secured_as("operator"))
         cls.laboratory.expect_same_bits(run)
         result = json.loads((cls.laboratory.folder / "run.json").read_text())
@@ -72,7 +77,7 @@ class Secured(unittest.TestCase):
         broker = Broker(folder)
         cls.addClassCleanup(broker.end)
         settings = folder / "bridge.toml"
-        settings.write_text(f'[mqtt]\nbroker = "127.0.0.1:{broker.port}"\n')
+        settings.write_text(f'[mqtt]\nbroker = "127.0.0.1:{broker.port}"\n{SAMPLES}')
         python = [sys.executable, "-B", "-m", "dyncal_bridge", settings]
         bridge = Process(
             [*python, "--domain", cls.laboratory.domain, *words],
@@ -95,6 +100,13 @@ class Secured(unittest.TestCase):
         self.assertEqual(len(self.stated), 18)
         wait_until(lambda: self.points("watcher").keys() == self.stated.keys(), "all points")
         self.assertEqual(self.points("watcher"), self.stated)
+
+    def test_the_watcher_sees_the_samples(self):
+        with open(self.laboratory.folder / "dau.csv", encoding="utf-8") as lines:
+            values = {float(row["acceleration_z"]) for row in csv.DictReader(lines)}
+        seen = [v for _, rows in messages_in(self.samples.text()) for v in rows["values"]]
+        self.assertGreater(len(seen), 1000)
+        self.assertLessEqual(set(seen), values)
 
     def test_others_see_nothing(self):
         for name in ("stranger", "open"):

@@ -21,6 +21,7 @@ sys.path.insert(0, str(PACKAGE))
 from dyncal.dds import types  # noqa: E402
 from dyncal_bridge import bench_view, plug  # noqa: E402
 from dyncal_bridge.bounded_queue import BoundedQueue  # noqa: E402
+from dyncal_bridge.command import RevokedCertificates  # noqa: E402
 from dyncal_bridge.document import Document, NewRun  # noqa: E402
 from dyncal_bridge.sample_rows import Decimation, samples_of  # noqa: E402
 
@@ -167,6 +168,32 @@ class SettingsFiles(unittest.TestCase):
         done = check(file, "--check", "--dds", "fastdds")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertIn("hands on to foxglove, mqtt, opcua", done.stdout)
+
+
+class Revoked(unittest.TestCase):
+    """Only another whole list counts, and only when it stays."""
+
+    def list_of(self, text):
+        return f"-----BEGIN X509 CRL-----\n{text}\n-----END X509 CRL-----\n"
+
+    def test_what_counts_as_another_list(self):
+        folder = FOLDER / "revoked"
+        folder.mkdir(exist_ok=True)
+        file = folder / "revoked.pem"
+        first, second = self.list_of("first"), self.list_of("second")
+        file.write_text(first)
+        revoked = RevokedCertificates(str(folder))
+        for text in (first, second[:-9], "", first):  # copied again, half copied, emptied
+            file.write_text(text)
+            self.assertEqual([revoked.have_changed() for _ in range(3)], [False] * 3, text)
+        file.unlink()
+        self.assertFalse(revoked.have_changed() or revoked.have_changed())
+        file.write_text(second)
+        self.assertEqual([revoked.have_changed() for _ in range(3)], [False, True, True])
+
+    def test_nothing_is_looked_at_where_nothing_is_secured(self):
+        revoked = RevokedCertificates("")
+        self.assertFalse(revoked.have_changed() or revoked.have_changed())
 
 
 class Rows(unittest.TestCase):

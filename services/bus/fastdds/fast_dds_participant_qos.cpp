@@ -209,7 +209,7 @@ fast_dds_participant_qos(const ParticipantOptions& options, const SecurityFiles*
   const bool secured = security != nullptr;
   const bool has_long_packets = !secured && state->packet_bytes > max_udp_payload_bytes;
   set_transport(address, secured ? longest_payload_bytes : state->packet_bytes,
-                has_long_packets ? fast_dds_long_packets_bytes : wanted_receive_buffer_bytes,
+                has_long_packets ? long_packets_send_buffer_bytes : wanted_receive_buffer_bytes,
                 options.screened ? state : nullptr, qos);
   const bool multicast = options.multicast && !is_loopback(address);
   set_locators(options.domain, multicast, address, qos);

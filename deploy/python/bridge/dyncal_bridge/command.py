@@ -119,22 +119,25 @@ def stop(plugs: Sequence[Plug], laboratory: Laboratory) -> None:
 class RevokedCertificates:
     """The list as it was when this program joined; Cyclone DDS looks at it then, and never again.
 
-    folder: that of a secured program, or "".
+    One that is copied once more changes nothing, and one that is half copied is not taken: it is
+    another list when two looks, one after the other, find the same whole one. folder: that of a
+    secured program, or "".
     """
 
     def __init__(self, folder: str) -> None:
         self._file = revoked_list(folder) if folder else None
-        self._joined_with = self._state()
+        self._joined_with = self._seen = self._read()
 
     def have_changed(self) -> bool:
-        return self._state() not in (None, self._joined_with)
+        before, self._seen = self._seen, self._read()
+        is_whole = self._seen.rstrip().endswith(b"-----END X509 CRL-----")
+        return is_whole and self._seen == before and self._seen != self._joined_with
 
-    def _state(self) -> tuple[int, int, int] | None:
+    def _read(self) -> bytes:
         try:
-            found = self._file.stat() if self._file else None
+            return self._file.read_bytes() if self._file else b""
         except OSError:
-            return None  # it is being renewed
-        return (found.st_ino, found.st_mtime_ns, found.st_size) if found else None
+            return b""  # it is being renewed
 
 
 def run(options: argparse.Namespace) -> int:

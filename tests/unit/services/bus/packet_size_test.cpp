@@ -103,5 +103,41 @@ TEST_P(LongPackets, CarryBlocksOfAnyLengthWholeAndInOrder) {
   EXPECT_EQ(received, blocks);
 }
 
+// More blocks than may be on their way: neither a reader that has yet to take them nor one that has
+// gone holds the writer up, and none is missing.
+TEST_P(LongPackets, ArePacedByAcknowledgmentsAlone) {
+  constexpr std::uint64_t blocks = 400;
+  Participant writing = join(*GetParam().writer);
+  auto writer =
+      writing.writer<wire::SampleBlock>("DauSamples", Profile::paced_samples, "paced").value();
+  wire::SampleBlock block;
+  block.bench("paced");
+  block.source("dau");
+  block.values().assign(5000, 1.0);
+  const auto write = [&] {
+    for (std::uint64_t number = 0; number < blocks; ++number) {
+      block.block(number);
+      ASSERT_EQ(writer.write(block, tests::patience), WriteOutcome::written) << number;
+    }
+  };
+  {
+    Participant reading = join(*GetParam().reader);
+    WakeUp bell;
+    auto reader =
+        reading.reader<wire::SampleBlock>("DauSamples", Profile::live_samples, "paced", {}).value();
+    const auto deadline = std::chrono::steady_clock::now() + tests::patience;
+    while ((writer.matched_readers() == 0 || reader.matched_writers() == 0) &&
+           std::chrono::steady_clock::now() < deadline) {
+      bell.wait_until(std::chrono::steady_clock::now() + std::chrono::milliseconds(5));
+    }
+    write();
+    ASSERT_TRUE(writer.wait_for_acknowledgments(tests::patience));
+    std::uint64_t received = 0;
+    reader.take([&](const wire::SampleBlock& one) { EXPECT_EQ(one.block(), received++); });
+    EXPECT_EQ(received, blocks);
+  }
+  write();
+}
+
 } // namespace
 } // namespace dyncal::bus
