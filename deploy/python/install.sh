@@ -127,6 +127,8 @@ contents() {
 if [[ -n $wheels ]]; then
   compgen -G "$wheels/dyncal_bridge-*.whl" >/dev/null ||
     fail "--wheels $wheels: holds no wheel of dyncal-bridge; fill it by --make-wheels"
+  [[ -z $secured ]] || compgen -G "$wheels/cyclonedds-0.10.5-*.whl" >/dev/null ||
+    fail "--secured: $wheels holds no cyclonedds 0.10.5; fill it by --make-wheels --secured"
 fi
 environment=$prefix/lib/dyncal-bridge
 wanted=$(contents | sha256sum)

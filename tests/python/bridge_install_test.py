@@ -123,6 +123,7 @@ class Installation(unittest.TestCase):
             ("--prefx", "x"): (2, "'--prefx' is none of --prefix"),
             ("--prefix",): (1, "--prefix needs a value"),
             ("--wheels", FOLDER): (1, "holds no wheel of dyncal-bridge"),
+            ("--secured", "--wheels", WHEELS): (1, "holds no cyclonedds 0.10.5; fill it by"),
         }
         for words, (status, sentence) in cases.items():
             done = install(*words)
