@@ -66,11 +66,17 @@ std::string value_difference(const StepResult& published, const StepResult& agai
                                           published.frequency_text_hz, published.step, difference);
 }
 
+// Where the beginning of an excitation did not come, later samples are evaluated in its place.
+bool lacks_samples(const SourceSamples& again, const SourceSamples& published) {
+  return again.used < published.used || again.first_stamp_ns > published.first_stamp_ns ||
+         again.last_stamp_ns < published.last_stamp_ns;
+}
+
 bool has_fewer_samples(const StepResult& again, const StepResult& published) {
   return std::any_of(again.samples.begin(), again.samples.end(), [&](const SourceSamples& source) {
     return std::any_of(published.samples.begin(), published.samples.end(),
                        [&](const SourceSamples& one) {
-                         return one.source == source.source && source.used < one.used;
+                         return one.source == source.source && lacks_samples(source, one);
                        });
   });
 }

@@ -3,9 +3,9 @@
 // Two values agree where magnitude and phase differ by at most 0.01 of the larger u, and u by at
 // most 1 % of it: the same samples give the same bits, and what a computer of another kind rounds
 // otherwise is far below. A mean and a group delay are held in the same way. A value for which the
-// other evaluation has fewer samples, or none, is missing: it says nothing about the published one.
-// What the other one has beyond is left out. Phases are compared modulo 2 pi. Pure functions, any
-// thread.
+// other evaluation has fewer samples, later ones in their place, or none, is missing: it says
+// nothing about the published one. What the other one has beyond is left out. Phases are compared
+// modulo 2 pi. Pure functions, any thread.
 #pragma once
 
 #include <cstddef>
@@ -23,7 +23,7 @@ struct OutcomeAgreement {
   std::string difference;    // the first one, of a value or a mean; empty: all that is there agrees
 };
 
-// Whether it is the same single result, of as many samples: what can be held against each other.
+// Whether it is the same single result, of no fewer samples: what can be held against each other.
 [[nodiscard]] bool gives_again(const StepResult& again, const StepResult& published);
 
 [[nodiscard]] OutcomeAgreement hold_against(const RunOutcome& published, const RunOutcome& again);

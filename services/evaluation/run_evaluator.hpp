@@ -4,9 +4,9 @@
 // Fed with descriptions, blocks and announcements in any order of arrival between sources; gives
 // results as soon as the samples of a step have come from every source, and the run's transfer
 // functions and sample clock report at its end. A step is given up, with a result that names the
-// reason, when its excitation was announced as over and two seconds of later samples show nothing
-// of it in a source, when a source has ended without it, or when the run is over. The same samples
-// give the same results bit for bit.
+// reason, when its excitation was announced as over and later samples show nothing of it in a
+// source (run_records.hpp), when a source has ended without it, or when the run is over. The same
+// samples give the same results bit for bit.
 //
 // A result beside a mains line, or with a harmonic folded onto it, is provisional and flagged until
 // the end of the run, when all steps tell how large that line may be (line_bounds.hpp). Where they

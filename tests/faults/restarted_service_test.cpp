@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/system/evaluated_again.hpp"
 #include "tests/system/live_bench.hpp"
 #include "tests/system/test_folder.hpp"
 
@@ -54,6 +55,7 @@ TEST_P(RestartedService, IsWaitedForAndTheRunIsWhole) {
     EXPECT_EQ(point["lost"].get<int>(), 0);
     EXPECT_EQ(point["flags"].size(), 0U) << point["flags"];
   }
+  EXPECT_EQ(points_evaluated_again(folder), result["points"]);
   EXPECT_TRUE(bench.wait_for_output("OFF"));
 }
 

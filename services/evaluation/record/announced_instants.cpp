@@ -17,6 +17,28 @@ void add_newest(std::deque<std::int64_t>& values, std::int64_t value) {
 
 } // namespace
 
+void AnnouncedInstants::add(const std::string& source, const SourceBlock& block,
+                            const BlockTimes& times) {
+  sent_[source].add(block, times);
+  const auto [newest, is_first] = newest_heard_ns_.try_emplace(source, times.heard_ns);
+  newest->second = std::max(newest->second, times.heard_ns);
+}
+
+void AnnouncedInstants::add_over(std::size_t step, std::int64_t heard_ns) {
+  over_heard_ns_.emplace(step, heard_ns);
+  for (const auto& [source, newest_ns] : newest_heard_ns_) {
+    heard_ns = std::max(heard_ns, newest_ns);
+  }
+  over_known_ns_.emplace(step, heard_ns);
+}
+
+bool AnnouncedInstants::has_gone_on(const std::string& source, std::size_t step) const {
+  const auto newest = newest_heard_ns_.find(source);
+  const auto over = over_known_ns_.find(step);
+  return newest == newest_heard_ns_.end() || over == over_known_ns_.end() ||
+         newest->second - over->second >= least_wait.count();
+}
+
 void AnnouncedInstants::hear(std::int64_t heard_ns) {
   add_newest(heard_ns_, heard_ns);
 }

@@ -5,15 +5,19 @@
 // later step. And what was heard in one instant, was so in both clocks: the difference of their
 // stamps is the offset between them; of several the median counts.
 //
-// In a clock an instant is known by when blocks were sent (sent_blocks.hpp). Where nobody says so,
-// it is taken for the newest stamp that had come when the announcement was handed over: then, and
-// in an earlier session of a source, it is only as good as its samples came soon.
+// In a clock an instant is known by when blocks were sent (sent_blocks.hpp). A source whose samples
+// come late has sent them late as well where its own service was stopped: nothing of a step is
+// missing before the source has gone on for `least_wait` since others knew that it was over. Where
+// nobody says when anything was sent or heard, an instant
+// is taken for the newest stamp that had come when the announcement was handed over: then, and in
+// an earlier session of a source, it is only as good as its samples came soon.
 //
 // Stamps are int64 ns in the clock of the source and its session; a new session may begin anew.
 // Keeps an instant a step and source, the newest `max_heard` announcements, and of the newest
 // `max_sessions` pairs of sessions the newest `max_heard` offsets. Does not fail; one thread.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -33,16 +37,16 @@ public:
   using Sessions = std::pair<std::uint32_t, std::uint32_t>; // of the first source and the second
   using Sources = std::pair<std::string, std::string>;
 
-  void add(const std::string& source, const SourceBlock& block, const BlockTimes& times) {
-    sent_[source].add(block, times);
-  }
+  static constexpr std::chrono::nanoseconds least_wait = std::chrono::seconds(2);
+
+  void add(const std::string& source, const SourceBlock& block, const BlockTimes& times);
   void hear(std::int64_t heard_ns);
 
   // The first instant that is given for a step counts. By the newest stamp that has come:
   void add_over(const std::string& source, std::size_t step, std::int64_t newest_ns) {
     newest_when_over_ns_[source].emplace(step, newest_ns);
   }
-  void add_over(std::size_t step, std::int64_t heard_ns) { over_heard_ns_.emplace(step, heard_ns); }
+  void add_over(std::size_t step, std::int64_t heard_ns);
   // The clock of a source that restarts may begin anew, and that of one that has sent nothing
   // begins with its first sample.
   void follow(const std::string& source, std::int64_t newest_ns);
@@ -51,6 +55,9 @@ public:
   // As well as it is known.
   [[nodiscard]] std::optional<std::int64_t> over_ns(const std::string& source,
                                                     std::size_t step) const;
+
+  // True where no time is known.
+  [[nodiscard]] bool has_gone_on(const std::string& source, std::size_t step) const;
 
   // Of the second clock behind the first, by the newest stamps that have come.
   void add_offset(const Sessions& sessions, std::int64_t offset_ns);
@@ -64,6 +71,8 @@ private:
   std::map<std::string, SentBlocks> sent_;
   std::deque<std::int64_t> heard_ns_;
   std::map<std::size_t, std::int64_t> over_heard_ns_;
+  std::map<std::string, std::int64_t> newest_heard_ns_; // of blocks
+  std::map<std::size_t, std::int64_t> over_known_ns_;   // newest of all that was heard by then
   std::map<std::string, std::map<std::size_t, std::int64_t>> newest_when_over_ns_;
   std::map<Sessions, std::deque<std::int64_t>> offsets_ns_;
 };

@@ -1,8 +1,8 @@
 // How far the excitation of a run has come, by what is announced and by the host times of samples.
 //
 // A step is over in a source when its excitation was announced as over and the source has sent
-// samples from `grace` later, when the source has ended, or when the run is cut short. Belongs to
-// one thread; the recipe must outlive it.
+// samples from `RunRecords::grace` later, when the source has ended, or when the run is cut short.
+// Belongs to one thread; the recipe must outlive it.
 #pragma once
 
 #include <cstddef>

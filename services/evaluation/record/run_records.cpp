@@ -1,10 +1,7 @@
 #include "services/evaluation/record/run_records.hpp"
 
 #include <algorithm>
-#include <array>
 #include <limits>
-
-#include <fmt/core.h>
 
 namespace dyncal::inline evaluation {
 
@@ -12,7 +9,7 @@ RunRecords::RunRecords(const Recipe& recipe, const std::vector<SearchedChannel>&
                        std::size_t capacity, bool behind,
                        std::shared_ptr<const RunSchedule> schedule, std::stop_token given_up)
     : excitation_(recipe), behind_(behind), schedule_(std::move(schedule)),
-      given_up_(std::move(given_up)) {
+      given_up_(std::move(given_up)), compared_(excitation_, instants_, searches_) {
   for (const std::string& source : recipe.sources()) {
     records_.emplace(source, std::make_unique<SourceRecord>(source, capacity));
   }
@@ -100,8 +97,13 @@ bool RunRecords::is_over_in(const std::string& source, std::size_t step) const {
     return true;
   }
   const auto newest_ns = record.newest_stamp_ns();
-  const auto then_ns = instants_.newest_when_over_ns(source, step);
-  return newest_ns && then_ns && *then_ns <= *newest_ns && *newest_ns - *then_ns > grace.count();
+  const auto over_ns = instants_.over_ns(source, step);
+  const auto had_come_ns = instants_.newest_when_over_ns(source, step);
+  if (!newest_ns || !over_ns || !had_come_ns || *had_come_ns > *newest_ns) {
+    return false;
+  }
+  const std::int64_t then_ns = std::min(*over_ns, *had_come_ns + longest_delay.count());
+  return *newest_ns - then_ns > grace.count() && instants_.has_gone_on(source, step);
 }
 
 // That samples may show by now.
@@ -112,7 +114,7 @@ std::size_t RunRecords::steps_searched() const {
 bool RunRecords::end_session(const std::string& source, std::size_t next_step) {
   bool is_needed = false;
   const std::size_t expected = steps_searched();
-  for (Search& search : searches_) {
+  for (ChannelSearch& search : searches_) {
     if (search.source == source && expected > 0) {
       search_one(search, expected);
       search.steps.end_session();
@@ -134,19 +136,17 @@ void RunRecords::search(std::size_t end_step) {
   }
   for (bool again = true; again;) {
     search_all(expected);
-    const std::size_t lacking = lacking_.size();
-    compare_instants();
-    again = lacking_.size() > lacking; // what was found in error is searched once more
+    again = compared_.compare(); // what was found in error is searched once more
   }
 }
 
 void RunRecords::search_all(std::size_t expected) {
-  for (Search& search : searches_) {
+  for (ChannelSearch& search : searches_) {
     search_one(search, expected);
   }
 }
 
-void RunRecords::search_one(Search& search, std::size_t expected) const {
+void RunRecords::search_one(ChannelSearch& search, std::size_t expected) const {
   search.steps.advance(expected - 1);
   while (search.steps.step() < expected && !given_up_.stop_requested() &&
          is_over_in(search.source, search.steps.step())) {
@@ -155,114 +155,13 @@ void RunRecords::search_one(Search& search, std::size_t expected) const {
   }
 }
 
-void RunRecords::compare_instants() {
-  if (!excitation_.is_conducted()) {
-    return;
-  }
-  for (; compared_ < excitation_.order().size() && is_searched(compared_); ++compared_) {
-    compare_with_announced(compared_);
-    compare_with_each_other(compared_);
-  }
-}
-
-// Of a source that was there from the beginning of the run, and goes on, the steps are in their
-// order.
-void RunRecords::compare_with_announced(std::size_t step) {
-  for (Search& search : searches_) {
-    // What is evaluated, not what was excited: an exciter may go on.
-    const auto part = search.steps.interval(step);
-    const auto over_ns = instants_.over_ns(search.source, step);
-    const std::uint32_t session = of(search.source).restarts();
-    if (part && over_ns && search.steps.session(step) == session &&
-        (may_begin_late_ || session > 0) &&
-        part->begin_ns + (part->end_ns - part->begin_ns) / 2 > *over_ns) {
-      pass_over(search, step, " before the step was over");
-    }
-  }
-}
-
-void RunRecords::compare_with_each_other(std::size_t step) {
-  if (searches_.size() != 2) {
-    return;
-  }
-  const ExcitationInBoth here = in_both(step);
-  if (here.first == nullptr || here.second == nullptr) {
-    return;
-  }
-  if (const auto later = later_search(step, here)) {
-    pass_over(searches_[*later], step,
-              fmt::format(", when {} showed one", searches_[1 - *later].channel));
-  }
-}
-
-std::optional<std::size_t> RunRecords::later_search(std::size_t step,
-                                                    const ExcitationInBoth& here) const {
-  const auto [first_session, second_session] = sessions(step);
-  const bool restarted = first_session > 0 || second_session > 0;
-  if (!may_be_another(step, restarted ? excitation_.order().size() : excitation_.steps_begun())) {
-    return std::nullopt;
-  }
-  if (const auto before = known_before(step)) {
-    const ExcitationInBoth there = in_both(*before);
-    const ClockRate rate = clock_rate(std::array{there, here});
-    return instants_agree(there, here, rate)
-               ? std::nullopt
-               : std::optional<std::size_t>(lateness_s(there, here, rate) > 0.0 ? 1 : 0);
-  }
-  const auto offset_ns = instants_.offset_ns({searches_[0].source, searches_[1].source},
-                                             {first_session, second_session});
-  if (!offset_ns) { // nothing tells what the new session shows
-    return restarted ? std::optional<std::size_t>(first_session > 0 ? 0 : 1) : std::nullopt;
-  }
-  const bool second_is_late = here.second->middle_ns() - here.first->middle_ns() > *offset_ns;
-  return are_one_excitation(here, *offset_ns) ? std::nullopt
-                                              : std::optional<std::size_t>(second_is_late ? 1 : 0);
-}
-
-// The last step before it that both have found in the same sessions.
-std::optional<std::size_t> RunRecords::known_before(std::size_t step) const {
-  for (std::size_t before = step; before-- > 0;) {
-    const ExcitationInBoth there = in_both(before);
-    if (there.first != nullptr && there.second != nullptr && sessions(before) == sessions(step)) {
-      return before;
-    }
-  }
-  return std::nullopt;
-}
-
-// A later step of its frequency, before `end_step`.
-bool RunRecords::may_be_another(std::size_t step, std::size_t end_step) const {
-  const StepOrder& order = excitation_.order();
-  for (std::size_t later = step + 1; later < end_step; ++later) {
-    if (order.step(later).frequency_text_hz == order.step(step).frequency_text_hz) {
-      return true;
-    }
-  }
-  return false;
-}
-
-// REQUIRES: two searches.
-ExcitationInBoth RunRecords::in_both(std::size_t step) const {
-  return {searches_[0].steps.excitation(step), searches_[1].steps.excitation(step)};
-}
-
-// REQUIRES: both have found it.
-AnnouncedInstants::Sessions RunRecords::sessions(std::size_t step) const {
-  return {*searches_[0].steps.session(step), *searches_[1].steps.session(step)};
-}
-
-void RunRecords::pass_over(Search& search, std::size_t step, std::string when) {
-  search.steps.pass_over(step);
-  lacking_[step].emplace(search.channel, std::move(when));
-}
-
 bool RunRecords::is_searched(std::size_t step) const {
-  return std::ranges::all_of(searches_,
-                             [&](const Search& search) { return search.steps.step() > step; });
+  return std::ranges::all_of(
+      searches_, [&](const ChannelSearch& search) { return search.steps.step() > step; });
 }
 
 bool RunRecords::is_expected(std::size_t step) const {
-  return std::ranges::all_of(searches_, [&](const Search& search) {
+  return std::ranges::all_of(searches_, [&](const ChannelSearch& search) {
     return search.steps.step() > step || search.steps.interval(step).has_value();
   });
 }
@@ -271,9 +170,8 @@ std::optional<TimeInterval> RunRecords::interval(std::size_t search, std::size_t
   return searches_.at(search).steps.interval(step);
 }
 
-std::vector<RunRecords::Search>::const_iterator
-RunRecords::search_of(const std::string& source) const {
-  return std::ranges::find_if(searches_, [&](const Search& one) {
+std::vector<ChannelSearch>::const_iterator RunRecords::search_of(const std::string& source) const {
+  return std::ranges::find_if(searches_, [&](const ChannelSearch& one) {
     return std::ranges::find(one.sources, source) != one.sources.end();
   });
 }
@@ -284,52 +182,8 @@ std::optional<TimeInterval> RunRecords::interval_in(const std::string& source,
   return search == searches_.end() ? std::nullopt : search->steps.interval(step);
 }
 
-bool RunRecords::agree_with_plan() const {
-  if (excitation_.order().size() > 1 && std::ranges::any_of(searches_, [](const Search& search) {
-        return search.steps.begins_within_step();
-      })) {
-    return false;
-  }
-  for (std::size_t step = 0; step < excitation_.order().size(); ++step) {
-    const bool found = std::ranges::all_of(
-        searches_, [&](const Search& search) { return search.steps.excitation(step) != nullptr; });
-    if (!found || !agree_with_step_before(step)) {
-      return false;
-    }
-  }
-  return true;
-}
-
-// With the last one of this frequency too: its phase tells most.
-bool RunRecords::agree_with_step_before(std::size_t step) const {
-  if (searches_.size() != 2) {
-    return true;
-  }
-  const ExcitationInBoth here = in_both(step);
-  for (std::size_t before = step; before-- > 0;) {
-    const ExcitationInBoth there = in_both(before);
-    const ClockRate rate = clock_rate(std::array{there, here});
-    if (before + 1 == step && !instants_agree(there, here, rate)) {
-      return false;
-    }
-    if (const auto level = levels_agree(there, here)) {
-      return *level && phases_agree(there, here, rate).value_or(true);
-    }
-  }
-  return true;
-}
-
 std::string RunRecords::why_missing(std::size_t step) const {
   return schedule_ && step < schedule_->problems.size() ? schedule_->problems[step] : "";
-}
-
-std::string RunRecords::when_missing(std::size_t step, const std::string& channel) const {
-  const auto channels = lacking_.find(step);
-  if (channels == lacking_.end()) {
-    return "";
-  }
-  const auto found = channels->second.find(channel);
-  return found == channels->second.end() ? "" : found->second;
 }
 
 TimeInterval RunRecords::where_missing(const std::string& source, std::size_t step) const {
@@ -379,7 +233,7 @@ SourceInterval RunRecords::samples(const std::string& source, const TimeInterval
 }
 
 void RunRecords::forget_before_step(std::size_t next_step) {
-  for (const Search& search : searches_) {
+  for (const ChannelSearch& search : searches_) {
     std::int64_t needed = search.steps.needed_from_ns();
     for (std::size_t step = next_step; step < search.steps.step(); ++step) {
       if (const auto from_ns = search.steps.needed_for(step)) {

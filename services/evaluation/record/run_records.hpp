@@ -19,11 +19,10 @@
 
 #include "services/evaluation/recipe/recipe.hpp"
 #include "services/evaluation/record/announced_instants.hpp"
-#include "services/evaluation/record/clock_comparison.hpp"
+#include "services/evaluation/record/compared_excitations.hpp"
 #include "services/evaluation/record/excitation_progress.hpp"
 #include "services/evaluation/record/run_schedule.hpp"
 #include "services/evaluation/record/source_record.hpp"
-#include "services/evaluation/record/step_search.hpp"
 #include "services/evaluation/record/time_interval.hpp"
 
 namespace dyncal::inline evaluation {
@@ -67,7 +66,7 @@ public:
     instants_.add(source, block, times);
   }
   // The records may lack the begin of the run, which nobody saw.
-  void may_begin_late(bool may) { may_begin_late_ = may; }
+  void may_begin_late(bool may) { compared_.may_begin_late(may); }
   [[nodiscard]] const ExcitationProgress& excitation() const { return excitation_; }
   [[nodiscard]] const RecipeStep& planned(std::size_t step) const {
     return excitation_.order().step(step);
@@ -82,9 +81,11 @@ public:
   [[nodiscard]] std::vector<std::string> undescribed() const;
 
   // Whether nothing of the step can come from the source any more: it has gone on for `grace` of
-  // its own time since the step was announced to be over. No host's clock is looked at.
+  // its own time since the step was announced to be over, as well as that instant is known
+  // (announced_instants.hpp); or, where a host's clock was set, since so long after what had come.
   [[nodiscard]] bool is_over_in(const std::string& source, std::size_t step) const;
   static constexpr std::chrono::nanoseconds grace = std::chrono::seconds(5);
+  static constexpr std::chrono::nanoseconds longest_delay = std::chrono::seconds(60);
 
   // The source is about to begin a new session, which drops what its record holds: steps of which
   // all planned samples have come count as found. Returns whether it holds such a step that is not
@@ -103,14 +104,14 @@ public:
   // Of the step in the clock of one search, in the order of the channels given.
   [[nodiscard]] std::optional<TimeInterval> interval(std::size_t search, std::size_t step) const;
 
-  // Every search has found every step, all of it, and the instants of their excitations agree
-  // between the searches. REQUIRES: all of the records was searched.
-  [[nodiscard]] bool agree_with_plan() const;
+  // compared_excitations.hpp. REQUIRES: all of the records was searched.
+  [[nodiscard]] bool agree_with_plan() const { return compared_.agree_with_plan(); }
   // Why a step has no value, where somebody has looked for it before (run_schedule.hpp).
   [[nodiscard]] std::string why_missing(std::size_t step) const;
-  // When a channel did not show a step, where what it shows was found to be of a later one: the end
-  // of a sentence, else empty.
-  [[nodiscard]] std::string when_missing(std::size_t step, const std::string& channel) const;
+  // compared_excitations.hpp
+  [[nodiscard]] std::string when_missing(std::size_t step, const std::string& channel) const {
+    return compared_.when_missing(step, channel);
+  }
   // Where in its clock a source may show a step that was not found: between those that were.
   [[nodiscard]] TimeInterval where_missing(const std::string& source, std::size_t step) const;
   // The step was announced to be over before the first sample of the source.
@@ -132,32 +133,13 @@ public:
   void forget_before_step(std::size_t next_step);
 
 private:
-  struct Search {
-    std::string source; // whose channel is searched
-    std::string channel;
-    std::vector<std::string> sources;
-    StepSearch steps;
-  };
-
   void note_newest_stamps();
-  [[nodiscard]] bool agree_with_step_before(std::size_t step) const;
   // That selects the samples of the source; none: the end.
-  [[nodiscard]] std::vector<Search>::const_iterator search_of(const std::string& source) const;
+  [[nodiscard]] std::vector<ChannelSearch>::const_iterator
+  search_of(const std::string& source) const;
   [[nodiscard]] std::size_t steps_searched() const;
   void search_all(std::size_t expected);
-  void search_one(Search& search, std::size_t expected) const;
-  // Passes over what was found of a step and is of a later one.
-  void compare_instants();
-  void compare_with_announced(std::size_t step);
-  void compare_with_each_other(std::size_t step);
-  // The search that shows a later step than the other one.
-  [[nodiscard]] std::optional<std::size_t> later_search(std::size_t step,
-                                                        const ExcitationInBoth& here) const;
-  [[nodiscard]] std::optional<std::size_t> known_before(std::size_t step) const;
-  [[nodiscard]] bool may_be_another(std::size_t step, std::size_t end_step) const;
-  [[nodiscard]] ExcitationInBoth in_both(std::size_t step) const;
-  [[nodiscard]] AnnouncedInstants::Sessions sessions(std::size_t step) const;
-  void pass_over(Search& search, std::size_t step, std::string when);
+  void search_one(ChannelSearch& search, std::size_t expected) const;
   [[nodiscard]] std::shared_ptr<const SourceRecord> part_of(const SourceRecord& whole,
                                                             const TimeInterval& interval) const;
   void follow_restarts();
@@ -169,11 +151,8 @@ private:
   std::map<std::string, std::unique_ptr<SourceRecord>> records_;
   AnnouncedInstants instants_;
   std::map<std::string, std::uint32_t> followed_; // session of a source, once it has sent samples
-  bool may_begin_late_ = false;
-  std::vector<Search> searches_;
-  std::size_t compared_ = 0; // steps before this one
-  // By step and channel that shows a later one: when it shows none.
-  std::map<std::size_t, std::map<std::string, std::string>> lacking_;
+  std::vector<ChannelSearch> searches_;
+  ComparedExcitations compared_;
   bool copies_ = false;
 };
 

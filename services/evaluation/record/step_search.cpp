@@ -289,6 +289,17 @@ void StepSearch::pass_over(std::size_t step) {
   search_step(step + 1);
 }
 
+bool StepSearch::search_behind(std::size_t step) {
+  const auto found = found_.find(step);
+  if (found == found_.end() || found->second.session != restarts_) {
+    return false;
+  }
+  search_from_ns_ = found->second.excitation.end_ns();
+  found_.erase(found, found_.end());
+  search_step(step);
+  return true;
+}
+
 const StepSearch::Found* StepSearch::with_interval(const TimeInterval& interval) const {
   const auto found = std::ranges::find_if(
       found_, [&](const auto& one) { return one.second.interval.begin_ns == interval.begin_ns; });

@@ -65,9 +65,14 @@ public:
   [[nodiscard]] TimeInterval where_missing(std::size_t step) const;
   // Of the source, that it was found in: in one session its clock goes on.
   [[nodiscard]] std::optional<std::uint32_t> session(std::size_t step) const;
+  // Of the source now.
+  [[nodiscard]] std::uint32_t present_session() const { return restarts_; }
   // What was found of the step is of a later one: this one, the record lacks. Those behind it are
   // searched once more.
   void pass_over(std::size_t step);
+  // What was found of the step is an earlier excitation: it is searched behind that, and so are
+  // those behind it. False, where the source was restarted since then.
+  bool search_behind(std::size_t step);
   // Some step was found where the record begins: what is missing of it, the order does not tell.
   [[nodiscard]] bool begins_within_step() const;
   // The step whose excitation is searched now.

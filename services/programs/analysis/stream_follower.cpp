@@ -6,27 +6,20 @@
 
 #include <fmt/core.h>
 
+#include "services/contract/number_in_source.hpp"
+
 namespace dyncal::inline programs {
 namespace {
 
 constexpr std::size_t max_left_sessions = 64;
 
 // Nothing for a message without a number.
-std::optional<StreamPosition> position_of(const wire::SampleBlock& block) {
-  return StreamPosition{block.session(), block.block()};
-}
-
-std::optional<StreamPosition> position_of(const wire::TriggeredRecord& record) {
-  return record.shot() == 0 ? std::nullopt
-                            : std::optional(StreamPosition{record.session(), record.shot()});
-}
-
-constexpr std::uint64_t first_number(const wire::SampleBlock& /*type*/) {
-  return 0;
-}
-
-constexpr std::uint64_t first_number(const wire::TriggeredRecord& /*type*/) {
-  return 1;
+template <class Message>
+std::optional<StreamPosition> position_of(const Message& message) {
+  const std::uint64_t number = contract::number_in_source(message);
+  return number < contract::first_number(message)
+             ? std::nullopt
+             : std::optional(StreamPosition{message.session(), number});
 }
 
 template <class Message>
@@ -56,8 +49,9 @@ bool StreamFollower<Message>::follows(const Message& message) const {
   if (!position || !newest_) {
     return true;
   }
-  return position->session == newest_->session ? position->number == newest_->number + 1
-                                               : position->number == first_number(message);
+  return position->session == newest_->session
+             ? position->number == newest_->number + 1
+             : position->number == contract::first_number(message);
 }
 
 template <class Message>

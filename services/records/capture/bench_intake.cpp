@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include "services/contract/contract_versions.hpp"
+#include "services/contract/number_in_source.hpp"
 #include "services/contract/session_number.hpp"
 #include "services/contract/source_kind.hpp"
 #include "services/records/capture/recorded_topics.hpp"
@@ -116,9 +117,10 @@ void BenchIntake::take(const Channel& channel, const T& message, std::string_vie
     if (!message.acknowledged_run().empty()) {
       remember(from.answered, message.acknowledged_run());
     }
-    const std::uint64_t number = number_in_source(message);
+    const std::uint64_t number = contract::number_in_source(message);
     const bool has_number = std::is_same_v<T, wire::SampleBlock> || number != 0;
-    if (has_number && !from.gaps.take_live(message.session(), number, clock_.now())) {
+    const SourceGaps::Place place{message.session(), number, contract::first_number(message)};
+    if (has_number && !from.gaps.take_live(place, clock_.now())) {
       return;
     }
   }
@@ -138,7 +140,7 @@ void BenchIntake::take_again(const T& message, std::string_view bytes) {
     return;
   }
   if (from.channel != nullptr &&
-      from.gaps.take_again(message.session(), number_in_source(message), clock_.now())) {
+      from.gaps.take_again(message.session(), contract::number_in_source(message), clock_.now())) {
     store(*from.channel, message, bytes);
   }
 }
@@ -156,7 +158,7 @@ void BenchIntake::store(const Channel& channel, const T& message, std::string_vi
   taken.message.publish_time = static_cast<std::uint64_t>(written_ns > 0 ? written_ns : now_ns);
   taken.message.data = as_sent ? bytes : std::string_view(encoded);
   if constexpr (is_of_source<T>) {
-    taken.message.sequence = static_cast<std::uint32_t>(number_in_source(message));
+    taken.message.sequence = static_cast<std::uint32_t>(contract::number_in_source(message));
   } else {
     taken.message.sequence = ++counts_[channel.id];
   }

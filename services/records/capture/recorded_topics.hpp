@@ -76,14 +76,6 @@ template <class T>
   }
 }
 
-// Number in its source, by which it is recognised: of samples and records. 0 as shot: none.
-[[nodiscard]] inline std::uint64_t number_in_source(const wire::SampleBlock& block) {
-  return block.block();
-}
-[[nodiscard]] inline std::uint64_t number_in_source(const wire::TriggeredRecord& record) {
-  return record.shot();
-}
-
 template <class T>
 inline constexpr bool is_of_source =
     std::is_same_v<T, wire::SampleBlock> || std::is_same_v<T, wire::TriggeredRecord>;

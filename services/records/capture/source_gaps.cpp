@@ -1,5 +1,6 @@
 #include "services/records/capture/source_gaps.hpp"
 
+#include <algorithm>
 #include <iterator>
 
 #include <fmt/core.h>
@@ -20,7 +21,7 @@ bool SourceGaps::note(std::uint64_t session, std::uint64_t number) {
       sessions_.pop_front();
     }
   }
-  Stretches& had = found->second;
+  auto& had = found->second.stretches;
   const auto behind = had.upper_bound(number);
   const auto before = behind == had.begin() ? had.end() : std::prev(behind);
   if (before != had.end() && before->second >= number) {
@@ -49,13 +50,17 @@ void SourceGaps::ask(std::uint64_t session, std::uint64_t number, Instant now) {
   }
 }
 
-bool SourceGaps::take_live(std::uint64_t session, std::uint64_t number, Instant now) {
+bool SourceGaps::take_live(const Place& place, Instant now) {
+  const auto [session, number, first_number] = place;
+  const bool is_next_session = newest_ && !had_.contains(session);
   if (!note(session, number)) {
     return false;
   }
+  if (is_next_session) {
+    had_.at(session).begins_with = first_number;
+  }
   const bool jumps = newest_ && newest_->first == session && number > newest_->second + 1;
-  const bool begins_late = newest_ && newest_->first != session && number > 1;
-  if (jumps || begins_late) {
+  if (jumps || (is_next_session && number > first_number)) {
     ask(newest_->first, newest_->second, now);
   }
   if (!newest_ || newest_->first != session || number > newest_->second) {
@@ -105,7 +110,10 @@ std::optional<SourceGaps::Request> SourceGaps::due(Instant now) {
 
 std::uint64_t SourceGaps::missing() const {
   std::uint64_t missing = 0;
-  for (const auto& [session, had] : had_) {
+  for (const auto& [number, session] : had_) {
+    const auto& had = session.stretches;
+    const std::uint64_t begin = had.begin()->first;
+    missing += begin - std::min(session.begins_with.value_or(begin), begin);
     for (auto stretch = had.begin(); stretch != had.end() && std::next(stretch) != had.end();
          ++stretch) {
       missing += std::next(stretch)->first - stretch->second - 1;

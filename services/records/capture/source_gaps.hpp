@@ -29,6 +29,11 @@ public:
   static constexpr std::chrono::milliseconds request_interval{500};
   static constexpr std::size_t max_sessions = 64;
 
+  struct Place {
+    std::uint64_t session = 0;
+    std::uint64_t number = 0;
+    std::uint64_t first_number = 0; // of every session (contract/number_in_source.hpp)
+  };
   struct Request {
     std::string name;
     std::uint64_t session = 0; // behind this message; 0: everything of the run
@@ -39,7 +44,7 @@ public:
   explicit SourceGaps(std::string asker) : asker_(std::move(asker)) {}
 
   // Both return whether the message is to be stored; false: it is there already.
-  bool take_live(std::uint64_t session, std::uint64_t number, Instant now);
+  bool take_live(const Place& place, Instant now);
   bool take_again(std::uint64_t session, std::uint64_t number, Instant now);
   // The empty message at the end of the answer to this request.
   void end_of_answer(const std::string& request);
@@ -51,12 +56,15 @@ public:
 
   [[nodiscard]] std::uint64_t messages() const { return messages_; }
   [[nodiscard]] std::uint64_t recovered() const { return recovered_; }
-  // Numbers between two that are there, which are not.
+  // Numbers between two that are there, which are not; and those before, of a session that began
+  // while live messages came.
   [[nodiscard]] std::uint64_t missing() const;
 
 private:
-  // First and last number of every stretch without a gap, by the first.
-  using Stretches = std::map<std::uint64_t, std::uint64_t>;
+  struct Session {
+    std::map<std::uint64_t, std::uint64_t> stretches{}; // last number of each, by the first
+    std::optional<std::uint64_t> begins_with{};         // where its beginning is to be there
+  };
   struct Active {
     Request request;
     Instant began;
@@ -68,7 +76,7 @@ private:
   void ask(std::uint64_t session, std::uint64_t number, Instant now);
 
   std::string asker_;
-  std::map<std::uint64_t, Stretches> had_;                        // by session
+  std::map<std::uint64_t, Session> had_;
   std::deque<std::uint64_t> sessions_;                            // of had_, oldest first
   std::optional<std::pair<std::uint64_t, std::uint64_t>> newest_; // of the live messages
   std::deque<Request> waiting_;

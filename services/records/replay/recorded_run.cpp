@@ -30,6 +30,17 @@ bool begins_behind(const RecordedRunIndex& index, const Recipe& recipe) {
          !first.repeated_steps.empty();
 }
 
+// Some of what a source has sent since the beginning of the run, nobody has recorded, or damage has
+// taken it: as the analysis saw the run, it lacked nothing that its blocks' numbers do not tell.
+bool may_lack_steps(const RecordedRunIndex& index, const Recipe& recipe) {
+  const auto names = recipe.sources();
+  const std::string run = index.plan.run().to_string();
+  return index.report.damage_count > 0 || !std::ranges::all_of(names, [&](const std::string& name) {
+           const auto found = index.sources.find(name);
+           return found != index.sources.end() && found->second.answered.contains(run);
+         });
+}
+
 void add_setup(const RecordedRunIndex& index, RunOutcome& outcome) {
   for (const std::string& name : outcome.recipe->sources()) {
     const auto found = index.sources.find(name);
@@ -110,6 +121,7 @@ Expected<RecordedRunOutcome> evaluate_recording(recording::RecordingReader& read
   result.warnings = warnings_of(index, recipe, reader.path());
   add_setup(index, result.outcome);
   const bool behind = begins_behind(index, recipe);
+  const bool may_begin_late = may_lack_steps(index, recipe);
   RunEvaluator evaluator(std::move(recipe),
                          {.evaluations_at_once = std::clamp<std::size_t>(
                               std::thread::hardware_concurrency(), 1, max_evaluations),
@@ -117,7 +129,7 @@ Expected<RecordedRunOutcome> evaluate_recording(recording::RecordingReader& read
                           .clock_end = index.clock_end,
                           .count = wish.count,
                           .behind = behind,
-                          .may_begin_late = true});
+                          .may_begin_late = may_begin_late});
   const std::stop_callback end(stop, [&evaluator, all = wish.whole_or_none] {
     all ? evaluator.give_up() : evaluator.stop_checks();
   });

@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "services/contract/bench_file_origin.hpp"
+#include "services/contract/number_in_source.hpp"
 #include "services/contract/source_block.hpp"
 #include "services/contract/source_description.hpp"
 #include "services/contract/topics.hpp"
@@ -175,7 +176,7 @@ void RecordedRunFeed::take_of_source(const recording::MessageInFile& message) {
   const auto found = decoded && decoded->bench() == bench_
                          ? sources_.find(decoded->source().to_string())
                          : sources_.end();
-  const std::uint64_t number = decoded ? recording::number_in_source(*decoded) : 0;
+  const std::uint64_t number = decoded ? contract::number_in_source(*decoded) : 0;
   if (found == sources_.end() || (std::is_same_v<T, wire::TriggeredRecord> && number == 0)) {
     return;
   }

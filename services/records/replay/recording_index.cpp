@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include "services/base/byte_count.hpp"
+#include "services/contract/number_in_source.hpp"
 #include "services/contract/topics.hpp"
 #include "services/evaluation/result/run_pause.hpp"
 #include "services/records/capture/recorded_topics.hpp"
@@ -124,7 +125,7 @@ private:
     if (!message.acknowledged_run().empty()) {
       source.answered.insert(message.acknowledged_run());
     }
-    const std::uint64_t number = recording::number_in_source(message);
+    const std::uint64_t number = contract::number_in_source(message);
     if (std::is_same_v<T, wire::TriggeredRecord> && number == 0) {
       return;
     }

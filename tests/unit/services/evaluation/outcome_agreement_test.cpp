@@ -97,6 +97,22 @@ TEST_F(OutcomeAgreementTest, CountsWhatTheOtherLacks) {
   EXPECT_EQ(hold_against(run_, again).missing, 3U);
 }
 
+// Of an excitation whose first block is not in the recording, as many samples are evaluated, later.
+TEST_F(OutcomeAgreementTest, CountsAsMissingWhatIsOfLaterSamples) {
+  SourceSamples samples{.source = "acs", .used = 30000};
+  samples.first_stamp_ns = 100'000'000;
+  samples.last_stamp_ns = 1'599'950'000;
+  run_.results[1].samples = {samples};
+  RunOutcome again = run_;
+  again.results[1].u_magnitude *= 1.5;
+  EXPECT_EQ(hold_against(run_, again).differing, 1U) << "of the same samples";
+  again.results[1].samples[0].first_stamp_ns += 18'550'000;
+  again.results[1].samples[0].last_stamp_ns += 18'550'000;
+  const OutcomeAgreement agreement = hold_against(run_, again);
+  EXPECT_EQ(agreement.missing, 1U);
+  EXPECT_EQ(agreement.differing, 0U);
+}
+
 TEST_F(OutcomeAgreementTest, HoldsMeansAndDelaysToo) {
   RunOutcome forged = run_;
   forged.transfer_functions[0].points[1].mean.magnitude = 42.0;

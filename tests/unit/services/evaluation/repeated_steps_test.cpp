@@ -45,8 +45,11 @@ protected:
   void send_until(double time_s) {
     const auto until = static_cast<std::size_t>(time_s / first_block_samples);
     for (; sent_ < until && sent_ < std::min(acs_.size(), dau_.size()); ++sent_) {
-      tests::feed(*evaluator_, acs_[sent_]);
       tests::feed(*evaluator_, dau_[sent_]);
+      while (acs_sent_ <= sent_ &&
+             first_block_samples * static_cast<double>(sent_ - acs_sent_) >= acs_late_s_) {
+        tests::feed(*evaluator_, acs_[acs_sent_++]);
+      }
       take();
     }
   }
@@ -85,6 +88,8 @@ protected:
   std::vector<wire::SampleBlock> acs_;
   std::vector<wire::SampleBlock> dau_;
   std::size_t sent_ = 0;
+  std::size_t acs_sent_ = 0;
+  double acs_late_s_ = 0.0; // that its samples come behind those of the DAU
   std::vector<StepResult> results_;
   std::vector<StepResult> settled_;
   std::vector<TransferFunction> functions_;
@@ -239,6 +244,30 @@ TEST_P(RepeatedSteps, AnAttemptOfWhichNothingComesIsGivenUpAndTakesThePlace) {
   EXPECT_EQ(functions_.at(0).points.size(), 1U);
 }
 
+// The ACS is so late that the first attempt is given up before its samples come: they are not taken
+// for those of the second one, whose level is another.
+TEST_P(RepeatedSteps, AnAttemptIsNotTakenForTheNextOneWhereItsSamplesComeLate) {
+  std::vector<tests::SyntheticStep> played(16, {"40", 0.0});
+  played[0] = {"40", 10.0};
+  played[5] = {"80", 10.0};
+  played[9] = {"80", 30.0};
+  play(played);
+  excite(1, 2.3);
+  acs_late_s_ = 7.5;
+  send_until(10.3);
+  excite(2, 12.3);
+  send_until(18.0);
+  ASSERT_THAT(steps_and_attempts(), ElementsAre(Pair{1, 1}, Pair{2, 1}));
+  EXPECT_FALSE(results_[1].valid) << "given up";
+  acs_late_s_ = 0.0;
+  excite(2, 20.3, 2);
+  send_until(31.0);
+  ASSERT_THAT(steps_and_attempts(), ElementsAre(Pair{1, 1}, Pair{2, 1}, Pair{2, 2}));
+  EXPECT_TRUE(results_[2].valid) << results_[2].problem;
+  EXPECT_NEAR(results_[2].magnitude, 0.95, 1e-3);
+  EXPECT_NEAR(results_[2].fits.front().fit.amplitude(), 30.0, 0.1);
+}
+
 TEST_P(RepeatedSteps, AnAttemptIsFoundThatIsAnnouncedAfterItsSamples) {
   play({{"40", 10.0}, {"80", 10.0}, {"40", 10.0}, {"40", 0.0}});
   excite(1, 2.3);
@@ -258,6 +287,7 @@ TEST_P(RepeatedSteps, WhoHearsOfTheLastAttemptAloneKnowsOfTheOthers) {
   play({{"40", 10.0}, {"80", 10.0}, {"80", 10.0}, {"40", 10.0}});
   results_.clear();
   sent_ = 0;
+  acs_sent_ = 0;
   evaluator_->announce(
       {.step = 1, .state = State::excited, .attempt = 2, .repeated_steps = {2, 1}});
   send_until(8.4);

@@ -13,7 +13,7 @@ constexpr std::int64_t s_ns = 1'000'000'000;
 class RunRecordsTest : public testing::Test {
 protected:
   // One sample of the ACS, whatever its host's clock shows.
-  void add(std::int64_t stamp_ns) {
+  void add(std::int64_t stamp_ns, const std::optional<BlockTimes>& times = {}) {
     stamps_ = {stamp_ns};
     SourceBlock block;
     block.session = session_;
@@ -23,6 +23,9 @@ protected:
     block.channels = 1;
     block.stamps_ns = stamps_;
     block.values = value_;
+    if (times) {
+      records_.note_times("acs", block, *times);
+    }
     ASSERT_TRUE(records_.find("acs")->add(block));
     records_.search();
   }
@@ -68,6 +71,45 @@ TEST_F(RunRecordsTest, ASourceWhoseClockBeginsAnewGoesOnFromThere) {
   add(1 * s_ns);
   EXPECT_FALSE(records_.is_over_in("acs", 0));
   add(6 * s_ns + 1);
+  EXPECT_TRUE(records_.is_over_in("acs", 0));
+}
+
+// Its host sends in time, and the network brings it late.
+TEST_F(RunRecordsTest, ASourceThatIsHeardLateGoesOnFromWhenTheStepWasOver) {
+  add(1 * s_ns, BlockTimes{1 * s_ns, 1 * s_ns});
+  add(4 * s_ns, BlockTimes{4 * s_ns, 12 * s_ns});
+  records_.announce({.step = 1, .state = StepAnnouncement::State::done}, 12 * s_ns);
+  for (std::int64_t sent_s = 5; sent_s <= 17; ++sent_s) {
+    add(sent_s * s_ns, BlockTimes{sent_s * s_ns, (sent_s + 8) * s_ns});
+    EXPECT_FALSE(records_.is_over_in("acs", 0)) << sent_s;
+  }
+  add(18 * s_ns, BlockTimes{18 * s_ns, 26 * s_ns});
+  EXPECT_TRUE(records_.is_over_in("acs", 0));
+}
+
+// Its service was stopped: what the instrument had measured meanwhile comes all at once.
+TEST_F(RunRecordsTest, ASourceThatWasStoppedIsWaitedFor) {
+  constexpr std::int64_t ms_ns = 1'000'000;
+  add(1 * s_ns, BlockTimes{1 * s_ns, 1 * s_ns});
+  records_.announce({.step = 1, .state = StepAnnouncement::State::done}, 12 * s_ns);
+  std::int64_t heard_ns = 13 * s_ns;
+  for (std::int64_t stamp_s = 2; stamp_s <= 30; ++stamp_s, heard_ns += 30 * ms_ns) {
+    add(stamp_s * s_ns, BlockTimes{heard_ns, heard_ns});
+    EXPECT_FALSE(records_.is_over_in("acs", 0)) << stamp_s;
+  }
+  add(31 * s_ns, BlockTimes{14 * s_ns, 14 * s_ns});
+  EXPECT_TRUE(records_.is_over_in("acs", 0));
+}
+
+// By an hour: what was sent since seems to be sent before the announcement.
+TEST_F(RunRecordsTest, ASourceWhoseHostsClockWasSetBackIsNotWaitedForLongerThanAMinute) {
+  add(10 * s_ns, BlockTimes{5000 * s_ns, 10 * s_ns});
+  records_.announce({.step = 1, .state = StepAnnouncement::State::done}, 11 * s_ns);
+  for (std::int64_t stamp_s = 11; stamp_s <= 75; ++stamp_s) {
+    add(stamp_s * s_ns, BlockTimes{(1400 + stamp_s) * s_ns, stamp_s * s_ns});
+    EXPECT_FALSE(records_.is_over_in("acs", 0)) << stamp_s;
+  }
+  add(76 * s_ns, BlockTimes{1476 * s_ns, 76 * s_ns});
   EXPECT_TRUE(records_.is_over_in("acs", 0));
 }
 
