@@ -97,4 +97,27 @@ std::vector<double> RadiusOverPhase::deviations() const {
   return deviations;
 }
 
+std::vector<double> deviations_with(const Ellipse& ellipse, const std::vector<double>& measured,
+                                    const Ellipse& measured_with) {
+  const kernel::QuadratureCorrection before = correction_of(measured_with);
+  const kernel::QuadratureCorrection now = correction_of(ellipse);
+  std::vector<double> radii;
+  double sum = 0.0;
+  for (std::size_t part = 0; part < measured.size(); ++part) {
+    const double turns = (static_cast<double>(part) + 0.5) / static_cast<double>(measured.size());
+    const auto corrected =
+        std::polar(measured_with.radius * (1.0 + measured[part]), 2.0 * std::numbers::pi * turns);
+    const double u1 = before.p + corrected.real();
+    const double u2 =
+        before.q + (corrected.imag() - corrected.real() * before.tangent) / before.scale;
+    const double x = u1 - now.p;
+    radii.push_back(std::hypot(x, (u2 - now.q) * now.scale + x * now.tangent));
+    sum += radii.back();
+  }
+  for (double& radius : radii) {
+    radius = radius * static_cast<double>(radii.size()) / sum - 1.0;
+  }
+  return radii;
+}
+
 } // namespace dyncal::analysis

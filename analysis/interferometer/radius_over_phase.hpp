@@ -17,6 +17,8 @@
 #include <optional>
 #include <vector>
 
+#include "analysis/interferometer/ellipse.hpp"
+
 namespace dyncal::analysis {
 
 inline constexpr std::size_t radius_sectors = 256;
@@ -53,5 +55,12 @@ private:
   };
   std::array<Sector, radius_sectors> sectors_{};
 };
+
+// Deviations that were measured with one ellipse, as another one corrects the same signals,
+// relative to their mean then; to first order in what the ellipses differ by, which turns the phase
+// as well.
+[[nodiscard]] std::vector<double> deviations_with(const Ellipse& ellipse,
+                                                  const std::vector<double>& measured,
+                                                  const Ellipse& measured_with);
 
 } // namespace dyncal::analysis

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
+
+#include "analysis/interferometer/radius_over_phase.hpp"
 
 namespace dyncal::drivers::interferometer {
 namespace {
@@ -211,7 +214,8 @@ void QuadratureDemodulator::mark_doubtful(std::span<double> turns) {
 }
 
 void QuadratureDemodulator::take(const FoundEllipse& found) {
-  ellipse_ = found.ellipse;
+  described_.radius_deviation_rel = analysis::deviations_with(
+      found.ellipse, described_.radius_deviation_rel, std::exchange(ellipse_, found.ellipse));
   if (phase_) {
     phase_->adopt(ellipse_);
   } else {
@@ -219,7 +223,6 @@ void QuadratureDemodulator::take(const FoundEllipse& found) {
   }
   since_radius_ = 0;
   radius_known_ = false;
-  described_.radius_deviation_rel.clear();
   describe_ellipse(ellipse_, described_);
   described_.turns_covered = found.turns_covered;
   described_.ellipse_from = "the running signals, " + std::string(to_string(found.method));
@@ -238,8 +241,11 @@ void QuadratureDemodulator::look_at_radius() {
     if (!periodic_error_stated_) {
       described_.periodic_error_rad = relative(*radius);
     }
-    described_.radius_deviation_rel = phase_->radius_over_phase().deviations();
-    radius_known_ = true;
+    std::vector<double> deviations = phase_->radius_over_phase().deviations();
+    radius_known_ = !deviations.empty(); // else some part of the turn has yet to be visited
+    if (radius_known_) {
+      described_.radius_deviation_rel = std::move(deviations);
+    }
   }
 }
 

@@ -6,7 +6,6 @@
 #include <fmt/core.h>
 
 #include "analysis/base/frequency.hpp"
-#include "services/base/device_error.hpp"
 #include "services/run/level_meter.hpp"
 #include "services/run/level_settling.hpp"
 
@@ -18,11 +17,9 @@ using drivers::generator::LevelControl;
 
 constexpr auto shots_limit = 60s; // for the shots of one step, series time stamping
 constexpr auto look_interval = 20ms;
-constexpr auto confirmation_slice = 200ms;
 constexpr double off_s = 0.3; // between two steps
 constexpr double shot_slice_s = 0.25;
 constexpr double max_listening_s = 10.0;  // beyond what it needs
-constexpr double slice_s = 0.4;           // bench time between two looks at the network
 constexpr double max_hum = 0.2;           // of a level: so far would the exciter be from it
 constexpr double level_record_part = 0.5; // of the levels of a multi-sine's lines
 constexpr double edge_frames = 4.0; // excitation_window.hpp: up to two frames are lost at each edge
@@ -37,10 +34,6 @@ analysis::Frequency frequency_of(const wire::PlannedStep& step) {
   return *analysis::Frequency::parse(step.frequency_text_hz()); // the bench file was checked
 }
 
-Error of_step(const wire::PlannedStep& step, ErrorCode code, const std::string& what) {
-  return {code, fmt::format("step {}, {} Hz: {}", step.step(), step.frequency_text_hz(), what)};
-}
-
 } // namespace
 
 StepExcitation::StepExcitation(const RunEnvironment& environment, const BenchFile& bench,
@@ -53,6 +46,8 @@ StepExcitation::StepExcitation(const RunEnvironment& environment, const BenchFil
   }
 }
 
+StepExcitation::~StepExcitation() = default;
+
 Expected<std::unique_ptr<StepExcitation>> StepExcitation::open(const RunEnvironment& environment,
                                                                const BenchFile& bench,
                                                                const wire::Measurement& measurement,
@@ -61,18 +56,9 @@ Expected<std::unique_ptr<StepExcitation>> StepExcitation::open(const RunEnvironm
   std::unique_ptr<StepExcitation> excitation(new StepExcitation(
       environment, bench, measurement.run().to_string(), std::move(wake_up), std::move(hooks)));
   DYNCAL_TRY(excitation->check_levels(measurement));
-  DYNCAL_TRY(auto connection,
-             environment.connect_generator(bench.generator, excitation->hooks_.ask));
-  excitation->connection_.emplace(std::move(connection));
-  using drivers::generator::Awaited;
-  excitation->generator().call_while_waiting([self = excitation.get()](Awaited awaited) {
-    if (awaited == Awaited::bench_time) {
-      self->hooks_.hold();
-    } else {
-      self->hooks_.look();
-    }
-    return !self->stop_.stop_requested();
-  });
+  const auto listen = [self = excitation.get()](double now_s) { self->take_reference(now_s); };
+  DYNCAL_TRY(excitation->generator_, DrivenGenerator::connect(environment, bench.generator,
+                                                              excitation->hooks_.wait, listen));
   if (bench.method.kind == EvaluationMethod::series_timestamping) {
     DYNCAL_TRY(auto counter,
                ShotCounter::create(environment.participant, bench.bench, excitation->wake_up_));
@@ -120,67 +106,34 @@ void StepExcitation::end() {
   quiet_levels_.reset(); // hum may have gone when steps are repeated
 }
 
-Error StepExcitation::reported(const drivers::Error& error) {
-  using drivers::ErrorCode;
-  if (!is_instrument(bench_.generator.driver)) {
-    return device_error(error);
-  }
-  generator_away_ = generator_away_ || error.code == ErrorCode::timeout ||
-                    error.code == ErrorCode::disconnected || error.code == ErrorCode::malformed;
-  return generator_away_ ? device_error(error) : fault_of_step(error.message);
-}
-
-Error StepExcitation::fault_of_step(const std::string& what) {
-  fault_may_pass_ = true;
-  return of_step(step_, ErrorCode::device, what);
-}
-
 Expected<void> StepExcitation::excite(const wire::PlannedStep& step, std::uint32_t attempt,
                                       const std::stop_token& stop) {
+  generator_->begin(step, stop);
   step_ = step;
   attempt_ = attempt;
-  stop_ = stop;
-  generator_away_ = false;
-  fault_may_pass_ = false;
   was_level_record_ = multisine_ && meter_ && !multisine_->has_levels();
   auto excited = was_level_record_ ? record_levels(step, stop) : hold_step(step, stop);
   if (const auto off = switch_off(); !off && excited && !stop.stop_requested()) {
     excited = fail(off.error());
   }
   if (excited && !stop.stop_requested()) {
-    excited = wait_for_effect(stop).map(
-        [&](bool in_effect) { output_may_be_on_ = output_may_be_on_ && !in_effect; });
+    excited = generator_->wait_until_off();
   }
   if (!excited || stop.stop_requested() || was_level_record_) {
     announce(step, wire::EXCITATION_ABORTED);
     return excited;
   }
   announce(step, wire::EXCITATION_DONE);
-  const auto now = generator().clock_now_s();
-  if (!now) {
-    return fail(reported(now.error()));
-  }
+  DYNCAL_TRY(const double now_s, generator_->now_s());
   const double pause_s = multisine_ ? std::max(off_s, multisine_->margin_s()) : off_s;
-  return hold_until(*now + pause_s, stop).map([](bool) {});
+  return generator_->hold_until(now_s + pause_s).map([](bool) {});
 }
 
-StepExcitation::~StepExcitation() {
-  // Otherwise the guard tries from now on, for longer than anybody would wait here.
-  const bool off = !output_may_be_on_ || (!connection_->guard && switch_off().value_or(false));
-  if (off && connection_ && connection_->guard) {
-    connection_->guard->dismiss();
+void StepExcitation::take_reference(double now_s) {
+  if (meter_) {
+    meter_->take(now_s, multisine_ ? multisine_->period_s() + max_listening_s
+                                   : LevelMeter::usually_kept_s);
   }
-}
-
-Expected<bool> StepExcitation::switch_off() {
-  const auto off =
-      generator().set_output(false).and_then([&] { return generator().wait_for_effect(0ms); });
-  if (!off) {
-    generator_away_ = is_instrument(bench_.generator.driver);
-    return fail(reported(off.error()));
-  }
-  output_may_be_on_ = output_may_be_on_ && !*off;
-  return *off;
 }
 
 Expected<void> StepExcitation::hold_step(const wire::PlannedStep& step,
@@ -191,7 +144,7 @@ Expected<void> StepExcitation::hold_step(const wire::PlannedStep& step,
   }
   const double steady_from_s = *began + step.settling_s();
   hooks_.show("settling");
-  if (const auto settled = hold_until(steady_from_s, stop); !settled || !*settled) {
+  if (const auto settled = generator_->hold_until(steady_from_s); !settled || !*settled) {
     return settled.map([](bool) {});
   }
   if (shots_) {
@@ -200,7 +153,7 @@ Expected<void> StepExcitation::hold_step(const wire::PlannedStep& step,
   announce(step, wire::EXCITATION_STEADY);
   hooks_.show("measuring");
   const double margin = multisine_ ? multisine_->margin_s() : margin_s(frequency_of(step).hz());
-  const auto held = hold_until(steady_from_s + step.duration_s() + margin, stop);
+  const auto held = generator_->hold_until(steady_from_s + step.duration_s() + margin);
   if (!held || !*held || !shots_) {
     return held.map([](bool) {});
   }
@@ -210,82 +163,73 @@ Expected<void> StepExcitation::hold_step(const wire::PlannedStep& step,
 Expected<double> StepExcitation::begin_step(const wire::PlannedStep& step,
                                             const std::stop_token& stop) {
   if (multisine_) {
-    return switch_on_multisine(step, 1.0, stop);
+    return switch_on_multisine(step, 1.0);
   }
   return meter_ ? switch_on_to_level(step, stop)
-                : switch_on(step, step.level_m_s2() / bench_.generator.level_per_volt, stop);
+                : switch_on(step, step.level_m_s2() / bench_.generator.level_per_volt);
 }
 
-Expected<double> StepExcitation::switch_on(const wire::PlannedStep& step, double voltage_v,
-                                           const std::stop_token& stop) {
-  output_may_be_on_ = true;
-  auto set = generator().set_frequency(step.frequency_text_hz()).and_then([&] {
-    return generator().set_amplitude_v(voltage_v);
+Expected<double> StepExcitation::switch_on(const wire::PlannedStep& step, double voltage_v) {
+  generator_->expect_output();
+  auto set = generator_->instrument().set_frequency(step.frequency_text_hz()).and_then([&] {
+    return generator_->instrument().set_amplitude_v(voltage_v);
   });
-  return switch_on_as_set(step, std::move(set), stop);
+  return switch_on_as_set(step, std::move(set));
 }
 
 // The frequency is what the generator answers with, and what dyncal-guard knows the run by.
-Expected<double> StepExcitation::switch_on_multisine(const wire::PlannedStep& step, double part,
-                                                     const std::stop_token& stop) {
+Expected<double> StepExcitation::switch_on_multisine(const wire::PlannedStep& step, double part) {
   hooks_.show("loading the waveform");
-  auto set = generator().set_frequency(step.frequency_text_hz()).and_then([&] {
-    return generator().set_waveform(multisine_->samples_v(part), multisine_->rate_hz());
+  auto set = generator_->instrument().set_frequency(step.frequency_text_hz()).and_then([&] {
+    return generator_->instrument().set_waveform(multisine_->samples_v(part),
+                                                 multisine_->rate_hz());
   });
-  return switch_on_as_set(step, std::move(set), stop);
+  return switch_on_as_set(step, std::move(set));
 }
 
 // The bench time from which on the output is on.
 Expected<double> StepExcitation::switch_on_as_set(const wire::PlannedStep& step,
-                                                  drivers::Expected<void> set,
-                                                  const std::stop_token& stop) {
-  output_may_be_on_ = true;
+                                                  drivers::Expected<void> set) {
+  generator_->expect_output();
   if (set) {
     // Before the output is on: from then on dyncal-guard must know of it, whatever becomes of us.
     announce(step, wire::EXCITATION_SETTLING);
-    set = generator().set_output(true);
+    set = generator_->instrument().set_output(true);
   }
   if (!set) {
-    return fail(reported(set.error()));
+    return fail(generator_->reported(set.error()));
   }
-  DYNCAL_TRY(wait_for_effect(stop));
-  const auto began = generator().clock_now_s();
-  if (!began) {
-    return fail(reported(began.error()));
-  }
-  return *began;
+  DYNCAL_TRY(generator_->wait_for_effect());
+  return generator_->now_s();
 }
 
 // The exciter settles, then a whole period is looked at.
 Expected<void> StepExcitation::record_levels(const wire::PlannedStep& step,
                                              const std::stop_token& stop) {
-  const auto began = switch_on_multisine(step, level_record_part, stop);
+  const auto began = switch_on_multisine(step, level_record_part);
   if (!began || stop.stop_requested()) {
     return began.map([](double) {});
   }
   hooks_.show("setting the levels of all lines");
   const double settled_s = *began + step.settling_s();
   const double period_s = multisine_->period_s();
-  DYNCAL_TRY(hold_until(settled_s + period_s + level_transport_s, stop));
+  DYNCAL_TRY(generator_->hold_until(settled_s + period_s + level_transport_s));
   const double deadline_s = settled_s + period_s + level_transport_s + max_listening_s;
   while (!stop.stop_requested()) {
-    const auto now = generator().clock_now_s();
-    if (!now) {
-      return fail(reported(now.error()));
-    }
-    meter_->take(*now, settled_s - *began + period_s + max_listening_s);
+    DYNCAL_TRY(const double now_s, generator_->now_s());
+    meter_->take(now_s, settled_s - *began + period_s + max_listening_s);
     DYNCAL_TRY(const auto levels,
                meter_->line_levels_after(settled_s, multisine_->frequencies_hz(), period_s));
     if (levels) {
       return multisine_->take_levels(*levels, level_record_part);
     }
-    if (*now > deadline_s) {
-      return fail(fault_of_step(fmt::format("of {} no whole period of the waveform came; do its "
-                                            "samples come?",
-                                            bench_.method.reference.text())));
+    if (now_s > deadline_s) {
+      return fail(generator_->fault_of_step(
+          fmt::format("of {} no whole period of the waveform came; do its samples come?",
+                      bench_.method.reference.text())));
     }
     clock_.wait(*wake_up_, clock_.now() + look_interval);
-    DYNCAL_TRY(hooks_.keep_alive());
+    DYNCAL_TRY(hooks_.wait.keep_alive());
   }
   return {};
 }
@@ -300,7 +244,7 @@ Expected<double> StepExcitation::switch_on_to_level(const wire::PlannedStep& ste
   if (!loop) {
     return fail(of_step(step, ErrorCode::bad_argument, loop.error().message));
   }
-  auto began = switch_on(step, loop->voltage_v(), stop);
+  auto began = switch_on(step, loop->voltage_v());
   if (!began || stop.stop_requested()) {
     return began;
   }
@@ -316,26 +260,23 @@ Expected<double> StepExcitation::switch_on_to_level(const wire::PlannedStep& ste
           step.frequency_text_hz()); // nothing that another attempt may begin with
       const bool passes_limit = reached.error().code == drivers::ErrorCode::invalid_setting;
       return fail(passes_limit ? of_step(step, ErrorCode::device, reached.error().message)
-                               : fault_of_step(reached.error().message));
+                               : generator_->fault_of_step(reached.error().message));
     }
     known_responses_[step.frequency_text_hz()] = loop->level_per_volt();
     if (*reached) {
       return began;
     }
-    const auto changed = generator().set_amplitude_v(loop->voltage_v()).and_then([&] {
-      return generator().clock_now_s();
-    });
-    if (!changed) {
-      return fail(reported(changed.error()));
+    if (const auto set = generator_->instrument().set_amplitude_v(loop->voltage_v()); !set) {
+      return fail(generator_->reported(set.error()));
     }
-    changed_s = *changed;
+    DYNCAL_TRY(changed_s, generator_->now_s());
   }
 }
 
 Expected<void> StepExcitation::refuse_hum(const wire::PlannedStep& step,
                                           const std::stop_token& stop) {
   if (!quiet_levels_) {
-    const auto listened = listen(stop);
+    const auto listened = listen();
     if (!listened || stop.stop_requested()) {
       return listened;
     }
@@ -343,67 +284,61 @@ Expected<void> StepExcitation::refuse_hum(const wire::PlannedStep& step,
   const double quiet_m_s2 = (*quiet_levels_)[step.frequency_text_hz()];
   return quiet_m_s2 <= max_hum * step.level_m_s2()
              ? Expected<void>{}
-             : fail(fault_of_step(fmt::format(
+             : fail(generator_->fault_of_step(fmt::format(
                    "{} shows {:.3g} m/s^2 at this frequency while the output is off, and {:.3g} "
                    "are planned: it hums, and no level can be set by it",
                    bench_.method.reference.text(), quiet_m_s2, step.level_m_s2())));
 }
 
 // Samples may come late, as after the reader was made: what was not heard is not quiet.
-Expected<void> StepExcitation::listen(const std::stop_token& stop) {
+Expected<void> StepExcitation::listen() {
   const auto& frequencies_hz = bench_.excitation.frequencies_hz;
-  const auto began = generator().clock_now_s();
-  if (!began) {
-    return fail(reported(began.error()));
-  }
+  DYNCAL_TRY(const double began_s, generator_->now_s());
   hooks_.show("listening for hum");
-  double until_s = *began + listening_s(frequencies_hz);
+  double until_s = began_s + listening_s(frequencies_hz);
   const double deadline_s = until_s + max_listening_s;
   while (until_s <= deadline_s) {
-    const auto held = hold_until(until_s, stop);
+    const auto held = generator_->hold_until(until_s);
     if (!held || !*held) {
       return held.map([](bool) {});
     }
-    if ((quiet_levels_ = meter_->quiet_levels_after(*began, frequencies_hz))) {
+    if ((quiet_levels_ = meter_->quiet_levels_after(began_s, frequencies_hz))) {
       return {};
     }
     until_s += shot_slice_s;
   }
-  return fail(fault_of_step(fmt::format("of {} no whole window of samples came while the output "
-                                        "was off, so that nothing tells whether it hums; do its "
-                                        "samples come?",
-                                        bench_.method.reference.text())));
+  return fail(generator_->fault_of_step(
+      fmt::format("of {} no whole window of samples came while the output was off, so that nothing "
+                  "tells whether it hums; do its samples come?",
+                  bench_.method.reference.text())));
 }
 
 // Nothing if a stop was requested.
 Expected<std::optional<double>> StepExcitation::measure_level(double changed_s, double deadline_s,
                                                               const std::stop_token& stop) {
   hooks_.show("setting the level");
-  DYNCAL_TRY(hold_until(changed_s + bench_.excitation.settling_s, stop));
+  DYNCAL_TRY(generator_->hold_until(changed_s + bench_.excitation.settling_s));
   while (!stop.stop_requested()) {
-    const auto now = generator().clock_now_s();
-    if (!now) {
-      return fail(reported(now.error()));
-    }
-    meter_->take(*now);
+    DYNCAL_TRY(const double now_s, generator_->now_s());
+    meter_->take(now_s);
     const auto reading =
         meter_->level_after(changed_s + bench_.excitation.settling_s, frequency_of(step_),
                             0.5 * *bench_.generator.level_tolerance_rel);
     if (!reading) {
       known_responses_.erase(step_.frequency_text_hz());
-      return fail(fault_of_step(reading.error().message));
+      return fail(generator_->fault_of_step(reading.error().message));
     }
     if (reading->level_m_s2) {
       return reading->level_m_s2;
     }
-    if (*now > deadline_s) {
+    if (now_s > deadline_s) {
       known_responses_.erase(step_.frequency_text_hz());
-      return fail(fault_of_step(
+      return fail(generator_->fault_of_step(
           fmt::format("{} shows no steady level {:.1f} s after it was set; {}",
-                      bench_.method.reference.text(), *now - changed_s, reading->lacking)));
+                      bench_.method.reference.text(), now_s - changed_s, reading->lacking)));
     }
     clock_.wait(*wake_up_, clock_.now() + look_interval);
-    DYNCAL_TRY(hooks_.keep_alive());
+    DYNCAL_TRY(hooks_.wait.keep_alive());
   }
   return std::nullopt;
 }
@@ -414,43 +349,10 @@ Expected<void> StepExcitation::hold_until_shots_are_taken(const std::stop_token&
   while (shots_->shots() < bench_.method.shots && clock_.now() < deadline &&
          !stop.stop_requested()) {
     hooks_.show("shots");
-    const auto now = generator().clock_now_s();
-    if (!now) {
-      return fail(reported(now.error()));
-    }
-    DYNCAL_TRY(hold_until(*now + shot_slice_s, stop));
+    DYNCAL_TRY(const double now_s, generator_->now_s());
+    DYNCAL_TRY(generator_->hold_until(now_s + shot_slice_s));
   }
   return {};
-}
-
-Expected<bool> StepExcitation::wait_for_effect(const std::stop_token& stop) {
-  while (!stop.stop_requested()) {
-    const auto in_effect = generator().wait_for_effect(confirmation_slice);
-    if (!in_effect) {
-      return fail(reported(in_effect.error()));
-    }
-    if (*in_effect) {
-      return true;
-    }
-    DYNCAL_TRY(hooks_.keep_alive());
-  }
-  return false;
-}
-
-Expected<bool> StepExcitation::hold_until(double bench_time_s, const std::stop_token& stop) {
-  auto now = generator().clock_now_s();
-  while (now && *now < bench_time_s && !stop.stop_requested()) {
-    now = generator().wait_until_s(std::min(bench_time_s, *now + slice_s), stop);
-    DYNCAL_TRY(hooks_.keep_alive());
-    if (now && meter_) {
-      meter_->take(*now, multisine_ ? multisine_->period_s() + max_listening_s
-                                    : LevelMeter::usually_kept_s);
-    }
-  }
-  if (!now) {
-    return fail(reported(now.error()));
-  }
-  return !stop.stop_requested();
 }
 
 } // namespace dyncal::inline run

@@ -26,13 +26,12 @@
 #include <stop_token>
 #include <string>
 
-#include "drivers/generator/generator.hpp"
 #include "drivers/generator/level_control.hpp"
 #include "idl/dyncal.h"
 #include "services/bench/file/bench_file.hpp"
 #include "services/bus/bus.hpp"
 #include "services/bus/clock.hpp"
-#include "services/run/generator_connection.hpp"
+#include "services/run/driven_generator.hpp"
 #include "services/run/multisine_drive.hpp"
 #include "services/run/run_environment.hpp"
 #include "services/run/shot_counter.hpp"
@@ -46,13 +45,7 @@ struct StepHooks {
   std::function<void(const wire::PlannedStep&, std::uint32_t attempt, wire::ExcitationState)>
       announce;
   std::function<void(const std::string& phase)> show;
-  AskOperator ask;
-  // Called while the generator lets wait for an answer.
-  std::function<void()> look;
-  // Called while the virtual bench lets wait for its time.
-  std::function<void()> hold;
-  // Called at least every second of bench time; fails when the step cannot go on.
-  std::function<Expected<void>()> keep_alive;
+  WaitHooks wait;
 };
 
 class StepExcitation {
@@ -75,17 +68,13 @@ public:
 
   // The last excitation was one that shows the levels of a multi-sine's lines.
   [[nodiscard]] bool was_level_record() const { return was_level_record_; }
-  [[nodiscard]] bool output_may_be_on() const { return output_may_be_on_; }
-  // The generator did not answer in the last step, or not as it should: a link that is down, an
-  // instrument that was switched off. Never of one that is set by hand.
-  [[nodiscard]] bool generator_is_away() const { return generator_away_; }
+  [[nodiscard]] bool output_may_be_on() const { return generator_->output_may_be_on(); }
+  [[nodiscard]] bool generator_is_away() const { return generator_->is_away(); }
   // What failed in the last step was a matter of that step: a setting that the generator refused, a
   // level that was not reached. Another attempt may be without it. Never so where a limit of the
   // level would be passed or was, or a person sets the generator.
-  [[nodiscard]] bool fault_may_pass() const { return fault_may_pass_; }
-  // Connects anew where the connection is lost. Returns whether the output is known to be off: one
-  // that is set by hand, not before the operator has confirmed.
-  [[nodiscard]] Expected<bool> switch_off();
+  [[nodiscard]] bool fault_may_pass() const { return generator_->fault_may_pass(); }
+  [[nodiscard]] Expected<bool> switch_off() { return generator_->switch_off(); }
 
 private:
   StepExcitation(const RunEnvironment& environment, const BenchFile& bench, std::string run,
@@ -95,32 +84,23 @@ private:
   void announce(const wire::PlannedStep& step, wire::ExcitationState state) {
     hooks_.announce(step, attempt_, state);
   }
-  // What the generator reports; notes whether it is away, or has a fault that may pass.
-  Error reported(const drivers::Error& error);
-  Error fault_of_step(const std::string& what);
+  // The samples that have come by then, for the level meter, if there is one.
+  void take_reference(double now_s);
   Expected<void> hold_step(const wire::PlannedStep& step, const std::stop_token& stop);
   // Sets frequency and voltage, or the waveform of this part of a multi-sine's levels, and waits
   // until the output is on; see below.
-  Expected<double> switch_on(const wire::PlannedStep& step, double voltage_v,
-                             const std::stop_token& stop);
-  Expected<double> switch_on_multisine(const wire::PlannedStep& step, double part,
-                                       const std::stop_token& stop);
-  Expected<double> switch_on_as_set(const wire::PlannedStep& step, drivers::Expected<void> set,
-                                    const std::stop_token& stop);
+  Expected<double> switch_on(const wire::PlannedStep& step, double voltage_v);
+  Expected<double> switch_on_multisine(const wire::PlannedStep& step, double part);
+  Expected<double> switch_on_as_set(const wire::PlannedStep& step, drivers::Expected<void> set);
   Expected<double> begin_step(const wire::PlannedStep& step, const std::stop_token& stop);
   Expected<void> record_levels(const wire::PlannedStep& step, const std::stop_token& stop);
   Expected<double> switch_on_to_level(const wire::PlannedStep& step, const std::stop_token& stop);
   // Before the output is on; listens before the first step after begin().
   Expected<void> refuse_hum(const wire::PlannedStep& step, const std::stop_token& stop);
-  Expected<void> listen(const std::stop_token& stop);
+  Expected<void> listen();
   Expected<std::optional<double>> measure_level(double changed_s, double deadline_s,
                                                 const std::stop_token& stop);
   Expected<void> hold_until_shots_are_taken(const std::stop_token& stop);
-  // Returns false if a stop was requested.
-  Expected<bool> wait_for_effect(const std::stop_token& stop);
-  // Returns false if a stop was requested.
-  Expected<bool> hold_until(double bench_time_s, const std::stop_token& stop);
-  [[nodiscard]] drivers::generator::Generator& generator() { return *connection_->generator; }
   [[nodiscard]] drivers::generator::LevelTarget target_of(const wire::PlannedStep& step) const;
 
   bus::Participant& participant_;
@@ -129,15 +109,11 @@ private:
   std::string run_;
   std::shared_ptr<bus::WakeUp> wake_up_;
   StepHooks hooks_;
-  std::optional<GeneratorConnection> connection_; // from open() on
-  bool output_may_be_on_ = false;
-  bool generator_away_ = false;
-  bool fault_may_pass_ = false;
+  std::unique_ptr<DrivenGenerator> generator_; // from open() on
   bool was_level_record_ = false;
   std::optional<MultisineDrive> multisine_;
   wire::PlannedStep step_;                        // that is, or was last, excited
   std::uint32_t attempt_ = 1;                     // of the step that is excited
-  std::stop_token stop_;                          // likewise
   std::unique_ptr<LevelMeter> meter_;             // with a level tolerance, between begin and end
   std::map<std::string, double> known_responses_; // m/s^2 per V by frequency, from earlier steps
   // m/s^2 by frequency that the reference shows while nothing is excited, once it was listened to.

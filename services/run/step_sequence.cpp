@@ -57,10 +57,10 @@ Expected<std::unique_ptr<StepSequence>> StepSequence::open(const RunEnvironment&
                                    self->excitation_ && self->excitation_->output_may_be_on());
            },
        .show = [&watch](const std::string& phase) { watch.show(phase); },
-       .ask = [&watch](const std::string& request) { watch.ask(request); },
-       .look = [&watch] { watch.look_without_hold(); },
-       .hold = [&watch] { watch.look(); },
-       .keep_alive = [self = sequence.get()] { return self->keep_alive(); }});
+       .wait = {.ask = [&watch](const std::string& request) { watch.ask(request); },
+                .look = [&watch] { watch.look_without_hold(); },
+                .hold = [&watch] { watch.look(); },
+                .keep_alive = [self = sequence.get()] { return self->keep_alive(); }}});
   DYNCAL_TRY(excitation);
   sequence->excitation_ = std::move(*excitation);
   return sequence;

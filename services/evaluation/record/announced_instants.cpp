@@ -32,11 +32,12 @@ void AnnouncedInstants::add_over(std::size_t step, std::int64_t heard_ns) {
   over_known_ns_.emplace(step, heard_ns);
 }
 
-bool AnnouncedInstants::has_gone_on(const std::string& source, std::size_t step) const {
+bool AnnouncedInstants::has_gone_on(const std::string& source, std::size_t step,
+                                    std::chrono::nanoseconds duration) const {
   const auto newest = newest_heard_ns_.find(source);
   const auto over = over_known_ns_.find(step);
   return newest == newest_heard_ns_.end() || over == over_known_ns_.end() ||
-         newest->second - over->second >= least_wait.count();
+         newest->second - over->second >= duration.count();
 }
 
 void AnnouncedInstants::hear(std::int64_t heard_ns) {

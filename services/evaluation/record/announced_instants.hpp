@@ -5,12 +5,11 @@
 // later step. And what was heard in one instant, was so in both clocks: the difference of their
 // stamps is the offset between them; of several the median counts.
 //
-// In a clock an instant is known by when blocks were sent (sent_blocks.hpp). A source whose samples
-// come late has sent them late as well where its own service was stopped: nothing of a step is
-// missing before the source has gone on for `least_wait` since others knew that it was over. Where
-// nobody says when anything was sent or heard, an instant
-// is taken for the newest stamp that had come when the announcement was handed over: then, and in
-// an earlier session of a source, it is only as good as its samples came soon.
+// In a clock an instant is known by when blocks were sent (sent_blocks.hpp); a service that was
+// stopped sends what its instrument has measured late, and nothing but the time that it has gone on
+// since tells so. Where nobody says when anything was sent, an instant is taken for the newest
+// stamp that had come when the announcement was handed over: then, and in an earlier session of a
+// source, it is only as good as its samples came soon.
 //
 // Stamps are int64 ns in the clock of the source and its session; a new session may begin anew.
 // Keeps an instant a step and source, the newest `max_heard` announcements, and of the newest
@@ -37,8 +36,6 @@ public:
   using Sessions = std::pair<std::uint32_t, std::uint32_t>; // of the first source and the second
   using Sources = std::pair<std::string, std::string>;
 
-  static constexpr std::chrono::nanoseconds least_wait = std::chrono::seconds(2);
-
   void add(const std::string& source, const SourceBlock& block, const BlockTimes& times);
   void hear(std::int64_t heard_ns);
 
@@ -56,8 +53,10 @@ public:
   [[nodiscard]] std::optional<std::int64_t> over_ns(const std::string& source,
                                                     std::size_t step) const;
 
-  // True where no time is known.
-  [[nodiscard]] bool has_gone_on(const std::string& source, std::size_t step) const;
+  // Blocks of the source were heard so long after all that had been heard when the step was known
+  // to be over; true where no time is known.
+  [[nodiscard]] bool has_gone_on(const std::string& source, std::size_t step,
+                                 std::chrono::nanoseconds duration) const;
 
   // Of the second clock behind the first, by the newest stamps that have come.
   void add_offset(const Sessions& sessions, std::int64_t offset_ns);

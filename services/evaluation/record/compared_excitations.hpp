@@ -44,6 +44,8 @@ public:
   // The records may lack the begin of the run, which nobody saw.
   void may_begin_late(bool may) { may_begin_late_ = may; }
 
+  // Every search has passed the step.
+  [[nodiscard]] bool is_searched(std::size_t step) const;
   // Looks at the steps that every search has passed since the last call. Returns whether to search
   // once more: some search was sent back.
   [[nodiscard]] bool compare();
@@ -56,7 +58,6 @@ public:
   [[nodiscard]] bool agree_with_plan() const;
 
 private:
-  [[nodiscard]] bool is_searched(std::size_t step) const;
   void compare_with_announced(std::size_t step);
   void compare_with_each_other(std::size_t step);
   // Of an attempt that shows an earlier one in one search. Whether it is searched once more.

@@ -103,7 +103,7 @@ bool RunRecords::is_over_in(const std::string& source, std::size_t step) const {
     return false;
   }
   const std::int64_t then_ns = std::min(*over_ns, *had_come_ns + longest_delay.count());
-  return *newest_ns - then_ns > grace.count() && instants_.has_gone_on(source, step);
+  return *newest_ns - then_ns > grace.count() && instants_.has_gone_on(source, step, grace);
 }
 
 // That samples may show by now.
@@ -153,11 +153,6 @@ void RunRecords::search_one(ChannelSearch& search, std::size_t expected) const {
     search.steps.give_up_step();
     search.steps.advance(expected - 1);
   }
-}
-
-bool RunRecords::is_searched(std::size_t step) const {
-  return std::ranges::all_of(
-      searches_, [&](const ChannelSearch& search) { return search.steps.step() > step; });
 }
 
 bool RunRecords::is_expected(std::size_t step) const {

@@ -80,9 +80,10 @@ public:
   // Sources that have not described themselves yet.
   [[nodiscard]] std::vector<std::string> undescribed() const;
 
-  // Whether nothing of the step can come from the source any more: it has gone on for `grace` of
-  // its own time since the step was announced to be over, as well as that instant is known
-  // (announced_instants.hpp); or, where a host's clock was set, since so long after what had come.
+  // Whether nothing of the step can come from the source any more: it has gone on for `grace` since
+  // the step was announced to be over, both by its own time, as well as that instant is known in it
+  // (announced_instants.hpp), and by when its blocks were heard. Where a host's clock was set, that
+  // instant is at most `longest_delay` behind what had come.
   [[nodiscard]] bool is_over_in(const std::string& source, std::size_t step) const;
   static constexpr std::chrono::nanoseconds grace = std::chrono::seconds(5);
   static constexpr std::chrono::nanoseconds longest_delay = std::chrono::seconds(60);
@@ -97,7 +98,7 @@ public:
   // show nothing.
   void search(std::size_t end_step = std::numeric_limits<std::size_t>::max());
   // Every search has passed the step.
-  [[nodiscard]] bool is_searched(std::size_t step) const;
+  [[nodiscard]] bool is_searched(std::size_t step) const { return compared_.is_searched(step); }
   // Every search has passed the step, or knows what it will be if nothing unexpected comes
   // (step_search.hpp).
   [[nodiscard]] bool is_expected(std::size_t step) const;

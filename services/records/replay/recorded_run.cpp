@@ -30,15 +30,23 @@ bool begins_behind(const RecordedRunIndex& index, const Recipe& recipe) {
          !first.repeated_steps.empty();
 }
 
-// Some of what a source has sent since the beginning of the run, nobody has recorded, or damage has
-// taken it: as the analysis saw the run, it lacked nothing that its blocks' numbers do not tell.
+// From the answer to the run on, every message of every session.
+bool has_all_messages(const RecordedSource& source, const std::string& run) {
+  const auto leaves_out = [](const auto& one, const auto& next) {
+    return one.first.session == next.first.session && next.first.number > one.first.number + 1;
+  };
+  return source.answered.contains(run) &&
+         std::ranges::adjacent_find(source.messages, leaves_out) == source.messages.end();
+}
+
+// Some of what a source has sent since the beginning of the run, nobody has recorded.
 bool may_lack_steps(const RecordedRunIndex& index, const Recipe& recipe) {
   const auto names = recipe.sources();
-  const std::string run = index.plan.run().to_string();
-  return index.report.damage_count > 0 || !std::ranges::all_of(names, [&](const std::string& name) {
-           const auto found = index.sources.find(name);
-           return found != index.sources.end() && found->second.answered.contains(run);
-         });
+  return !std::ranges::all_of(names, [&](const std::string& name) {
+    const auto found = index.sources.find(name);
+    return found != index.sources.end() &&
+           has_all_messages(found->second, index.plan.run().to_string());
+  });
 }
 
 void add_setup(const RecordedRunIndex& index, RunOutcome& outcome) {

@@ -1,7 +1,9 @@
 #include "analysis/interferometer/radius_over_phase.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -45,6 +47,38 @@ TEST(RadiusOverPhase, GivesItsDeviationsFromPhaseZeroOn) {
         3.0 * std::cos(phi - 0.3) + 2.0 * std::cos(2.0 * phi) + 1.5 * std::sin(4.0 * phi + 0.2);
     EXPECT_NEAR(500.0 * deviations[i], expected, 0.02) << i; // the mean of a part
   }
+}
+
+// The same signals, corrected by either.
+TEST(RadiusOverPhase, IsKnownOfAnotherEllipseThanItWasMeasuredWith) {
+  const Ellipse first{.p = 3.0, .q = -2.0, .r = 0.95, .alpha_rad = 0.05, .radius = 500.0};
+  const Ellipse second{.p = 5.0, .q = -3.5, .r = 0.953, .alpha_rad = 0.047, .radius = 501.0};
+  const kernel::QuadratureCorrection by_first = correction_of(first);
+  const kernel::QuadratureCorrection by_second = correction_of(second);
+  RadiusOverPhase with_first, with_second;
+  constexpr int steps = 20000;
+  for (int i = 0; i < steps; ++i) {
+    const double turns = (i + 0.5) / steps - 0.5;
+    const double phi = 2.0 * std::numbers::pi * turns;
+    const double radius = first.radius * (1.0 + 4e-3 * std::cos(4.0 * phi + 0.2));
+    with_first.add(turns, radius * radius);
+    const double u1 = by_first.p + radius * std::cos(phi);
+    const double u2 =
+        by_first.q + radius * (std::sin(phi) - std::cos(phi) * by_first.tangent) / by_first.scale;
+    const double x = u1 - by_second.p;
+    const double y = (u2 - by_second.q) * by_second.scale + x * by_second.tangent;
+    with_second.add(std::atan2(y, x) / (2.0 * std::numbers::pi), x * x + y * y);
+  }
+  const std::vector<double> known = deviations_with(second, with_first.deviations(), first);
+  const std::vector<double> measured = with_second.deviations();
+  ASSERT_EQ(known.size(), radius_parts);
+  double largest = 0.0;
+  for (std::size_t i = 0; i < radius_parts; ++i) {
+    EXPECT_NEAR(known[i], measured[i], 2e-4) << i; // the phase turns by some thousandths
+    largest = std::max(largest, std::abs(measured[i]));
+  }
+  EXPECT_GT(largest, 5e-3);
+  EXPECT_TRUE(deviations_with(second, {}, first).empty());
 }
 
 TEST(RadiusOverPhase, AShortArcHasNone) {

@@ -67,10 +67,10 @@ protected:
         {.announce = [this](const wire::PlannedStep&, std::uint32_t,
                             wire::ExcitationState state) { announced_.push_back(state); },
          .show = [this](const std::string& phase) { phases_.push_back(phase); },
-         .ask = [](const std::string&) {},
-         .look = [] {},
-         .hold = [] {},
-         .keep_alive = [this] { return keep_alive_(); }});
+         .wait = {.ask = [](const std::string&) {},
+                  .look = [] {},
+                  .hold = [] {},
+                  .keep_alive = [this] { return keep_alive_(); }}});
   }
   // One step, from connecting to the end of the object.
   Expected<void> excite() {

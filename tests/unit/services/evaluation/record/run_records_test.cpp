@@ -97,7 +97,7 @@ TEST_F(RunRecordsTest, ASourceThatWasStoppedIsWaitedFor) {
     add(stamp_s * s_ns, BlockTimes{heard_ns, heard_ns});
     EXPECT_FALSE(records_.is_over_in("acs", 0)) << stamp_s;
   }
-  add(31 * s_ns, BlockTimes{14 * s_ns, 14 * s_ns});
+  add(31 * s_ns, BlockTimes{17 * s_ns, 17 * s_ns});
   EXPECT_TRUE(records_.is_over_in("acs", 0));
 }
 
