@@ -276,7 +276,7 @@ Expected<double> StepExcitation::switch_on_to_level(const wire::PlannedStep& ste
 Expected<void> StepExcitation::refuse_hum(const wire::PlannedStep& step,
                                           const std::stop_token& stop) {
   if (!quiet_levels_) {
-    const auto listened = listen();
+    auto listened = listen();
     if (!listened || stop.stop_requested()) {
       return listened;
     }
