@@ -20,8 +20,8 @@ void add_newest(std::deque<std::int64_t>& values, std::int64_t value) {
 void AnnouncedInstants::add(const std::string& source, const SourceBlock& block,
                             const BlockTimes& times) {
   sent_[source].add(block, times);
-  const auto [newest, is_first] = newest_heard_ns_.try_emplace(source, times.heard_ns);
-  newest->second = std::max(newest->second, times.heard_ns);
+  std::int64_t& newest_ns = newest_heard_ns_.try_emplace(source, times.heard_ns).first->second;
+  newest_ns = std::max(newest_ns, times.heard_ns);
 }
 
 void AnnouncedInstants::add_over(std::size_t step, std::int64_t heard_ns) {

@@ -33,10 +33,12 @@ bool ComparedExcitations::search_behind_earlier_attempt(std::size_t step) {
     return false;
   }
   const ExcitationInBoth here = in_both(step);
-  const auto known =
-      here.first != nullptr && here.second != nullptr ? known_before(step) : std::nullopt;
-  if (!known) {
+  if (here.first == nullptr || here.second == nullptr) {
     return false;
+  }
+  const auto known = known_before(step);
+  if (!known) {
+    return search_behind_first_attempt(step, here);
   }
   const ExcitationInBoth there = in_both(*known);
   const ClockRate rate = clock_rate(std::array{there, here});
@@ -45,6 +47,28 @@ bool ComparedExcitations::search_behind_earlier_attempt(std::size_t step) {
     return false;
   }
   return searches_[early].steps.search_behind(step);
+}
+
+// Of sources that have shown no step together yet: by what was heard in one instant.
+bool ComparedExcitations::search_behind_first_attempt(std::size_t step,
+                                                      const ExcitationInBoth& here) {
+  const auto offset_ns =
+      sessions(step) == AnnouncedInstants::Sessions{0, 0}
+          ? instants_.offset_ns({searches_[0].source, searches_[1].source}, {0, 0})
+          : std::nullopt;
+  if (!offset_ns || are_one_excitation(here, *offset_ns)) {
+    return false;
+  }
+  const bool second_is_late = here.second->middle_ns() - here.first->middle_ns() > *offset_ns;
+  ChannelSearch& early = searches_[second_is_late ? 0 : 1];
+  const StepOrder& order = excitation_.order();
+  for (std::uint32_t attempt = order.attempt(step); --attempt > 0;) {
+    const auto place = order.find(order.step(step).step, attempt);
+    if (place && early.steps.excitation(*place) == nullptr) {
+      return early.steps.search_behind(step);
+    }
+  }
+  return false;
 }
 
 // Of which this search has nothing, and the other one the same excitation, or nothing as well.

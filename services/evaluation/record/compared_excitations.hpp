@@ -62,6 +62,7 @@ private:
   void compare_with_each_other(std::size_t step);
   // Of an attempt that shows an earlier one in one search. Whether it is searched once more.
   [[nodiscard]] bool search_behind_earlier_attempt(std::size_t step);
+  [[nodiscard]] bool search_behind_first_attempt(std::size_t step, const ExcitationInBoth& here);
   [[nodiscard]] bool shows_earlier_attempt(std::size_t step, std::size_t search,
                                            std::size_t known) const;
   // The search that shows a later step than the other one.

@@ -1,6 +1,7 @@
 // Steps that are excited again after the planned ones: found behind all others, and their results
 // take the place of those before.
 #include <algorithm>
+#include <cmath>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -266,6 +267,34 @@ TEST_P(RepeatedSteps, AnAttemptIsNotTakenForTheNextOneWhereItsSamplesComeLate) {
   EXPECT_TRUE(results_[2].valid) << results_[2].problem;
   EXPECT_NEAR(results_[2].magnitude, 0.95, 1e-3);
   EXPECT_NEAR(results_[2].fits.front().fit.amplitude(), 30.0, 0.1);
+}
+
+// Nor of the first step, before which nothing tells how far the clocks are apart but what was
+// heard.
+TEST_P(RepeatedSteps, AFirstAttemptIsNotTakenForTheNextOneWhereItsSamplesComeLate) {
+  std::vector<tests::SyntheticStep> played(16, {"80", 0.0});
+  played[4] = {"40", 10.0};
+  played[9] = {"40", 30.0};
+  play(played);
+  send_until(2.0);
+  acs_late_s_ = 7.5;
+  send_until(8.3);
+  excite(1, 10.3);
+  send_until(17.0);
+  ASSERT_THAT(steps_and_attempts(), ElementsAre(Pair{1, 1}));
+  EXPECT_FALSE(results_[0].valid) << "given up";
+  acs_late_s_ = 0.0;
+  send_until(18.0);
+  announce(2, State::excited);
+  announce(2, State::aborted);
+  send_until(18.2);
+  excite(1, 20.3, 2);
+  send_until(27.0);
+  ASSERT_FALSE(results_.empty());
+  EXPECT_EQ(results_.back().attempt, 2U);
+  EXPECT_TRUE(std::isnan(results_.back().magnitude) ||
+              std::abs(results_.back().magnitude - 0.95) < 1e-3)
+      << results_.back().magnitude;
 }
 
 TEST_P(RepeatedSteps, AnAttemptIsFoundThatIsAnnouncedAfterItsSamples) {
